@@ -46,7 +46,7 @@ def test_the_help_of_a_robot_tells_of_every_field():
     assert "position : Point, m, required" in text
     assert "heading_deg : float, degrees, default 0.0" in text
     assert "work_capacity : float | None, unit of usage, default None" in text
-    assert "how it moves (holonomic or differential-drive or quadcopter)" in text
+    assert "how it moves (holonomic or differential-drive or quadcopter or hexacopter)" in text
 
 
 def test_a_wrong_name_is_answered_in_one_line_with_the_near_match(mission, plan):

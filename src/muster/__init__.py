@@ -42,6 +42,7 @@ from muster.mission.plan import Plan, Route, read_plan
 from muster.planning.exporting import export
 from muster.planning.judging import verify
 from muster.planning.loading import load
+from muster.planning.options import PlanningOptions
 from muster.planning.pictures import gantt, plot
 from muster.planning.questions import check, explain
 from muster.planning.solve import solve
@@ -75,6 +76,7 @@ __all__ = [
     "ParameterError",
     "Plan",
     "PlanError",
+    "PlanningOptions",
     "PluginError",
     "Report",
     "Robot",

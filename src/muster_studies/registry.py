@@ -22,6 +22,7 @@ from muster_studies.rescue import RESCUE
 from muster_studies.rotors.study import ROTORS
 from muster_studies.rvo import RVO
 from muster_studies.tables import Report
+from muster_studies.thesis_2 import THESIS_2
 from muster_studies.thesis_3_3 import THESIS_3_3
 from muster_studies.thesis_6 import THESIS_6
 from muster_studies.thesis_6_1 import THESIS_6_1
@@ -53,6 +54,7 @@ class Study(Protocol):
 
 
 _IMPLEMENTATIONS: tuple[Study, ...] = (
+    THESIS_2,
     THESIS_3_3,
     THESIS_6,
     THESIS_6_1,

@@ -19,6 +19,13 @@ from muster.planning.loading import load
 from muster.verification import Verdict, verify
 
 
+class ProcessorClock:
+    """The processor time of this process: what else the machine does takes nothing from a limit."""
+
+    def now(self) -> float:
+        return time.process_time()
+
+
 @dataclass(frozen=True, kw_only=True)
 class Case:
     """An allocator with its settings on a mission.
@@ -32,6 +39,7 @@ class Case:
     objective: str = "total+max"
     iterations: int | None = None
     time_limit: float | None = None
+    processor_time: bool = False  # whether the limit, and the times found, are of it
 
     @property
     def random(self) -> bool:
@@ -40,7 +48,10 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """One run: the verdict on its plan, the allocator's processor time, and the time at which it found the plan."""
+    """One run: the verdict on its plan, the allocator's processor time, and the time at which it found the plan.
+
+    `history` is (seconds, objective) at each improvement.
+    """
 
     case: Case
     seed: int
@@ -48,6 +59,7 @@ class Outcome:
     iterations: int
     cpu_s: float
     found_s: float
+    history: tuple[tuple[float, float], ...] = ()
 
     @property
     def value(self) -> float:
@@ -139,7 +151,8 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
         if unwanted is not None and unwanted():
             stop.interrupt()
 
-    stop = Stop(iterations=case.iterations, time_limit=case.time_limit, on_progress=end_if_unwanted)
+    clock = ProcessorClock() if case.processor_time else None
+    stop = Stop(iterations=case.iterations, time_limit=case.time_limit, clock=clock, on_progress=end_if_unwanted)
     begin = time.process_time()
     plan = allocator.solve(problem, stop, seed=seed)
     cpu_s = time.process_time() - begin
@@ -150,4 +163,4 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
         case.ignored,
         case.objective,
     )
-    return Outcome(case, seed, verdict, stop.iterations_done, cpu_s, stop.history[-1][0])
+    return Outcome(case, seed, verdict, stop.iterations_done, cpu_s, stop.history[-1][0], tuple(stop.history))

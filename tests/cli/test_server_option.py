@@ -123,6 +123,11 @@ def test_tasks_that_no_plan_does_together_are_named(folder, muster, url):
 def test_a_simulation_is_as_here(plan, muster, url):
     arguments = ("simulate", "yard.yaml", "--plan", plan, "--seed", 3, "--format", "json")
     assert muster(*arguments, "--server", url)[:2] == muster(*arguments)[:2]
+    again = (*arguments, "--allocator", "greedy", "--rewire")
+    assert muster(*again, "--server", url)[:2] == muster(*again)[:2]
+    code, _, err = muster("simulate", "yard.yaml", "--plan", plan, "--set", "hott=1", "--server", url)
+    assert code == 2
+    assert "search has no parameter hott" in err
 
 
 def test_a_record_comes_back(plan, muster, url):

@@ -13,7 +13,7 @@ from muster.motion.metrics import risk_factor, trajectory_error
 from muster_studies.effort import Effort
 from muster_studies.market_5.arena import BEACONS, CYLINDER_RADIUS_M, CYLINDERS, SURVIVORS
 from muster_studies.market_5.localisation import raw_estimates
-from muster_studies.market_5.searches import FARTHEST_M, LASER, ODOMETRY, PLACES, TRUE, performed, searches
+from muster_studies.market_5.searches import ALONE, BELIEVED, FARTHEST_M, LANDMARKED, PLACES, performed, searches
 from muster_studies.market_5.tracks import SHOWN, measured
 from muster_studies.registry import study_named
 from muster_studies.rescue.metrics import printed_goal_error_m
@@ -53,17 +53,19 @@ def test_cylinders_stand_free():
 
 def test_no_robot_drives_over_a_cylinder(found):
     for one in found.values():
-        places = one.flown[TRUE].positions.reshape(-1, 1, 2)
+        places = one.flown[LANDMARKED].positions.reshape(-1, 1, 2)
         assert np.linalg.norm(places - CYLINDERS[:, :2], axis=2).min() > BODY_RADIUS_M + CYLINDER_RADIUS_M
 
 
 def test_all_survivors_are_found_and_nothing_else(found):
-    for one in found.values():
+    """But that in the physics world a robot that skids at a corner is off by centimetres until it sees a landmark."""
+    for search, one in found.items():
         table = one.found()
         assert {match.name for match in table.matches} == set(SURVIVORS)
-        assert (table.missed, table.extra) == ((), ())
+        assert table.missed == ()
+        assert len(table.extra) <= (2 if search.world == "physics" else 0)
         assert table.greatest_error_m < 0.01
-        assert not one.flown[TRUE].report.contacts
+        assert not one.flown[LANDMARKED].report.contacts
 
 
 def test_the_team_knows_better_than_one_sighting_tells(found):
@@ -82,15 +84,28 @@ def test_what_landmarks_and_team_mates_are_is_no_target(found):
         assert np.linalg.norm(places[:, None] - np.array(BEACONS), axis=2).min() > 0.05
 
 
-def test_landmarks_mend_odometry(found):
-    """In the physics world odometry is lucky: small wheels roll a little less than they count, slip makes that good."""
+def test_landmarks_bring_back_whom_odometry_leads_astray(found):
     for search, one in found.items():
         for robot in TEAM:
-            if search.world == "kinematic":
-                assert one.off[robot, LASER].mean() < one.off[robot, ODOMETRY].mean()
-            assert one.off[robot, LASER].mean() < 0.004
-            assert one.off[robot, LASER].max() < 0.02
-            assert one.surprise[robot, LASER][1:].mean() / 2 < 4
+            assert one.off[robot, LANDMARKED].mean() < 0.5 * one.off[robot, ALONE].mean()
+            assert one.off[robot, LANDMARKED].mean() < 0.01
+            assert one.off[robot, LANDMARKED].max() < (0.06 if search.world == "physics" else 0.01)
+            assert one.surprise[robot, LANDMARKED][1:].mean() / 2 < 10
+
+
+def test_the_error_at_the_goal_is_at_most_what_is_printed(found, tables):
+    """True distances of robots from the places of their survivors when their work ends."""
+    places = {task.id: task.position for task in mission_of(ARENA).tasks}
+    for search, one in found.items():
+        flown, off = one.flown[LANDMARKED], []
+        for robot, visits in flown.visits.items():
+            for visit in visits:
+                step = int(np.searchsorted(flown.times, visit.ends_s - 1e-6))
+                off.append(math.dist(flown.positions[step, TEAM.index(robot)], places[visit.task]))
+        (record,) = rows(tables["Goals"], world=search.world, seed=search.seed)
+        assert record[LANDMARKED] == pytest.approx(max(off), abs=1e-3)
+        assert record[LANDMARKED] <= printed_goal_error_m() < record[ALONE]
+        assert (record["mark"], record["tasks"]) == ("✓", 5)
 
 
 def test_at_the_beginning_all_places_are_the_same(found):
@@ -103,7 +118,7 @@ def test_at_the_beginning_all_places_are_the_same(found):
 def test_the_same_seed_finds_the_same(found):
     for first, second in (searches(EFFORT, [world]) for world in ("kinematic", "physics")):
         again, before, other = first.perform(), found[first], found[second]
-        assert np.array_equal(again.flown[LASER].positions, before.flown[LASER].positions)
+        assert np.array_equal(again.flown[BELIEVED].positions, before.flown[BELIEVED].positions)
         assert [one.place.mean.tolist() for one in again.seen] == [one.place.mean.tolist() for one in before.seen]
         assert [one.place.mean.tolist() for one in other.seen] != [one.place.mean.tolist() for one in before.seen]
 
@@ -130,17 +145,15 @@ def test_figure_8_is_of_equations_7_and_8(found, tables):
 
 def test_figure_8_beside_what_is_printed(found, tables):
     table = tables["Figure 8"]
-    assert "✓" not in str(table.as_dict())  # own robots steer by true places, the paper's by odometry
     assert len(table.rows) == 2 * len(SHOWN) * len(TEAM)
     for record in rows(table, metric="error at the goal, m"):
-        assert (record["paper"], record["mark"]) == (printed_goal_error_m(), "other measure")
-        assert record["true"] < record["laser"] < 0.006
-        assert record["laser"] < record["odometry"] or record["world"] == "physics"
+        assert (record["paper"], record["mark"]) == (printed_goal_error_m(), "✓")
+        assert record[LANDMARKED] < record[ALONE]
     assert all(record["mark"] == "no contact" for record in rows(table, metric="least distance to an obstacle, m"))
     (goal,) = (metric for metric in SHOWN if metric.name == "goal_error")
-    values = measured([found[search] for search in searches(EFFORT, ["kinematic"])], goal, "eyeBot", ODOMETRY)
+    values = measured([found[search] for search in searches(EFFORT, ["kinematic"])], goal, "eyeBot", ALONE)
     (record,) = rows(table, world="kinematic", metric=goal.label, robot="eyeBot")
-    assert (record["odometry"], record["odometry ±"]) == pytest.approx((np.mean(values), np.std(values, ddof=1)))
+    assert (record[ALONE], record[f"{ALONE} ±"]) == pytest.approx((np.mean(values), np.std(values, ddof=1)))
 
 
 def test_figure_7(found, tables):
@@ -167,22 +180,20 @@ def test_targets(tables):
 
 
 def test_localisation(tables):
-    for record in rows(tables["Localisation"], world="kinematic"):
+    for record in tables["Localisation"].records():
         assert record["better"] == "2/2"
-        assert record["laser mean m"] < record["odometry mean m"] < record["odometry most m"]
-    for record in rows(tables["Localisation"], world="physics"):
-        assert record["laser mean m"] < 0.004
+        assert record["landmarks mean m"] < 0.01 < record["alone most m"]
 
 
 def test_it_is_a_study_and_says_what_the_paper_does_not_print(capsys, monkeypatch, tmp_path):
     pytest.importorskip("matplotlib")
     monkeypatch.setenv("COLUMNS", "120")
-    assert study_named("market-5").tables == ("Figure 7", "Figure 8", "Targets", "Localisation")
+    assert study_named("market-5").tables == ("Figure 7", "Figure 8", "Goals", "Targets", "Localisation")
     text, folder = tmp_path / "study.txt", tmp_path / "pictures"
     assert muster(["study", "market-5", "--seeds", "1", "-o", str(text), "--plot", str(folder)]) == 0
     words = " ".join(text.read_text(encoding="utf-8").split())
     assert "it prints no number" in words
-    assert "steer by true places" in words
+    assert "steer by odometry and laser landmarks" in words
     assert max(map(len, text.read_text(encoding="utf-8").splitlines())) <= 120
     assert sorted(path.name for path in folder.iterdir()) == ["figure-7.png", "figure-8.png"]
 

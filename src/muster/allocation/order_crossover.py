@@ -16,7 +16,7 @@ import numpy as np
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.allocation.strings import Decoded, Strings, random_strings, ranking, roulette, string_of
+from muster.allocation.strings import Decoded, Floats, Strings, random_strings, ranking, roulette, string_of
 from muster.mission.errors import ParameterError
 
 
@@ -51,13 +51,18 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
         population[0] = string_of(problem, start)
     figures = decoded.figures(population)  # 2
     for _ in stop.iterations():
-        best = population[ranking(figures)[0]].copy()
-        parents = population[roulette(figures, params.population_size, random)]
-        population = crossed(parents, params.crossover_probability, random)  # 3
-        mutate(population, params.mutation_probability, random)  # 4
-        population[0] = best
+        population = next_generation(population, figures, params, random)
         figures = decoded.figures(population)  # 5
     return Outcome(decoded.best.routes)
+
+
+def next_generation(population: Strings, figures: Floats, params: Parameters, random: np.random.Generator) -> Strings:
+    """Steps 3 and 4 with parents drawn by the wheel; the best string stays."""
+    parents = population[roulette(figures, len(population), random)]
+    following = crossed(parents, params.crossover_probability, random)  # 3
+    mutate(following, params.mutation_probability, random)  # 4
+    following[0] = population[ranking(figures)[0]]
+    return following
 
 
 def crossed(parents: Strings, probability: float, random: np.random.Generator) -> Strings:

@@ -64,6 +64,11 @@ class Decoded:
         self.best.note(figures, self._decoder.routes)
         return figures
 
+    def routes(self, strings: Strings) -> list[Routes]:
+        """The plans that strings stand for."""
+        self.figures(strings)
+        return [self._decoder.routes(k) for k in range(len(strings))]
+
 
 class Best:
     """The best plan seen so far, the start plan to begin with."""

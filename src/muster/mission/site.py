@@ -8,7 +8,7 @@ from typing import Any
 
 from muster.mission.place_types import LatLon
 from muster.mission.records import Checked, Record, record, spec
-from muster.mission.value_types import Choice, Fault, Many, Number, Position, Text, Whole, shown
+from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Text, Whole, shown
 
 Point = tuple[float, ...]
 
@@ -85,10 +85,11 @@ class Tag(Checked):
 
 @record
 class Landmark(Checked):
-    """An upright cylinder at a place that every robot knows: lasers see it, bodies do not touch it."""
+    """An upright cylinder that lasers see and bodies do not touch."""
 
     position: Point = spec(Position(), "where it stands", instead=IN_DEGREES)
     radius_m: float = spec(Number(above=0), "its radius", default=0.025)
+    known: bool = spec(Flag(), "whether robots know its place, and localise themselves by it", default=True)
 
 
 @dataclass(frozen=True)

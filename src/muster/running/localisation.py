@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
-from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
 from muster.perception import dead_reckoning
 from muster.perception.dead_reckoning import HEADING, X, Y, Z
@@ -58,7 +57,7 @@ Localise = str | Sequence[str] | Mapping[str, Mapping[str, float | str]]
 
 START_M, START_RAD = 0.001, 0.001
 """Within which robots know their poses at the beginning: standard deviations."""
-LEAST_SHARE, LEAST_TURN_SHARE = 0.002, 0.005
+LEAST_SHARE, LEAST_TURN_SHARE, LEAST_TURN_PER_M = 0.01, 0.05, 0.05
 """What odometry errs by in a filter's eyes where there is no noise: nothing is exact."""
 LEAST_SLIP = 0.02
 LEAST_RADPS = 0.001
@@ -120,8 +119,8 @@ def require_possible(sensors: Mapping[str, SensorParameters], mission: Mission) 
         raise ParameterError(
             f"localise: tags in mission {mission.name}; expected a mission with tags, and a robot with a camera"
         )
-    if LASERS in sensors and not mission.landmarks:
-        raise ParameterError(f"localise: lasers in mission {mission.name}; expected a mission with landmarks")
+    if LASERS in sensors and not any(landmark.known for landmark in mission.landmarks):
+        raise ParameterError(f"localise: lasers in mission {mission.name}; expected a mission with known landmarks")
     capture = sensors.get(MOTION_CAPTURE)
     if isinstance(capture, MotionCaptureParameters) and capture.robot:
         robots = [robot.id for robot in mission.robots]
@@ -132,18 +131,11 @@ def require_possible(sensors: Mapping[str, SensorParameters], mission: Mission) 
 
 @dataclass(frozen=True)
 class Localisation:
-    """The sensors of all robots of a mission.
-
-    Parameters
-    ----------
-    unknown
-        (k, 3) of x, y, radius: cylinders that lasers see and nobody knows.
-    """
+    """The sensors of all robots of a mission."""
 
     sensors: Mapping[str, SensorParameters]
     mission: Mission
     seed: int
-    unknown: Floats | None = field(default=None, compare=False)
 
     def of(self, world: SimulatedWorld, robot: str) -> PoseEstimate:
         """The estimate of one robot that is in the world."""
@@ -162,7 +154,7 @@ class Localisation:
         if isinstance(how, SatelliteParameters):
             return Satellites(world, robot.id, how, self.seed)
         if isinstance(how, LaserParameters):
-            return LaserLandmarks(world, robot.id, self.mission.landmarks, how, self.seed, self.unknown)
+            return LaserLandmarks(world, robot.id, self.mission.landmarks, how, self.seed)
         if isinstance(how, TagParameters) and robot.camera is not None:
             return TagCamera(world, robot, robot.camera, self.mission.tags, how, self.seed)
         return None
@@ -243,7 +235,7 @@ def reckoning_errors(robot: Robot, noise: Noise) -> ReckoningErrors:
     return ReckoningErrors(
         way_share=max(LEAST_SHARE, of_wheel),
         turn_share=max(LEAST_TURN_SHARE, of_wheel / math.sqrt(2)),
-        turn_per_m=max(LEAST_TURN_SHARE, of_wheel / (math.sqrt(2) * half_track)),
+        turn_per_m=max(LEAST_TURN_PER_M, of_wheel / (math.sqrt(2) * half_track)),
         slip=max(LEAST_SLIP, noise.slip),
         gyro_radps=max(LEAST_RADPS, noise.gyro_radps),
         gyro_bias_radps=max(LEAST_RADPS, noise.gyro_bias_radps),

@@ -28,7 +28,7 @@ from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.localisation import Localise
 from muster.running.replanning import reallocation_by
-from muster.running.state_estimation import EstimatedWorld, with_state_estimation
+from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.worlds import recorded_world
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
@@ -129,7 +129,9 @@ class Simulation:
         )
         if on_world is not None:
             on_world(self._world)
-        self._robots = with_state_estimation(self._world, mission, pose=pose, localise=localise, seed=seed)
+        self._robots: RobotsInWorld = with_state_estimation(
+            self._world, mission, pose=pose, localise=localise, seed=seed
+        )
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
@@ -151,6 +153,11 @@ class Simulation:
     def world(self) -> SimulatedWorld:
         """To look at; who moves it otherwise than by `advance` breaks the mission's clock."""
         return self._world
+
+    @property
+    def robots(self) -> RobotsInWorld:
+        """The robots as execution hears them: by their estimates, where they have some."""
+        return self._robots
 
     @property
     def time_s(self) -> float:

@@ -57,7 +57,7 @@ class LaserParameters(SensorParameters):
         how far from a landmark what is taken for it may be seen, beside what the pose may be off.
     """
 
-    rate_hz: float = 2.0
+    rate_hz: float = 10.0
     range_m: float = 0.01
     depth_m: float = 0.07
     near_m: float = 0.1
@@ -115,28 +115,16 @@ class TagCamera:
 
 
 class LaserLandmarks:
-    """A robot's laser that knows where cylinders stand.
-
-    Parameters
-    ----------
-    others
-        (k, 3) of x, y, radius: cylinders that stand there too, and that it does not know.
-    """
+    """A robot's laser that knows where some of the mission's cylinders stand, and sees all of them."""
 
     def __init__(
-        self,
-        world: SimulatedWorld,
-        robot: str,
-        known: Sequence[Landmark],
-        how: LaserParameters,
-        seed: int,
-        others: Floats | None = None,
+        self, world: SimulatedWorld, robot: str, cylinders: Sequence[Landmark], how: LaserParameters, seed: int
     ) -> None:
         self._world = world
         self._laser = Laser(world, robot, Scanner(range_m=how.range_m), seed=seed)
-        self._places = [np.array(one.position[:2]) for one in known]
-        there = np.array([(*one.position[:2], one.radius_m) for one in known])
-        self._cylinders = there if others is None else np.concatenate([there, others])
+        self._places = [np.array(one.position[:2]) for one in cylinders if one.known]
+        self._cylinders = np.array([(*one.position[:2], one.radius_m) for one in cylinders])
+        there = self._cylinders
         radii = there[:, 2]
         self._search = SpikeParameters(
             depth_m=how.depth_m, smallest_m=0.5 * float(radii.min()), largest_m=1.6 * float(radii.max())

@@ -65,7 +65,7 @@ class Summary:
 def _limit(effort: Effort) -> str:
     if effort.iterations is not None:
         return f"{effort.iterations} iterations"
-    return f"{QUICK_SECONDS if effort.quick else SECONDS:g} s"
+    return f"{QUICK_SECONDS if effort.quick else SECONDS:g} s of processor time"
 
 
 def _cases(mission: str, effort: Effort) -> dict[tuple[str, str], Case]:
@@ -78,6 +78,7 @@ def _cases(mission: str, effort: Effort) -> dict[tuple[str, str], Case]:
             objective=objective,
             iterations=effort.iterations if allocator.anytime else None,
             time_limit=seconds if allocator.anytime and effort.iterations is None else None,
+            processor_time=True,
         )
         for allocator in map(ALLOCATORS.__getitem__, ALLOCATORS.shipped)
         for objective in OBJECTIVES

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 
-from muster.perception.errors import GroundErrors
+from muster.mission.model import Landmark
 from muster.perception.laser import Scanner
 from muster.perception.spikes import SpikeParameters
 from muster_studies.rescue.flights import NOISE
@@ -43,14 +44,10 @@ SEARCH = SpikeParameters(depth_m=0.07, smallest_m=0.012, largest_m=0.04)
 RANGE_M, BEARING_RAD = 0.005, math.radians(0.36)
 """How far the centre of a cylinder is off in one scan: standard deviations that are counted with."""
 
-ERRORS = GroundErrors(
-    odometry_share=NOISE.odometry,
-    odometry_mps=0.002,
-    odometry_slip=NOISE.slip,
-    heading_rad=NOISE.heading_rad,
-    range_m=RANGE_M,
-    bearing_rad=BEARING_RAD,
+STEERED_NOISE = replace(NOISE, position_m=0.0, heading_rad=0.0)
+"""That of the study rescue, but that no robot is told its pose: it has its odometry and its laser."""
+
+LANDMARKS = (
+    *(Landmark(position=place, radius_m=CYLINDER_RADIUS_M) for place in BEACONS),
+    *(Landmark(position=place, radius_m=CYLINDER_RADIUS_M, known=False) for place in SURVIVORS.values()),
 )
-"""What robots count with."""
-START_M, START_RAD = 0.001, 0.001
-"""Within which they know where they stand at the beginning."""

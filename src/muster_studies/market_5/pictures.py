@@ -13,7 +13,7 @@ from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure
 from muster_studies.market_5.arena import BEACONS, SURVIVORS
-from muster_studies.market_5.searches import PLACES, TRUE, Search, SearchResult, performed, searches
+from muster_studies.market_5.searches import LANDMARKED, PLACES, Search, SearchResult, performed, searches
 from muster_studies.market_5.tracks import SHOWN, measured, team
 from muster_studies.rescue.flights import repetitions
 from muster_studies.rescue.metrics import SHOWN_ROBOT, Metric, printed_goal_error_m
@@ -30,7 +30,7 @@ _WORLD = WORLDS.shipped[-1]
 def _tracking(effort: Effort) -> Figure:
     first: Search = searches(effort, [_WORLD])[0]
     found = performed(first)
-    tasks = tuple(visit.task for visit in found.flown[TRUE].visits[SHOWN_ROBOT])
+    tasks = tuple(visit.task for visit in found.flown[LANDMARKED].visits[SHOWN_ROBOT])
     reference = legs(ARENA, SHOWN_ROBOT, tasks)
     flights = []
     for place in PLACES:
@@ -60,7 +60,7 @@ def _measure(found: Sequence[SearchResult], metric: Metric, place: str, robots: 
         label=f"{metric.label}\n{place}",
         means={robot: fmean(each) for robot, each in values.items()},
         spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
-        printed=printed_goal_error_m() if (metric.name, place) == ("goal_error", TRUE) else None,
+        printed=printed_goal_error_m() if (metric.name, place) == ("goal_error", LANDMARKED) else None,
     )
 
 
@@ -71,7 +71,7 @@ FIGURES = (
         shows="rangeBot's reference and actual trajectory on the map, and the survivor that it localised",
         draw=_tracking,
         tables=("Figure 7",),
-        differs="its deviation over time beneath, by true places and by estimates",
+        differs="its deviation over time beneath, with landmarks, as believed, and by odometry alone",
     ),
     StudyFigure(
         number="8",
@@ -79,6 +79,6 @@ FIGURES = (
         shows="mean and spread of each robot's errors, distances and times as bars",
         draw=_metrics,
         tables=("Figure 8",),
-        differs="searches in the physics world, by true places and by estimates",
+        differs="searches in the physics world, with landmarks, as believed, and by odometry alone",
     ),
 )

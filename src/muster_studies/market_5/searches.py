@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.perception.clusters import by_density
 from muster.perception.matching import ErrorTable, error_table
@@ -18,16 +19,18 @@ from muster.perception.points_of_interest import PointOfInterest, points_of_inte
 from muster.running.simulation import Simulation
 from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
-from muster_studies.market_5.arena import SURVIVORS
+from muster_studies.market_5.arena import LANDMARKS, STEERED_NOISE, SURVIVORS
 from muster_studies.market_5.localisation import CylinderSighting, RobotLocalisation, raw_estimates
 from muster_studies.market_rescue.scenario import market_case
-from muster_studies.rescue.flights import NOISE, FlightResult, Log, repetitions
+from muster_studies.rescue.flights import FlightResult, Log, repetitions
 from muster_studies.rescue.teams import ARENA, mission_of, plan_of
 from muster_studies.rescue.tracking import Tracking, tracking
 
-TRUE, ODOMETRY, LASER = "true", "odometry", "laser"
-PLACES = (TRUE, ODOMETRY, LASER)
-"""Where a robot was; where it was by odometry; and by odometry with landmarks."""
+LANDMARKED, BELIEVED, ALONE = "landmarks", "believed", "odometry alone"
+PLACES = (LANDMARKED, BELIEVED, ALONE)
+"""Where a robot was that steered by odometry with landmarks; where it took itself to be; and where it was that steered
+by odometry alone, in another run."""
+
 
 STEP_S, SCAN_S = 0.1, 0.5
 APART_M, LEAST = 0.06, 5
@@ -47,10 +50,9 @@ class SearchResult:
     flown
         by place, with the positions that are meant; times and all else are the same.
     off
-        by robot and place other than true, (t,) metres that it was off.
+        by robot and way of steering, LANDMARKED or ALONE, (t,) metres that it was off where it took itself to be.
     surprise
-        by robot and place, (t,): squared error of x and y in units of its covariance; 2 in the mean of one that knows
-        its errors.
+        the same, (t,): squared error of x and y in units of its covariance; 2 in the mean of one that knows its errors.
     seen
         all sightings of what is no landmark, in order of time.
     hits
@@ -92,22 +94,70 @@ class Search:
     seed: int
 
     def perform(self) -> SearchResult:
-        mission = mission_of(ARENA)
+        mission = replace(mission_of(ARENA), landmarks=LANDMARKS)
+        first = self._steered(mission, ("odometry", "lasers"))
+        alone = self._steered(mission, ("odometry",))
+        flown = {
+            LANDMARKED: first.flown,
+            BELIEVED: replace(first.flown, positions=first.states[:, :, :2]),
+            ALONE: alone.flown,
+        }
+        runs = {LANDMARKED: first, ALONE: alone}
+        off = {(robot, way): one.off(number) for way, one in runs.items() for number, robot in enumerate(one.robots)}
+        surprise = {
+            (robot, way): one.surprise(number) for way, one in runs.items() for number, robot in enumerate(one.robots)
+        }
+        return SearchResult(flown=flown, off=off, surprise=surprise, seen=first.seen, hits=first.hits)
+
+    def _steered(self, mission: Mission, localise: tuple[str, ...]) -> _Steered:
+        """One run in which robots steer by these sensors."""
         log = Log(mission)
-        how: dict[str, Any] = {"world": self.world, "seed": self.seed, "noise": NOISE, "recorder": log}
+        how: dict[str, Any] = {
+            "world": self.world,
+            "seed": self.seed,
+            "noise": STEERED_NOISE,
+            "localise": localise,
+            "recorder": log,
+        }
         with closing(Simulation(mission, plan_of(ARENA, self.iterations), **how)) as simulation:
-            eyes = [RobotLocalisation(simulation.world, robot.id, self.seed) for robot in mission.robots]
+            eyes = [RobotLocalisation(simulation, robot.id, self.seed) for robot in mission.robots]
             states, seen = [_states(eyes)], list[CylinderSighting]()
             while not simulation.done:
                 simulation.advance(simulation.time_s + STEP_S)
-                for one in eyes:
-                    one.move()
                 if len(states) % round(SCAN_S / STEP_S) == 0:
                     for one in eyes:
-                        seen += one.look([other.fused.mean[:2] for other in eyes if other is not one])
+                        seen += one.look([other.pose.mean[:2] for other in eyes if other is not one])
                 states.append(_states(eyes))
         hits = {one.robot: one.hits for one in eyes}
-        return _searched(log.flown(simulation.result()), np.array(states), tuple(seen), hits)
+        return _Steered(log.flown(simulation.result()), np.array(states), tuple(seen), hits)
+
+
+@dataclass(frozen=True, eq=False)
+class _Steered:
+    """One run; `states` (t, n, 6) as `_states` gives them, at the times of the flight."""
+
+    flown: FlightResult
+    states: Floats
+    seen: tuple[CylinderSighting, ...]
+    hits: Mapping[str, Floats]
+
+    @property
+    def robots(self) -> list[str]:
+        return list(self.flown.visits)
+
+    def off(self, number: int) -> Floats:
+        """Metres that a robot was off where it took itself to be, (t,)."""
+        return np.asarray(np.linalg.norm(self._apart[:, number], axis=1))
+
+    def surprise(self, number: int) -> Floats:
+        """The squares of that in units of the filter's covariance, (t,)."""
+        spread = self.states[:, number, 2:].reshape(-1, 2, 2)
+        apart = self._apart[:, number]
+        return np.asarray(np.einsum("ti,tij,tj->t", apart, np.linalg.inv(spread), apart))
+
+    @property
+    def _apart(self) -> Floats:
+        return np.asarray(self.states[:, :, :2] - self.flown.positions)
 
 
 @cache
@@ -129,25 +179,7 @@ def found_by_world(effort: Effort, results: Mapping[Any, Any]) -> Iterator[tuple
         yield world, [results[job] for job in searches(effort, [world])]
 
 
-def _states(eyes: Sequence[RobotLocalisation]) -> list[list[Floats]]:
-    """Of each robot, by odometry and with landmarks: x, y and their covariance, (6,)."""
-    return [
-        [np.concatenate([one.mean[:2], one.covariance[:2, :2].ravel()]) for one in (each.odometry, each.fused)]
-        for each in eyes
-    ]
-
-
-def _searched(
-    flown: FlightResult, states: Floats, seen: tuple[CylinderSighting, ...], hits: Mapping[str, Floats]
-) -> SearchResult:
-    """`states` (t, n, 2, 6) as `_states` gives them, at the times of the flight."""
-    places, off, surprise = {TRUE: flown}, {}, {}
-    for k, place in enumerate((ODOMETRY, LASER)):
-        believed, spread = states[:, :, k, :2], states[:, :, k, 2:].reshape(*states.shape[:2], 2, 2)
-        places[place] = replace(flown, positions=believed)
-        apart = believed - flown.positions
-        squares = np.einsum("tni,tnij,tnj->tn", apart, np.linalg.inv(spread), apart)
-        for number, robot in enumerate(flown.visits):
-            off[robot, place] = np.linalg.norm(apart[:, number], axis=1)
-            surprise[robot, place] = squares[:, number]
-    return SearchResult(flown=places, off=off, surprise=surprise, seen=seen, hits=hits)
+def _states(eyes: Sequence[RobotLocalisation]) -> list[Floats]:
+    """Of each robot where it takes itself to be: x, y and their covariance, (6,)."""
+    poses = [one.pose for one in eyes]
+    return [np.concatenate([pose.mean[:2], pose.covariance[:2, :2].ravel()]) for pose in poses]

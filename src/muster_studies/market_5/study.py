@@ -5,15 +5,15 @@ from __future__ import annotations
 from muster_studies.market_5.pictures import FIGURES
 from muster_studies.market_5.searches import Search, SearchResult, performed
 from muster_studies.market_5.targets import Figure7, Targets
-from muster_studies.market_5.tracks import Figure8, Localisation
+from muster_studies.market_5.tracks import Figure8, Goals, Localisation
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.rescue.flights import repetitions
 
-_TABLES: tuple[Reproduction[Search, SearchResult], ...] = (Figure7(), Figure8(), Targets(), Localisation())
+_TABLES: tuple[Reproduction[Search, SearchResult], ...] = (Figure7(), Figure8(), Goals(), Targets(), Localisation())
 
 _LEGEND = (
     "The mission is market-rescue-arena, carried out in the kinematic and in the physics world, where the paper took "
-    "V-REP; robots know their places by odometry and laser landmarks. Places, noise and landmarks are chosen here. "
+    "V-REP; robots steer by odometry and laser landmarks, or by odometry alone. Places, noise and landmarks are ours. "
     "Allocation, times and failing robots: study rescue.",
 )
 

@@ -13,9 +13,9 @@ from muster_studies.effort import Effort
 from muster_studies.market_5.arena import CYLINDER_RADIUS_M, SCANNER, SURVIVORS
 from muster_studies.market_5.searches import (
     FARTHEST_M,
+    LANDMARKED,
     LEAST,
     SCAN_S,
-    TRUE,
     Search,
     SearchResult,
     found_by_world,
@@ -64,7 +64,7 @@ class Figure7:
 
 
 def _own_survivor(one: SearchResult) -> dict[str, Cell]:
-    survivor = one.flown[TRUE].visits[SHOWN_ROBOT][-1].task
+    survivor = one.flown[LANDMARKED].visits[SHOWN_ROBOT][-1].task
     single = single_errors(one, survivor, SHOWN_ROBOT)
     return {
         "survivor": survivor,
@@ -104,8 +104,8 @@ class Targets:
         notes = (
             f"Survivors are cylinders of {2 * CYLINDER_RADIUS_M} m, unknown to the robots. Found is what was seen "
             f"{LEAST} times within centimetres, {FARTHEST_M} m from a survivor at most; {NOBODY}: found where nothing "
-            "is. first s: mean of when it was first seen. Robots go where the plan sends them, to known places, as the "
-            "paper's do: lasers do not change their ways.",
+            "is. first s: mean of when it was first seen. Robots go to known places, as the paper's do, by odometry "
+            "with landmarks; what they find does not change the plan.",
         )
         return Table(self.number, "Survivors that the team finds", self.columns, tuple(rows), notes, decimals=4)
 

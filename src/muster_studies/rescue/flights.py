@@ -109,6 +109,7 @@ class Flight:
             plan_of(self.team, self.iterations),
             seed=self.seed or 0,
             noise=NO_NOISE if self.seed is None else NOISE,
+            pose="true",
             recorder=log,
         )
         return log.flown(report)

@@ -111,7 +111,7 @@ def fly(flight: Flight) -> FlightResult:
     plan = Plan(routes=routes, ignored=flight.ignored, objective="total+max")
     planned = accepted(mission, plan, flight.mission, flight.ignored, "total+max")
     ways, witness = _Ways(), _LookCounter()
-    how: dict[str, Any] = {"world": flight.world, "noise": flight.noise, "seed": flight.seed}
+    how: dict[str, Any] = {"world": flight.world, "noise": flight.noise, "seed": flight.seed, "pose": "true"}
     how["ignore"] = flight.ignored
     with closing(Simulation(mission, plan, recorder=ways, on_look=witness.take, **how)) as simulation:
         while not simulation.done:

@@ -30,6 +30,9 @@ BRIDGES = ("ros1", "mavlink")
         ("kinematic", {"noise": {"slip": 1.5}}, "slip: 1.5; expected a number, 0 to 1"),
         ("physics", {"avoidance": "orcas"}, "avoidance: orcas; expected orca, rvo, hrvo, none; did you mean 'orca'?"),
         ("physics", {"law": "thesiss"}, "law: thesiss; expected profile, thesis; did you mean 'thesis'?"),
+        ("kinematic", {"planning": {"alocator": "greedy"}}, '"alocator": unknown; expected allocator'),
+        ("kinematic", {"planning": "greedy"}, 'planning: "greedy"; expected a mapping'),
+        ("mavlink", {"local_frame": "east"}, "local_frame: east; expected north, forward"),
         ("mavlink", {"at_end": "fly"}, "at_end: fly; expected hold, return, land"),
         ("ros1", {"drive": "WP"}, "drive: WP; expected cmd_vel, goals"),
         ("ros1", {"known_only": "yes"}, 'known_only: "yes"; expected true or false'),
@@ -44,6 +47,7 @@ def test_what_no_world_can_be_told(world, settings, wrong):
 
 def test_what_worlds_can_be_told():
     require_world("physics", (), {"seed": 3, "dt_s": 0.05, "avoidance": "orca", "noise": {"position_m": 0}})
+    require_world("ros1", BRIDGES, {"planning": {"allocator": "greedy", "rewire": True}, "odometry": "start"})
     require_world("mavlink", BRIDGES, {"endpoints": {"r_0": "udp:0.0.0.0:14550"}, "arm": True, "height_m": 10})
 
 

@@ -107,7 +107,7 @@ class SystemMonitor:
 class WatchedRobot:
     """Where one robot is, and how far it has gone since it was discovered."""
 
-    def __init__(self, topics: str, frame: MapFrame, pose_topic: str | None) -> None:
+    def __init__(self, topics: str, frame: MapFrame, pose_topic: str | None = None) -> None:
         self.odometer = Odometer(flat=False)
         self.place: Place | None = None
         self.heading: float | None = None
