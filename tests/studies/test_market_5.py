@@ -195,7 +195,7 @@ def test_it_is_a_study_and_says_what_the_paper_does_not_print(capsys, monkeypatc
     assert "it prints no number" in words
     assert "steer by odometry and laser landmarks" in words
     assert max(map(len, text.read_text(encoding="utf-8").splitlines())) <= 120
-    assert sorted(path.name for path in folder.iterdir()) == ["figure-7.png", "figure-8.png"]
+    assert sorted(path.name for path in folder.iterdir()) == ["figure-4.png", "figure-7.png", "figure-8.png"]
 
 
 def test_json(capsys):

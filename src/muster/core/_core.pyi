@@ -551,12 +551,17 @@ class CrowdWorld:
 
     def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int, law: str = 'profile', climb: float = 0.0) -> int:
         """
-        Returns the number of the robot, from 0. `law`: profile or thesis; `climb`: above 0 of one that climbs by (4.12).
+        Returns the number of the robot, from 0. `law`: profile, thesis or trajectory; `climb`: above 0 of one that climbs by (4.12).
         """
 
     def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
         """
         Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.
+        """
+
+    def follow(self, robot: int, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], step: float, times: Sequence[float]) -> None:
+        """
+        The trajectory of the order sent last: (k, 4) of x, y, z, heading each `step` seconds, and when it passes each way point.
         """
 
     def fail(self, robot: int) -> None: ...
@@ -615,6 +620,14 @@ class CrowdWorld:
     def counted(self, robot: int) -> tuple[float, float, float, float]:
         """
         Metres ahead, to the left and up, and radians, that odometry counted in the last step.
+        """
+
+    def told_pose(self, robot: int) -> tuple[float, float, float, float]:
+        """Where orders take a robot to be: x, y, z, heading."""
+
+    def tracking_errors(self, robot: int) -> tuple[float, float, int]:
+        """
+        Metres off its trajectory: the sum over steps in which it followed it, the most, the steps.
         """
 
     def busy(self, robot: int) -> bool: ...

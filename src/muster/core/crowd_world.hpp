@@ -16,6 +16,7 @@
 #include "manners.hpp"
 #include "right_of_way.hpp"
 #include "steering.hpp"
+#include "tracking.hpp"
 
 namespace muster {
 
@@ -81,6 +82,8 @@ class CrowdWorld {
   int add(const Body& body, const Vec<3>& position, double heading);
 
   void send(int i, std::vector<Waypoint> way, int order);
+  // The trajectory of the order that was sent last.
+  void follow(int i, Reference reference);
   void fail(int i);
   void recover(int i) { robots_[i].failed = false; }
   void slow(int i, double factor) { robots_[i].slowed = factor; }
@@ -116,6 +119,7 @@ class CrowdWorld {
   void avoid();
   template <int D>
   void avoid_among(const std::vector<int>& group);
+  Vec<3> course(CrowdRobot& robot) const;
   void steer();
   void yield(const AgentTree<3>& tree);
   void disturb(CrowdRobot& robot) const;

@@ -29,7 +29,7 @@ BRIDGES = ("ros1", "mavlink")
         ("kinematic", {"noise": {"positon_m": 1.0}}, "noise: positon_m; expected velocity, slip, "),
         ("kinematic", {"noise": {"slip": 1.5}}, "slip: 1.5; expected a number, 0 to 1"),
         ("physics", {"avoidance": "orcas"}, "avoidance: orcas; expected orca, rvo, hrvo, none; did you mean 'orca'?"),
-        ("physics", {"law": "thesiss"}, "law: thesiss; expected profile, thesis; did you mean 'thesis'?"),
+        ("physics", {"law": "thesiss"}, "law: thesiss; expected profile, thesis, trajectory; did you mean 'thesis'?"),
         ("kinematic", {"planning": {"alocator": "greedy"}}, '"alocator": unknown; expected allocator'),
         ("kinematic", {"planning": "greedy"}, 'planning: "greedy"; expected a mapping'),
         ("mavlink", {"local_frame": "east"}, "local_frame: east; expected north, forward"),
