@@ -26,7 +26,7 @@ Floats = npt.NDArray[np.float64]
 RESERVE = 0.05
 """The share of its limits that a robot keeps to catch up."""
 STEP_S = 0.02
-_HALVINGS = 6
+_RADII = 2  # the radius of full speed and half of it; a robot is faster where it stops and turns than on less
 _SAME_M = 1e-7
 
 
@@ -90,7 +90,7 @@ class TrajectoryMaker:
         """The motion to a stop, and when it passes the way points on the way there."""
         points = np.vstack([place, *(point.position for point in section)])[:, : self.dimensions]
         keep = [k + 1 for k, point in enumerate(section) if point.label]
-        radii = [self.radius_m * 0.5**k for k in range(_HALVINGS)]
+        radii = [self.radius_m * 0.5**k for k in range(_RADII)]
         found = smoothed(Path(points), self.clear, radii_m=radii, keep=keep)
         motion = timed(found.curve, self._limits, faces_its_way=self.faces_its_way, start_heading=heading)
         motion = _in_whole_steps(motion)
