@@ -7,7 +7,7 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test docs-check docs-check-long campaign campaign-auction campaign-server campaign-api network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: demo test docs-check docs-check-long figures campaign campaign-auction campaign-server campaign-api network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -29,6 +29,9 @@ docs-check: $(VENV)/developed
 
 docs-check-long: $(VENV)/developed
 	$(BIN)/python -m tools.docs_check --long $(DOCS)
+
+figures: $(VENV)/developed
+	$(BIN)/python -m tools.figures --page $(STUDIES)
 
 campaign: $(VENV)/developed
 	$(BIN)/python -m tests.campaign $(CAMPAIGN_FLAGS)
@@ -53,6 +56,7 @@ help:
 	@echo "make test       run all tests"
 	@echo "make docs-check  run what the documents show: blocks, pictures, numbers"
 	@echo "make docs-check-long  make what takes minutes, and store it in docs/measured (DOCS='NAME...')"
+	@echo "make figures    draw every figure of every study, and docs/figures.md (STUDIES='rvo ...'); minutes"
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"

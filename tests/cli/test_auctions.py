@@ -38,7 +38,10 @@ def test_the_default_bid_is_the_objective(muster):
     assert plans[0] == plans[1]
 
 
-@pytest.mark.parametrize("allocator", ["auction", "market", "consensus-bundle"])
+@pytest.mark.parametrize(
+    "allocator",
+    ["auction", "market", "consensus-bundle", "contract-net", "combinatorial-auction", "bertsekas-auction"],
+)
 def test_a_book_is_written(muster, allocator):
     code, _, err = muster(
         "solve", "yard.yaml", "-a", allocator, "--iterations", 3, "--book", "book.csv", "-o", "plan.json", "-q"
@@ -54,9 +57,11 @@ def test_a_book_is_written(muster, allocator):
 def test_an_allocator_that_holds_no_auction_has_no_book_and_no_terms(muster):
     code, out, err = muster("solve", "yard.yaml", "-a", "greedy", "--book", "b.csv")
     assert (code, out) == (2, "")
-    assert err == "--book: greedy keeps no book; expected auction or market or consensus-bundle\n"
+    sellers = "auction or market or consensus-bundle or contract-net or combinatorial-auction or bertsekas-auction"
+    assert err == f"--book: greedy keeps no book; expected {sellers}\n"
     code, out, err = muster("solve", "yard.yaml", "-a", "greedy", "--bid", "max")
-    assert (code, err) == (2, "--bid: greedy takes none; expected --allocator auction or market\n")
+    takers = "auction or market or contract-net or combinatorial-auction or bertsekas-auction"
+    assert (code, err) == (2, f"--bid: greedy takes none; expected --allocator {takers}\n")
 
 
 @pytest.mark.parametrize("option", ["--bid", "--placement", "--winner"])

@@ -76,6 +76,7 @@ def test_in_json(muster):
             "proven": True,
         },
         "unknown": False,
+        "unseen": [],
     }
 
 
@@ -95,7 +96,7 @@ def test_when_all_can_be_done(muster):
         "",
     )
     answer = json.loads(muster("check", "m.yaml", "--format", "json")[1])
-    assert answer == {"errors": [], "impossible": [], "conflict": None, "unknown": False}
+    assert answer == {"errors": [], "impossible": [], "conflict": None, "unknown": False, "unseen": []}
 
 
 @pytest.mark.parametrize(("capacity", "code"), [(60, 3), (120, 0)])
@@ -121,4 +122,69 @@ def test_no_time(muster):
 def test_errors_in_json_have_all_keys(muster):
     code, out, err = muster("check", write("schema: muster/1\n"), "--format", "json")
     assert (code, err) == (2, "")
-    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown"]
+    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown", "unseen"]
+
+
+SEARCH = """\
+schema: muster/1
+name: search
+robots:
+  - {id: low, position: [0, 0], kind: air, camera: {fov_deg: 60, tilt_deg: 90}}
+  - {id: wide, position: [1, 0], kind: air, camera: {fov_deg: 100, tilt_deg: 90}}
+  - {id: blind, position: [2, 0]}
+tasks:
+  - {id: field, position: [9, 9], action: {name: raster-search, side_m: 4, height_m: 2, SPACING}ONLY}
+"""
+
+
+def searched(spacing, only=""):
+    return SEARCH.replace("SPACING", spacing).replace("ONLY", only)
+
+
+def test_a_search_that_no_robot_sees_all_of_is_an_error(muster):
+    Path("search.yaml").write_text(searched("spacing_m: 9"), encoding="utf-8")
+    code, out, err = muster("check", "search.yaml", "--format", "json")
+    assert code == 2
+    found = json.loads(out)
+    (error,) = found["errors"]
+    assert (error["field"], error["line"]) == ("tasks[0].action.spacing_m", 8)
+    assert error["value"].startswith("9 (low sees 2.31 m across its lanes")
+    assert error["expected"] == "no spacing_m: lanes follow from the camera then, 2.08 m apart or less"
+    assert [(one["task"], one["robot"], one["never_seen"]) for one in found["unseen"]] == [
+        ("field", "low", True), ("field", "wide", True),
+    ]  # fmt: skip
+    code, out, err = muster("check", "search.yaml")
+    assert code == 2
+    assert "; 1 error" in out
+    assert "search.yaml:8: tasks[0].action.spacing_m" in err
+
+
+def test_a_search_that_some_robots_see_all_of_is_a_warning(muster):
+    Path("search.yaml").write_text(searched("spacing_m: 3.2"), encoding="utf-8")
+    code, out, err = muster("check", "search.yaml")
+    assert code == 0
+    assert "no errors" in out
+    assert "warning: task field: low sees 2.31 m across its lanes" in err
+    assert "wide" not in err
+    code, out, err = muster("solve", "search.yaml", "--iterations", "50", "--ignore", "skills")
+    assert code == 0
+
+
+def test_a_robot_that_may_not_do_it_does_not_count(muster):
+    Path("search.yaml").write_text(searched("spacing_m: 3.2", ", only_robots: [low]"), encoding="utf-8")
+    assert muster("check", "search.yaml")[0] == 2
+    code, _, err = muster("solve", "search.yaml", "--iterations", "50")
+    assert code == 0
+    assert "warning: task field: spacing_m 3.2: low sees 2.31 m" in err
+    Path("search.yaml").write_text(searched("spacing_m: 9", ", only_robots: [blind]"), encoding="utf-8")
+    assert muster("check", "search.yaml")[0] == 0
+
+
+def test_without_a_spacing_all_is_seen(muster):
+    Path("search.yaml").write_text(searched("overlap: 0.2", ", only_robots: [low, wide]"), encoding="utf-8")
+    code, out, err = muster("check", "search.yaml")
+    assert (code, err) == (0, "")
+    assert "no errors" in out
+    Path("search.yaml").write_text(searched("overlap: 0.2", ", only_robots: [blind]"), encoding="utf-8")
+    code, out, err = muster("check", "search.yaml")
+    assert "it has no camera from which the distance of lanes follows" in " ".join(out.split())

@@ -229,7 +229,7 @@ def test_a_turning_radius_bends_the_way(muster, walled):
     assert shortest["length_m"] < sharp["length_m"] < wide["length_m"] < 1.2 * shortest["length_m"]
     code, _, err = muster("path", walled, "--from", "1,1", "--to", "9,1", "--turning-radius", "1")
     assert code == 2
-    assert "--turning-radius: 1; expected --smooth or --planner dubins beside it" in err
+    assert "--turning-radius: 1; expected --smooth, --unknown or --planner dubins beside it" in err
 
 
 @pytest.mark.parametrize("law", ["pure-pursuit", "virtual-target", "synthetic-waypoint"])
@@ -249,3 +249,42 @@ def test_a_local_minimum_is_an_answer(muster, walled):
     code, out, _ = muster("path", walled, "--from", "1,1", "--to", "9,1", "--planner", "potential-field")
     assert code == 0
     assert out.startswith("no path: not found: a local minimum at (")
+
+
+def test_a_robot_without_a_map_goes_by_its_laser(muster, tmp_path):
+    file = tmp_path / "posts.yaml"
+    file.write_text(
+        WALLED.replace("[4, 0], [6, 0], [6, 8], [4, 8]", "[4, 4], [5, 4], [5, 6], [4, 6]"), encoding="utf-8"
+    )
+    found = answer(muster, str(file), "--from", "1,5", "--to", "9,5", "--radius", "0.3", "--unknown")
+    assert found["points"][-1] == pytest.approx([9, 5], abs=0.06)
+    assert found["edges"] > 0
+    gap = shapely.LineString(found["points"]).distance(shapely.box(4, 4, 5, 6))
+    assert 0.3 < gap < 0.45
+    assert 8 < found["length_m"] < 9.5
+    code, out, _ = muster("path", str(file), "--from", "1,5", "--to", "9,5", "--unknown")
+    assert code == 0
+    assert "scans" in out
+
+
+def test_paths_of_several_robots_at_once(muster, tmp_path):
+    file = tmp_path / "open.yaml"
+    file.write_text(
+        WALLED.replace("[4, 0], [6, 0], [6, 8], [4, 8]", "[4, 4], [5, 4], [5, 6], [4, 6]"), encoding="utf-8"
+    )
+    walled = str(file)
+    code, out, err = muster("path", walled, "--together", "rover=8,8", "--format", "json")
+    assert (code, err) == (0, "")
+    found = json.loads(out)
+    assert found["robots"][0]["points"][-1] == [8, 8]
+    code, out, _ = muster("path", walled, "--together", "rover=8,8")
+    assert code == 0
+    assert "8 neighbours" in out
+    for told, message in (
+        ("rver=8,8", "--together: 'rver'; expected a robot of the mission; did you mean 'rover'?"),
+        ("rover=9", "--together: 'rover=9'; expected ROBOT=X,Y"),
+    ):
+        code, _, err = muster("path", walled, "--together", told)
+        assert (code, message in err) == (2, True)
+    code, _, err = muster("path", walled, "--from", "1,1")
+    assert (code, "--to: missing; expected x,y" in err) == (2, True)

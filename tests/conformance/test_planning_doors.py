@@ -108,7 +108,7 @@ INVALID = [
         options={"allocator": "genetic", "iterations": 5},
         fixed=GOOD,
         mission="eil51-5",
-        error="fixed: with genetic, which would move tasks; expected search or greedy",
+        error="fixed: with genetic, which would move tasks; expected search, greedy or auction",
     ),
     Case(
         "a start that does not begin with the fixed tasks",

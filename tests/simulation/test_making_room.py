@@ -11,7 +11,7 @@ from muster.motion.port import Waypoint
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive", "quadcopter")
-METHODS = ("orca", "rvo", "hrvo")
+METHODS = ("orca", "rvo", "hrvo", "avo")
 HERE, THERE, AWAY = (10.0, 0.0, 0.0), (10.0, 0.1, 0.0), (16.0, 4.0, 0.0)
 
 
@@ -62,7 +62,7 @@ def test_it_stays_beside_while_the_other_works_and_then_comes_back(kind, method)
 
 @pytest.mark.parametrize(
     ("kind", "method", "apart"),
-    [(kind, *how) for kind in KINDS for how in (("orca", 0.9), ("rvo", 1.5), ("hrvo", 1.5))],
+    [(kind, *how) for kind in KINDS for how in (("orca", 0.9), ("rvo", 1.5), ("hrvo", 1.5), ("avo", 1.5))],
 )
 def test_one_among_many_that_have_nothing_to_do_gets_to_the_middle(kind, method, apart):
     places = [(6.0 + apart * x, apart * y) for x in (-1, 0, 1) for y in (-1, 0, 1)]

@@ -29,7 +29,7 @@ def test_crossing_circles_end_without_contact(count, kind, acceleration):
     assert world.min_distance_m >= 0.6 - 1e-9
 
 
-@pytest.mark.parametrize("method", ["rvo", "hrvo"])
+@pytest.mark.parametrize("method", ["rvo", "hrvo", "avo"])
 def test_other_methods_do_not_end_in_contacts_either(method):
     team = circle(8, 5.0, radius_m=0.3)
     world = KinematicWorld(team, avoidance=method)

@@ -1,11 +1,12 @@
 """Figures of studies: their numbers, what they are drawn from, and that they are drawn."""
 
+from importlib.util import find_spec
+
 import pytest
 
 from muster.cli.main import run as muster
+from muster_studies.printed_figures import NOT_DRAWN, PRINTED
 from muster_studies.registry import STUDIES
-
-ALL = [(study.name, figure) for study in STUDIES.values() for figure in study.figures]
 
 
 @pytest.mark.parametrize("name", [study.name for study in STUDIES.values() if study.figures])
@@ -32,8 +33,23 @@ def test_a_figure_is_drawn_without_tables(study, number, tmp_path, capsys):
     assert capsys.readouterr().out == ""
 
 
+@pytest.mark.skipif(find_spec("mujoco") is None or find_spec("cv2") is None, reason="needs the extra `physics`")
 def test_a_view_of_the_physics_world(tmp_path):
-    pytest.importorskip("mujoco")
-    pytest.importorskip("cv2")
     assert muster(["study", "thesis-6", "--figures", "6.11", "--plot", str(tmp_path)]) == 0
     assert (tmp_path / "figure-6.11.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("source", PRINTED)
+def test_every_printed_figure_is_drawn_or_has_a_reason(source):
+    figures = [figure for study in STUDIES.values() for figure in study.figures]
+    drawn = {figure.number for figure in figures if figure.source == source}
+    left_out = [number for entry in NOT_DRAWN if entry.source == source for number in entry.numbers]
+    assert len(set(left_out)) == len(left_out)
+    assert not drawn & set(left_out)
+    assert drawn | set(left_out) == set(PRINTED[source])
+
+
+def test_a_figure_s_source_is_a_document():
+    for study in STUDIES.values():
+        assert {figure.source for figure in study.figures} <= {*PRINTED, ""}
+    assert all(entry.reason for entry in NOT_DRAWN)

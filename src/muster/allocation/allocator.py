@@ -68,7 +68,7 @@ class Allocator:
         if not (isinstance(seed, int) and 0 <= seed < 2**64):
             raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
         if problem.fixed and not self.keeps_fixed:
-            raise ParameterError(f"fixed: with {self.name}, which would move tasks; expected search or greedy")
+            raise ParameterError(f"fixed: with {self.name}, which would move tasks; expected search, greedy or auction")
         outcome = self.outcome(problem, stop, seed, params or self.parameters(), _first_routes(problem, start))
         return finished_plan(problem, stop, outcome, allocator=self.name, seed=seed)
 

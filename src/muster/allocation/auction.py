@@ -22,7 +22,7 @@ class Parameters(Terms):
 
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
-    """Sell all tasks that are not in the start plan's routes."""
+    """Sell all tasks that are not in the start plan's routes; without one, all but those that stay where they are."""
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
         auctioneer = Auctioneer(problem, params, start, on_round)
@@ -41,4 +41,5 @@ AUCTION = Allocator(
     parameters=Parameters,
     algorithm=allocate,
     auctions=True,
+    keeps_fixed=True,
 )

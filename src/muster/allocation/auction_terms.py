@@ -19,8 +19,9 @@ class BidTerms:
     """What robots bid, and where a task goes in a route.
 
     `bid` None is the rule named as the objective. The weights make bids worse by a factor: 1, plus battery_weight times
-    the share of its capacity that a robot has used up, plus suitability_weight times what its suitability for the task
-    lacks to 1, plus quality_weight times what the lowest quality among the skills that the task requires lacks to 1.
+    the share of its battery that a robot has used up (as it reports its charge, else by its usage and capacity), plus
+    suitability_weight times what its suitability for the task lacks to 1, plus quality_weight times what the lowest
+    quality among the skills that the task requires lacks to 1.
     [auction-thesis], section 6.2, leaves all three to future work.
 
     Raises

@@ -10,7 +10,7 @@ import numpy as np
 from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.auction_terms import BidTerms
-from muster.allocation.bids import BID_RULES, Floats, Standing, battery_penalty, lack_penalty, weighted
+from muster.allocation.bids import BID_RULES, Floats, Standing, lack_penalty, weighted
 from muster.allocation.problem import Problem
 from muster.allocation.skill_quality import skill_quality
 from muster.allocation.stop import Stop
@@ -46,7 +46,7 @@ class Auctioneer:
         self._robots = range(len(problem.robots))
         self._linked = any(problem.prerequisites)
         self.round = 0
-        self.restore(routes or [[] for _ in problem.robots], {})
+        self.restore(routes or [list(problem.beginning(i)) for i in self._robots], {})
 
     @property
     def routes(self) -> Routes:
@@ -130,8 +130,8 @@ class Auctioneer:
     def _weighted(self, bids: Floats, robots: int | slice, tasks: int | slice | Indices) -> Floats:
         terms, penalty = self._terms, np.zeros(())
         if terms.battery_weight:
-            capacity = self._problem.capacity[robots]
-            penalty = penalty + terms.battery_weight * battery_penalty(self._usages[robots], capacity)
+            shares = self._problem.drains.shares(self._usages[robots], robots)
+            penalty = penalty + terms.battery_weight * shares
         if terms.suitability_weight:
             penalty = penalty + terms.suitability_weight * lack_penalty(self._problem.suitability[robots, tasks])
         if terms.quality_weight:

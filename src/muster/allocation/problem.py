@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.allocation.charges import Charge, Drains
 from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
@@ -67,6 +68,7 @@ class Problem:
     tasks: tuple[Task, ...]
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
     known: Measured | None = None  # what the problem of which this is a part knew
+    charges: tuple[Charge | None, ...] = ()  # measured, for each robot; empty: none at all
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
 
     @classmethod
@@ -99,13 +101,20 @@ class Problem:
         own, work = tuple(self.robots[i] for i in robots), tuple(self.tasks[j] for j in tasks)
         number_in = {j: k for k, j in enumerate(tasks)}
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
+        charges = tuple(self.charges[i] for i in robots) if self.charges else ()
         known = None
         if self.known is not None or self.mission.travel_rule == "map":
             n, m = len(self.tasks), len(self.robots)
             places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
             known = self.measured.part(robots, places, tasks)
         return replace(
-            self, mission=cut_down(self.mission, own, work), robots=own, tasks=work, fixed=fixed, known=known
+            self,
+            mission=cut_down(self.mission, own, work),
+            robots=own,
+            tasks=work,
+            fixed=fixed,
+            charges=charges,
+            known=known,
         )
 
     def __getstate__(self) -> dict[str, Any]:
@@ -166,6 +175,11 @@ class Problem:
     def beginning(self, i: int) -> tuple[int, ...]:
         """The tasks that robot i's route begins with, whatever follows."""
         return self.fixed[i] if self.fixed else ()
+
+    @cached_property
+    def drains(self) -> Drains:
+        """What routes use up of batteries, by measured charges where there are any."""
+        return Drains.of(self.charges, self.capacity)
 
     def may(self, i: int, j: int) -> bool:
         """Whether robot i may do task j: skills, suitability, locks, and what its action asks for."""

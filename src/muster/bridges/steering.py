@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.mission.model import Robot
-from muster.motion.avoidance import Agents, Hrvo, Method, Orca, Rvo
+from muster.motion.avoidance import Agents, Avo, Hrvo, Method, Orca, Rvo
 from muster.motion.avoidance.orca import Parameters
 from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
@@ -33,6 +33,7 @@ _METHODS: Mapping[str, Method | None] = {
     "orca": Orca(Parameters(horizon_s=2.0, wall_horizon_s=2.0)),
     "rvo": Rvo(),
     "hrvo": Hrvo(),
+    "avo": Avo(),
     "none": None,
 }
 

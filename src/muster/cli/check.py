@@ -17,12 +17,15 @@ from muster.cli.options import (
     require_complete_option,
 )
 from muster.cli.tables import counted, sequence
-from muster.mission.errors import MissionError, NotSupportedError
+from muster.mission.errors import Finding, MissionError, NotSupportedError
 from muster.mission.model import Mission
 from muster.mission.plan import Unassigned, json_text
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from muster.allocation.conflicts import Together
+    from muster.motion.actions.coverage import Unseen
     from muster.planning.explaining import Possible
 
 _MINIMAL = "without any one of them a plan was found that does the others"
@@ -80,25 +83,40 @@ def _refused(form: str, error: MissionError | NotSupportedError) -> int:
 
 def _checked(form: str, mission: Mission, found: Possible, *, require_complete: bool) -> int:
     """Print which tasks can be done; returns the exit code."""
+    from muster.planning.explaining import unseen_findings
+
     lost, all_others = found.impossible, found.together
+    errors = unseen_findings(mission, found.unseen)
     if form == "json":
-        click.echo(json_text({"errors": [], **found.as_dict()}), nl=False)
+        click.echo(json_text({"errors": [error.as_dict() for error in errors], **found.as_dict()}), nl=False)
     else:
-        _print_checked(mission, lost)
+        _print_checked(mission, lost, len(errors))
+        _print_unseen(found.unseen, errors)
         if len(lost) < len(mission.tasks):
             _print_together(all_others, "all other tasks" if lost else "all tasks")
+    if errors:
+        return BAD_INPUT
     return INCOMPLETE if (lost or all_others.conflict) and require_complete else DONE
 
 
-def _print_checked(mission: Mission, lost: tuple[Unassigned, ...]) -> None:
+def _print_checked(mission: Mission, lost: tuple[Unassigned, ...], errors: int) -> None:
     from muster.cli.tables import print_table
 
     robots, tasks = counted(len(mission.robots), "robot"), counted(len(mission.tasks), "task")
-    click.echo(f"{mission.name}: {robots}, {tasks}; no errors")
+    click.echo(f"{mission.name}: {robots}, {tasks}; {counted(errors, 'error') if errors else 'no errors'}")
     if lost:
         rows = [(item.task, r.robot, r.reason, r.detail) for item in lost for r in item.reasons]
         title = f"{counted(len(lost), 'task')} that can never be done"
         print_table(("task", "robot", "reason", "detail"), rows, title=title)
+
+
+def _print_unseen(unseen: tuple[Unseen, ...], errors: Sequence[Finding]) -> None:
+    """Print on standard error the searches that no robot sees all of, and those that some robots do not."""
+    for error in errors:
+        click.echo(str(error), err=True)
+    for one in unseen:
+        if not one.never_seen:
+            click.echo(f"warning: task {one.task}: {one.detail}", err=True)
 
 
 def _print_together(found: Together, tasks: str) -> None:

@@ -24,7 +24,7 @@ def pose_options(verb: Callable[..., Any]) -> Callable[..., Any]:
         "sensors",
         multiple=True,
         metavar="SENSOR[:KEY=VALUE,...]",
-        help="odometry, inertial, tags, lasers, motion-capture, gps, rtk; see docs/estimation.md.",
+        help="odometry, inertial, tags, lasers, scans, motion-capture, gps, rtk; see docs/estimation.md.",
     )
     return pose(localise(verb))
 

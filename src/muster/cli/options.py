@@ -183,7 +183,7 @@ def objective_option(verb: Verb) -> Verb:
     return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
 
 
-AVOIDANCE = ("orca", "rvo", "hrvo", "none")
+AVOIDANCE = ("orca", "rvo", "hrvo", "avo", "none")
 
 
 def avoidance_option(verb: Verb) -> Verb:

@@ -38,8 +38,8 @@ _FILE = click.Path(path_type=File)
 
 @click.command()
 @mission_argument
-@click.option("--from", "start", required=True, metavar="X,Y[,Z]", help="Where the path begins, metres.")
-@click.option("--to", "goal", required=True, metavar="X,Y[,Z]", help="Where it ends.")
+@click.option("--from", "start", metavar="X,Y[,Z]", help="Where the path begins, metres.")
+@click.option("--to", "goal", metavar="X,Y[,Z]", help="Where it ends.")
 @click.option("--planner", type=click.Choice(_PLANNERS), default="shortest", show_default=True, help="What finds it.")
 @click.option("--robot", metavar="ID", help="Radius and kind are those of this robot.")
 @click.option("--radius", type=float, metavar="R", help="Radius of the body, metres.  [default: 0]")
@@ -49,7 +49,8 @@ _FILE = click.Path(path_type=File)
     "--turning-radius",
     type=float,
     metavar="R",
-    help="Metres: of --smooth  [default: the robot's at full speed, else 0.1], of the planner dubins  [default: 0.5]",
+    help="Metres: of --smooth  [default: the robot's at full speed, else 0.1], of the planner dubins  [default: 0.5],"
+    " of --unknown  [default: 0.1]",
 )
 @click.option(
     "--trajectory", type=_FILE, metavar="FILE", help="Write the motion along the path with its speeds (.csv)."
@@ -58,14 +59,24 @@ _FILE = click.Path(path_type=File)
     "--follow", type=click.Choice(_GUIDANCE), help="Drive the path by this law of guidance; show what is driven."
 )
 @click.option("--lookahead", type=float, metavar="M", help="Of --follow: how far ahead the target is.  [default: 0.5]")
+@click.option("--unknown", is_flag=True, help="The robot has no map: it goes by its laser.")
+@click.option(
+    "--together", multiple=True, metavar="ROBOT=X,Y", help="Paths of several robots at once, each from its start."
+)
+@click.option(
+    "--cell", type=float, metavar="M", help="Of --together: side of a cell.  [default: the least with diagonals]"
+)
+@click.option(
+    "--window", type=click.IntRange(min=2), metavar="N", help="Of --together: look at others for N steps only."
+)
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of rrt-star and rrt.")
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
 @quiet_option
 def command(
     mission: MissionFile,
-    start: str,
-    goal: str,
+    start: str | None,
+    goal: str | None,
     planner: str,
     robot: str | None,
     radius: float | None,
@@ -75,6 +86,10 @@ def command(
     trajectory: File | None,
     follow: str | None,
     lookahead: float | None,
+    unknown: bool,
+    together: tuple[str, ...],
+    cell: float | None,
+    window: int | None,
     seed: int,
     form: str,
     plot: File | None,
@@ -84,18 +99,26 @@ def command(
     """Find a path for one robot on the map of a MISSION, from one point to another.
 
     `shortest` is the path that plans are made of: the shortest at any angle. That there is no path is an answer, with
-    the reason, and no error. Without a map the path is straight.
+    the reason, and no error. Without a map the path is straight. With --together it finds paths of several robots in
+    space and time, on which they do not touch.
     """
     require_writable(None, (plot, trajectory), mission.files, ())
     require_drawable(plot)
     require_csv(trajectory, "--trajectory")
     require_turning_radius(turning_radius)
     loaded = mission.load(verbose=verbose)
+    if together:
+        from muster.cli.path_together import run
+
+        return run(loaded, together, cell, window, seed, form)
     ends = _point(loaded, "--from", start), _point(loaded, "--to", goal)
     body = _body(loaded, robot, radius, kind)
     world = _world(loaded)
-    found = _found(world, body, planner, ends, seed, _parameters(planner, turning_radius, smooth=smooth))
     driven: dict[str, Any] = {}
+    if unknown:
+        found, driven = _by_laser(world, body, ends, turning_radius, seed)
+    else:
+        found = _found(world, body, planner, ends, seed, _parameters(planner, turning_radius, smooth=smooth))
     curve = None
     mover = None if robot is None else _robot(loaded, robot)
     if smooth and isinstance(found, Path):
@@ -127,7 +150,9 @@ def _parameters(planner: str, turning_radius: float | None, *, smooth: bool) -> 
     if turning_radius is None or (smooth and planner != "dubins"):
         return None
     if planner != "dubins":
-        raise ParameterError(f"--turning-radius: {turning_radius:g}; expected --smooth or --planner dubins beside it")
+        raise ParameterError(
+            f"--turning-radius: {turning_radius:g}; expected --smooth, --unknown or --planner dubins beside it"
+        )
     from muster.motion.paths.dubins import Parameters
 
     return Parameters(turning_radius_m=turning_radius)
@@ -150,6 +175,32 @@ def _found(
         world.free_space(body.radius_m, body.kind), start, goal, seed=seed, params=params
     )
     return found if isinstance(found, NoPath) else with_heights(found, start, goal)
+
+
+def _by_laser(
+    world: World | None, body: Body, ends: tuple[list[float], list[float]], turning_radius: float | None, seed: int
+) -> tuple[Path | NoPath, dict[str, Any]]:
+    """What a robot drives that sees the map with its laser only, 0.1 m off obstacles; it begins towards the goal."""
+    from muster.motion.free_space import PrismSpace
+    from muster.motion.paths.planner import blocked, point_of
+    from muster.simulation.unknown_obstacles import Parameters, drive, walls_of
+
+    if world is None:
+        raise ParameterError("--unknown: the mission has no map; expected one, which the robot does not know")
+    space = world.free_space(body.radius_m, body.kind)
+    if isinstance(space, PrismSpace):
+        raise ParameterError("--unknown: a robot in the air of a mission in space; expected one in the plane")
+    start, goal = (point_of(space, end, "point") for end in ends)
+    reason = blocked(space, start, goal)
+    if reason is not None:
+        return reason, {}
+    heading = math.atan2(goal[1] - start[1], goal[0] - start[0])
+    params = Parameters(safe_m=body.radius_m + 0.1, turning_radius_m=0.1 if turning_radius is None else turning_radius)
+    pose, place = (float(start[0]), float(start[1]), heading), (float(goal[0]), float(goal[1]))
+    found = drive(walls_of(world, body), pose, place, params, seed=seed)
+    if isinstance(found, NoPath):
+        return found, {}
+    return found.path, {"scans": found.scans, "edges": len(found.edges)}
 
 
 def _followed(
@@ -175,8 +226,10 @@ def _followed(
     return Path(tracked.path.points[:, : path.points.shape[1]]), figures
 
 
-def _point(mission: Mission, option: str, text: str) -> list[float]:
+def _point(mission: Mission, option: str, text: str | None) -> list[float]:
     expected = "x,y,z" if mission.dimensions == 3 else "x,y"
+    if text is None:
+        raise ParameterError(f"{option}: missing; expected {expected}, metres in the map frame, or --together")
     try:
         point = [float(part) for part in text.split(",")]
     except ValueError:
@@ -238,6 +291,8 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, dri
 
 
 def _driving(driven: dict[str, Any]) -> str:
+    if "scans" in driven:
+        return f"{driven['scans']} scans, {driven['edges']} of them with an obstacle in the way; by laser"
     if "law" not in driven:
         return bends_of(driven)
     end = "" if driven["arrived"] else ", not arrived"

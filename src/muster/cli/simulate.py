@@ -36,6 +36,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, json_text, read_plan
+from muster.motion.laws import LAWS
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
 
@@ -63,7 +64,6 @@ _IN_THIS_PROCESS = (
     "foxglove",
     *IN_THIS_PROCESS,
 )
-_LAWS = ("profile", "thesis")
 
 
 def _world(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -89,7 +89,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     help="kinematic, physics, or a world of an installed package.",
 )
 @avoidance_option
-@click.option("--law", type=click.Choice(_LAWS), default="profile", show_default=True, help="How robots move.")
+@click.option("--law", type=click.Choice(LAWS), default="profile", show_default=True, help="How robots move.")
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
     "--speed",

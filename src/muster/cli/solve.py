@@ -24,6 +24,8 @@ from muster.mission.errors import ParameterError
 from muster.planning.options import PlanningOptions
 
 if TYPE_CHECKING:
+    from muster.mission.model import Mission
+    from muster.mission.plan import Plan
     from muster.planning.solving import Solution
 
 _FILE = click.Path(path_type=Path)
@@ -74,6 +76,8 @@ def command(
         with progress_bar(not quiet, loaded) as on_progress:
             solution = backend.plan(request, on_progress, interrupt)
         show_plan(loaded, solution.plan, solution.verdict, form=form, output=output, plot=plot, gantt=gantt)
+    if not quiet:
+        _warn_of_unseen(loaded, solution.plan)
     if book is not None and not write_book(solution.plan, book, quiet):
         return INTERRUPTED
     if interrupt.interrupted:
@@ -82,6 +86,14 @@ def command(
         return INTERRUPTED
     _say_why(solution, quiet=quiet, verbose=verbose)
     return INCOMPLETE if require_complete and not solution.plan.complete else DONE
+
+
+def _warn_of_unseen(mission: Mission, plan: Plan) -> None:
+    """Print on standard error the raster searches of which the robots that do them do not see all."""
+    from muster.planning.explaining import unseen_in_plan
+
+    for one in unseen_in_plan(mission, plan):
+        click.echo(f"warning: task {one.task}: spacing_m {one.spacing_m:g}: {one.detail}", err=True)
 
 
 def _say_why(solution: Solution, *, quiet: bool, verbose: bool) -> None:

@@ -486,6 +486,14 @@ def rvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape
 def hrvo(agents: PlaneAgents, walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
     """New velocities by hybrid reciprocal velocity obstacles ([snape2011])."""
 
+def avo(agents: PlaneAgents, accelerations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], walls: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 2), order='C', device='cpu', writable=False)], dt: float, *, horizon: float, response: float, wall_horizon: float, most: int, distance: float, threads: int) -> Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C')]:
+    """New velocities by acceleration-velocity obstacles ([berg-snape2011])."""
+
+def avo_disc(apart: Sequence[float], v: Sequence[float], radius: float, response: float, time: float) -> tuple[float, float, float]:
+    """
+    The disc of relative velocities that lead into contact at a time: its centre and radius.
+    """
+
 class VelocityObstacle:
     """VO_{i,k} of [tcf-thesis] (A.5)."""
 
@@ -553,12 +561,17 @@ class CrowdWorld:
 
     def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int, law: str = 'profile', climb: float = 0.0) -> int:
         """
-        Returns the number of the robot, from 0. `law`: profile or thesis; `climb`: above 0 of one that climbs by (4.12).
+        Returns the number of the robot, from 0. `law`: profile, thesis or trajectory; `climb`: above 0 of one that climbs by (4.12).
         """
 
     def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
         """
         Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.
+        """
+
+    def follow(self, robot: int, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], step: float, times: Sequence[float]) -> None:
+        """
+        The trajectory of the order sent last: (k, 4) of x, y, z, heading each `step` seconds, and when it passes each way point.
         """
 
     def fail(self, robot: int) -> None: ...
@@ -617,6 +630,14 @@ class CrowdWorld:
     def counted(self, robot: int) -> tuple[float, float, float, float]:
         """
         Metres ahead, to the left and up, and radians, that odometry counted in the last step.
+        """
+
+    def told_pose(self, robot: int) -> tuple[float, float, float, float]:
+        """Where orders take a robot to be: x, y, z, heading."""
+
+    def tracking_errors(self, robot: int) -> tuple[float, float, int]:
+        """
+        Metres off its trajectory: the sum over steps in which it followed it, the most, the steps.
         """
 
     def busy(self, robot: int) -> bool: ...

@@ -9,6 +9,7 @@
 
 #include "agent_tree.hpp"
 #include "approach.hpp"
+#include "avo.hpp"
 #include "bindings.hpp"
 #include "hrvo.hpp"
 #include "orca.hpp"
@@ -138,6 +139,26 @@ void bind_plane_methods(nb::module_& m) {
       },
       "agents"_a, "walls"_a, "dt"_a, nb::kw_only(), "wall_horizon"_a, "most"_a, "distance"_a, "threads"_a,
       "New velocities by hybrid reciprocal velocity obstacles ([snape2011]).");
+  m.def(
+      "avo",
+      [](const Agents<2>& agents, const Numbers& accelerations, const Pairs<2>& walls, double dt, double horizon,
+         double response, double wall_horizon, int most, double distance, int threads) {
+        const AvoSettings settings{horizon, wall_horizon, response, {most, distance}};
+        const std::vector<Segment> still = walls_of<2>(walls);
+        const std::vector<double> limits = numbers(accelerations);
+        if (limits.size() != agents.positions.size()) throw std::invalid_argument("one acceleration for each agent");
+        return unlocked<2>([&] { return avo_velocities(agents, limits, still, settings, dt, threads); });
+      },
+      "agents"_a, "accelerations"_a, "walls"_a, "dt"_a, nb::kw_only(), "horizon"_a, "response"_a, "wall_horizon"_a,
+      "most"_a, "distance"_a, "threads"_a, "New velocities by acceleration-velocity obstacles ([berg-snape2011]).");
+  m.def(
+      "avo_disc",
+      [](Plane apart, Plane v, double radius, double response, double time) {
+        const AvoDisc disc = avo_disc({apart}, {v}, radius, response, time);
+        return std::make_tuple(disc.centre[0], disc.centre[1], disc.radius);
+      },
+      "apart"_a, "v"_a, "radius"_a, "response"_a, "time"_a,
+      "The disc of relative velocities that lead into contact at a time: its centre and radius.");
 }
 
 void bind_obstacles(nb::module_& m) {

@@ -33,13 +33,15 @@ Avoidance avoidance_named(const std::string& name) {
   if (name == "orca") return Avoidance::orca;
   if (name == "rvo") return Avoidance::rvo;
   if (name == "hrvo") return Avoidance::hrvo;
-  throw std::invalid_argument("avoidance must be none, orca, rvo or hrvo");
+  if (name == "avo") return Avoidance::avo;
+  throw std::invalid_argument("avoidance must be none, orca, rvo, hrvo or avo");
 }
 
 Law law_named(const std::string& name) {
   if (name == "profile") return Law::profile;
   if (name == "thesis") return Law::thesis;
-  throw std::invalid_argument("law must be profile or thesis");
+  if (name == "trajectory") return Law::trajectory;
+  throw std::invalid_argument("law must be profile, thesis or trajectory");
 }
 
 WallSet walls_of(const Faces& faces, const Slabs& slabs, double ground) {
@@ -124,7 +126,8 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           },
           "position"_a, "heading"_a, nb::kw_only(), "radius"_a, "speed"_a, "yaw_rate"_a, "acceleration"_a, "priority"_a,
           "faces_its_way"_a, "flies"_a, "walls"_a, "law"_a = "profile", "climb"_a = 0.0,
-          "Returns the number of the robot, from 0. `law`: profile or thesis; `climb`: above 0 of one that climbs by "
+          "Returns the number of the robot, from 0. `law`: profile, thesis or trajectory; `climb`: above 0 of one that "
+          "climbs by "
           "(4.12).")
       .def(
           "send",
@@ -133,6 +136,23 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           },
           "robot"_a, "stops"_a, "labelled"_a, "order"_a,
           "Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.")
+      .def(
+          "follow",
+          [](CrowdWorld& w, int robot, const Poses& poses, double step, std::vector<double> times) {
+            if (poses.shape(0) == 0 || !(step > 0.0)) throw std::invalid_argument("a trajectory must have poses");
+            Reference reference;
+            for (std::size_t k = 0; k < poses.shape(0); ++k) {
+              const double* p = poses.data() + 4 * k;
+              reference.places.push_back(Vec<3>{{p[0], p[1], p[2]}});
+              reference.headings.push_back(p[3]);
+            }
+            reference.times = std::move(times);
+            reference.step = step;
+            w.follow(robot, std::move(reference));
+          },
+          "robot"_a, "poses"_a, "step"_a, "times"_a,
+          "The trajectory of the order sent last: (k, 4) of x, y, z, heading each `step` seconds, and when it passes "
+          "each way point.")
       .def("fail", &CrowdWorld::fail, "robot"_a)
       .def("recover", &CrowdWorld::recover, "robot"_a)
       .def("slow", &CrowdWorld::slow, "robot"_a, "factor"_a)
@@ -221,6 +241,21 @@ void bind_crowd_world(nb::module_& m) {
             return std::tuple(counted.way[0], counted.way[1], counted.way[2], counted.turn);
           },
           "robot"_a, "Metres ahead, to the left and up, and radians, that odometry counted in the last step.")
+      .def(
+          "told_pose",
+          [](const CrowdWorld& w, int robot) {
+            const CrowdRobot& r = w.robots()[robot];
+            const Vec<3> at = r.belief.told_of(r.position);
+            return std::tuple(at[0], at[1], at[2], r.heading - r.belief.turn);
+          },
+          "robot"_a, "Where orders take a robot to be: x, y, z, heading.")
+      .def(
+          "tracking_errors",
+          [](const CrowdWorld& w, int robot) {
+            const TrackingErrors& e = w.robots()[robot].errors;
+            return std::tuple(e.sum, e.most, e.steps);
+          },
+          "robot"_a, "Metres off its trajectory: the sum over steps in which it followed it, the most, the steps.")
       .def(
           "busy", [](const CrowdWorld& w, int robot) { return w.robots()[robot].phase != Phase::idle; }, "robot"_a)
       .def("positions",

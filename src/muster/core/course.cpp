@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tracking.hpp"
+
 namespace muster {
 
 namespace {
@@ -100,6 +102,7 @@ Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt) {
 
 bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances, double dt) {
   const Waypoint& point = robot.way[robot.next];
+  if (!clock_is_at(robot)) return false;
   // What holds it up may stand there because the robot is not where it takes itself to be.
   if (robot.turned_aside && robot.patience.stuck > kHeldUp) tolerances.arrival += kSure * robot.belief.spread;
   const double away = norm(point.at - robot.position);
@@ -110,11 +113,12 @@ bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances
     if (braking.distance(braking.slower(norm(robot.commanded))) > tolerances.arrival) return false;
     return away <= (no_nearer ? tolerances.arrival : robot.exact);
   }
+  const double room = point.labelled ? tolerances.arrival : std::max(tolerances.arrival, 0.5 * robot.body.radius);
+  if (robot.reference.given() && !robot.reference.astray && tracking_error(robot) <= room) return true;
   const double past = corner_speed(robot, before, robot.next, tolerances, dt);
   if (away <= robot.exact || (past == 0.0 && no_nearer && away <= tolerances.arrival)) return true;
   const double missed = norm(point.at - closest_on_piece(point.at, before, robot.position));
   if (missed <= tolerances.corner + kRounding && past > 0.0) return true;
-  const double room = point.labelled ? tolerances.arrival : std::max(tolerances.arrival, 0.5 * robot.body.radius);
   return robot.turned_aside && missed <= room;
 }
 

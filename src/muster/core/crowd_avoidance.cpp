@@ -1,6 +1,7 @@
 // The avoidance of a simulated crowd: who looks at whom, with which method.
 #include <algorithm>
 
+#include "avo.hpp"
 #include "crowd_world.hpp"
 #include "hrvo.hpp"
 #include "orca.hpp"
@@ -10,8 +11,9 @@ namespace muster {
 
 namespace {
 
-constexpr double kFar = 1e9;    // metres
-constexpr double kFirm = 1e18;  // the priority of those who do not give way
+constexpr double kFar = 1e9;       // metres
+constexpr double kFirm = 1e18;     // the priority of those who do not give way
+constexpr double kResponse = 0.5;  // of AVO: delta, seconds
 
 template <int D>
 Vec<D> in_dimensions(const Vec<3>& v) {
@@ -44,8 +46,9 @@ Vec<3> slid(const CrowdRobot& robot, const WallSet& walls, Vec<3> velocity, doub
 }
 
 template <int D>
-std::vector<Vec<D>> velocities(const Agents<D>& agents, const std::vector<std::vector<Wall<D>>>& walls,
-                               const std::vector<char>& choosing, const CrowdSettings& settings) {
+std::vector<Vec<D>> velocities(const Agents<D>& agents, const std::vector<double>& accelerations,
+                               const std::vector<std::vector<Wall<D>>>& walls, const std::vector<char>& choosing,
+                               const CrowdSettings& settings) {
   double radius = 0.0, speed = 0.0;
   for (int i = 0; i < agents.size(); ++i) {
     radius = std::max(radius, agents.radii[i]);
@@ -57,6 +60,9 @@ std::vector<Vec<D>> velocities(const Agents<D>& agents, const std::vector<std::v
       return rvo_velocities(agents, {}, {0.0, 6, 0.1, 1.0, true, settings.wall_horizon, hood}, settings.dt, 1);
     if (settings.avoidance == Avoidance::hrvo)
       return hrvo_velocities(agents, {}, {settings.wall_horizon, hood}, settings.dt, 1);
+    if (settings.avoidance == Avoidance::avo)
+      return avo_velocities(agents, accelerations, {}, {settings.horizon, settings.wall_horizon, kResponse, hood},
+                            settings.dt, 1);
   }
   return orca_velocities<D>(agents, walls, choosing, {settings.horizon, settings.wall_horizon, hood, true},
                             settings.dt);
@@ -82,6 +88,7 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
   Agents<D> agents;
   std::vector<std::vector<Wall<D>>> walls(group.size());
   std::vector<char> choosing;
+  std::vector<double> accelerations;
   for (std::size_t k = 0; k < group.size(); ++k) {
     const CrowdRobot& robot = robots_[group[k]];
     const Body& body = robot.body;
@@ -92,6 +99,7 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
     agents.preferred.push_back(in_dimensions<D>(wanted_[group[k]]));
     agents.radii.push_back(body.radius * (body.faces_its_way ? 1.0 + settings_.margin : 1.0));
     agents.max_speeds.push_back(D == 3 ? std::hypot(robot.top_speed(), robot.slowed * body.climb) : robot.top_speed());
+    accelerations.push_back(body.acceleration);
     agents.priorities.push_back(chooses ? body.priority : kFirm);
     if constexpr (D == 2)
       walls[k] = robot.near_walls;
@@ -99,13 +107,13 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
       walls[k] = ground_below(walls_[body.walls], body.radius);
   }
   if (std::find(choosing.begin(), choosing.end(), 1) == choosing.end()) return;
-  const std::vector<Vec<D>> found = velocities<D>(agents, walls, choosing, settings_);
+  const std::vector<Vec<D>> found = velocities<D>(agents, accelerations, walls, choosing, settings_);
   for (std::size_t k = 0; k < group.size(); ++k) {
     if (!choosing[k]) continue;
     const CrowdRobot& robot = robots_[group[k]];
     const bool orca = settings_.avoidance == Avoidance::orca;
     Vec<3>& chosen = chosen_[group[k]];
-    if (orca || !robot.arrives) {  // RVO and HRVO would rather stand than get near to those behind a way point
+    if (orca || !robot.arrives) {  // the others would rather stand than get near to those behind a way point
       if constexpr (D == 2) {      // uphill in proportion
         const double wanted = std::hypot(chosen[0], chosen[1]);
         if (wanted > 0.0) chosen[2] *= std::min(1.0, norm(found[k]) / wanted);

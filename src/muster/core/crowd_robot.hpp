@@ -17,8 +17,9 @@ constexpr double kNoWheels = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTrack = 0.287 / 0.3;  // between the wheels, in radii: the Wafflebot's at its inflated radius
 constexpr double kNominalRadius = 0.3;  // in place of one of 0
 
-// How a robot comes to its velocity: profiles of speed and turns on the spot, or the control laws of [tcf-thesis].
-enum class Law { profile, thesis };
+// How a robot comes to its velocity: profiles of speed and turns on the spot, the control laws of [tcf-thesis], or a
+// trajectory, which it leaves for profiles where others drive it astray.
+enum class Law { profile, thesis, trajectory };
 
 struct Body {
   double radius, speed, yaw_rate, acceleration, priority;
@@ -49,6 +50,7 @@ struct Belief {
 
   bool exact() const { return turn == 0.0 && place == believed; }
   Waypoint true_of(const Waypoint& told) const;
+  Vec<3> told_of(const Vec<3>& place) const;
 };
 
 // What odometry counted in the last step: metres ahead, to the left and up in axes that are level, and amid its turn;
@@ -56,6 +58,25 @@ struct Belief {
 struct Counted {
   Vec<3> way;
   double turn;
+};
+
+// Where a robot that follows a trajectory is to be: places and headings each `step` seconds of its clock, as it was
+// told them; and the times at which it passes its way points.
+struct Reference {
+  std::vector<Vec<3>> places;
+  std::vector<double> headings, times;
+  double step = 0.0, clock = 0.0;
+  bool astray = false;                 // it is too far away to follow it
+  bool followed = false;               // it follows it in this step
+  double ahead = 0.0, yaw_rate = 0.0;  // of one that faces its way, in this step
+
+  bool given() const { return !places.empty(); }
+};
+
+// By how much a robot was off its trajectory, over the steps in which it followed it.
+struct TrackingErrors {
+  double sum = 0.0, most = 0.0;
+  long steps = 0;
 };
 
 struct CrowdRobot;
@@ -102,6 +123,8 @@ struct CrowdRobot {
   double hold_until = 0.0;
   std::vector<Waypoint> told;  // the order as it came; `way` is where it leads, by `belief`
   Belief belief;
+  Reference reference;
+  TrackingErrors errors;
   double slowed = 1.0;
   double exact = 1e-3;  // metres: nearer than this to a place is there
   bool failed = false;
@@ -156,6 +179,13 @@ inline Waypoint Belief::true_of(const Waypoint& told) const {
   const double c = std::cos(turn), s = std::sin(turn);
   const Vec<3> at = place + Vec<3>{{c * off[0] - s * off[1], s * off[0] + c * off[1], off[2]}};
   return {at, told.heading + turn, told.hold, told.labelled};
+}
+
+inline Vec<3> Belief::told_of(const Vec<3>& at) const {
+  if (exact()) return at;
+  const Vec<3> off = at - place;
+  const double c = std::cos(turn), s = std::sin(turn);
+  return believed + Vec<3>{{c * off[0] + s * off[1], c * off[1] - s * off[0], off[2]}};
 }
 
 inline double CrowdRobot::facing() const { return wrapped(heading - turn_lag); }

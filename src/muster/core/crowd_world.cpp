@@ -52,6 +52,7 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.way.clear();
   for (const Waypoint& point : robot.told) robot.way.push_back(robot.belief.true_of(point));
   robot.order = order;
+  robot.reference = {};
   robot.next = 0;
   robot.phase = robot.way.empty() ? Phase::idle : Phase::going;
   robot.stopping = robot.way.empty();
@@ -61,6 +62,12 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.waits = false;
   robot.asked_until = kNever;
   robot.aside.clear();
+}
+
+void CrowdWorld::follow(int i, Reference reference) {
+  CrowdRobot& robot = robots_[i];
+  if (robot.failed || robot.way.size() != reference.times.size()) return;
+  robot.reference = std::move(reference);
 }
 
 void CrowdWorld::believe(int i, const Vec<3>& place, double heading, double spread) {
@@ -73,6 +80,7 @@ void CrowdWorld::fail(int i) {
   robots_[i].failed = true;
   robots_[i].way.clear();
   robots_[i].aside.clear();
+  robots_[i].reference = {};
   robots_[i].next = 0;
   robots_[i].phase = Phase::idle;
 }
@@ -176,8 +184,7 @@ void CrowdWorld::conclude(const AgentTree<3>& tree) {
 void CrowdWorld::want(const AgentTree<3>& tree) {
   const std::size_t n = robots_.size();
   course_.assign(n, {});
-  for (std::size_t i = 0; i < n; ++i)
-    if (robots_[i].phase == Phase::going) course_[i] = along_course(robots_[i], settings_.tolerances, settings_.dt);
+  for (std::size_t i = 0; i < n; ++i) course_[i] = course(robots_[i]);
   wanted_ = course_;
   if (settings_.avoidance == Avoidance::none) return;
   const Manners manners(robots_, walls_, tree, time(), settings_.dt, settings_.space);
@@ -185,6 +192,15 @@ void CrowdWorld::want(const AgentTree<3>& tree) {
     if (robots_[i].is_away(time())) wanted_[i] = course_[i] = manners.course_without_order(i);
     if (course_[i] != Vec<3>{} && robots_[i].body.radius > 0.0) wanted_[i] = manners.wanted(i, course_[i]);
   }
+}
+
+// The velocity that a robot would have, were it alone.
+Vec<3> CrowdWorld::course(CrowdRobot& robot) const {
+  robot.reference.followed = false;
+  if (robot.phase != Phase::going) return {};
+  Vec<3> velocity;
+  if (!tracks(robot, settings_.dt, velocity)) return along_course(robot, settings_.tolerances, settings_.dt);
+  return velocity;
 }
 
 void CrowdWorld::steer() {
@@ -263,6 +279,10 @@ void CrowdWorld::take_note(int i) {
     settle(i);
     return;
   }
+  if (robot.reference.followed) {
+    const double error = tracking_error(robot);
+    robot.errors = {robot.errors.sum + error, std::max(robot.errors.most, error), robot.errors.steps + 1};
+  }
   if (robot.phase == Phase::going) {
     while (robot.phase == Phase::going && passes(robot, before_[i], settings_.tolerances, settings_.dt)) {
       if (robot.way[robot.next].stops())
@@ -302,6 +322,9 @@ void CrowdWorld::next_way_point(int i) {
   robot.trail = {robot.way[robot.next].at, {}, false};  // not where it cut past it: there may be a wall ahead
   const bool labelled = robot.way[robot.next].labelled, last = ++robot.next == robot.way.size();
   robot.phase = last ? Phase::idle : Phase::going;
+  if (robot.reference.given())
+    robot.reference.clock = std::max(robot.reference.clock, robot.reference.times[robot.next - 1]);
+  if (last) robot.reference = {};
   robot.patience = {};
   robot.stopping = last;
   robot.post = robot.position;

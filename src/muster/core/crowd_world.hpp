@@ -1,6 +1,6 @@
 // A world of moving robots in fixed steps of virtual time: way points, kinematics, avoidance, and what is measured.
 //
-// In a step each robot wants to follow its way points (course), avoidance changes that (ORCA, RVO, HRVO), its
+// In a step each robot wants to follow its way points (course), avoidance changes that (ORCA, RVO, HRVO, AVO), its
 // kinematics bring it as near to that as they can, and the right of way cuts what could end in a contact.
 //
 // Either this world moves the robots too (`advance`), exactly as they drive; or something else does, a physics engine:
@@ -16,10 +16,11 @@
 #include "manners.hpp"
 #include "right_of_way.hpp"
 #include "steering.hpp"
+#include "tracking.hpp"
 
 namespace muster {
 
-enum class Avoidance { none, orca, rvo, hrvo };
+enum class Avoidance { none, orca, rvo, hrvo, avo };
 
 // What the world does to robots, each a share: of the velocity that they miss (one standard deviation), of the way that
 // they slip (at most), of the way by which odometry errs in a step (one standard deviation).
@@ -81,6 +82,8 @@ class CrowdWorld {
   int add(const Body& body, const Vec<3>& position, double heading);
 
   void send(int i, std::vector<Waypoint> way, int order);
+  // The trajectory of the order that was sent last.
+  void follow(int i, Reference reference);
   void fail(int i);
   void recover(int i) { robots_[i].failed = false; }
   void slow(int i, double factor) { robots_[i].slowed = factor; }
@@ -116,6 +119,7 @@ class CrowdWorld {
   void avoid();
   template <int D>
   void avoid_among(const std::vector<int>& group);
+  Vec<3> course(CrowdRobot& robot) const;
   void steer();
   void yield(const AgentTree<3>& tree);
   void disturb(CrowdRobot& robot) const;

@@ -23,7 +23,7 @@ double by_sine(const CrowdRobot& robot, double off, double sine, double dt) {
 // On the spot. The sine of a half turn is 0: as printed a robot would never leave it.
 double turn_to(const CrowdRobot& robot, double heading, double dt) {
   const double off = wrapped(heading - robot.heading);
-  if (robot.body.law == Law::profile) return std::clamp(off / dt, -robot.body.yaw_rate, robot.body.yaw_rate);
+  if (robot.body.law != Law::thesis) return std::clamp(off / dt, -robot.body.yaw_rate, robot.body.yaw_rate);
   const bool half_turn = std::cos(off) < 0.0 && std::abs(std::sin(off)) < kHalfTurn;
   return by_sine(robot, off, half_turn ? std::copysign(kHalfTurn, off) : std::sin(off), dt);
 }
@@ -86,6 +86,8 @@ Steering while_it_turns(const CrowdRobot& robot, const Vec<3>& chosen, double dt
 
 Steering steered(const CrowdRobot& robot, const Vec<3>& chosen, bool free, double dt) {
   if (!robot.body.faces_its_way) return in_any_direction(robot, chosen, dt);
+  if (free && robot.reference.followed)
+    return on_an_arc(robot, robot.reference.ahead, robot.reference.yaw_rate, chosen, dt);
   if (robot.body.law == Law::thesis) return while_it_turns(robot, chosen, dt);
   return where_it_looks(robot, chosen, free, dt);
 }

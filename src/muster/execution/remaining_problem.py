@@ -12,6 +12,7 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from muster.allocation.charges import Charge
 from muster.allocation.fixed import with_fixed_routes
 from muster.allocation.problem import Problem
 from muster.execution.travel import Spot, Travel
@@ -39,6 +40,8 @@ class RobotSnapshot:
         usage until then, in the mission's unit.
     task
         the work under way; None: there is none.
+    charge
+        of its battery, as it last reported; None: it reports none.
     """
 
     robot: Robot
@@ -47,6 +50,7 @@ class RobotSnapshot:
     free_s: float
     used: float
     task: str | None
+    charge: Charge | None = None
 
     @property
     def has_past(self) -> bool:
@@ -107,6 +111,9 @@ def remaining_problem(rest: RemainingMission, travel: Travel) -> RemainingProble
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
     problem = _bearable(problem, past)
+    charges = {snapshot.robot.id: snapshot.charge for snapshot in rest.crew}
+    if any(charge is not None for charge in charges.values()):
+        problem = replace(problem, charges=tuple(charges[robot.id] for robot in problem.robots))
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
     return RemainingProblem(with_fixed_routes(problem, Plan(routes=routes)), hopeless)
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+from muster.allocation.charges import Charge
 from muster.execution.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger
@@ -68,7 +70,15 @@ def _snapshot(state: RobotState, now: float) -> RobotSnapshot:
         free_s=now + state.work_left_s(now),
         used=state.used_after(now) if works else state.used,
         task=state.route[0] if works else None,
+        charge=_charge(state),
     )
+
+
+def _charge(state: RobotState) -> Charge | None:
+    if state.charge is None:
+        return None
+    most = state.robot.work_capacity
+    return Charge(left=state.charge, used=state.used, capacity=math.inf if most is None else most)
 
 
 def whole_plan(

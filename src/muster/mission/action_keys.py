@@ -40,7 +40,7 @@ class ActionKeys:
 
 GO_TO_GOAL = ActionKeys(has_geometry=False)
 STATIONARY_OBSERVATION = ActionKeys(needed=("width_m",), optional=("heading_deg",))
-RASTER_SEARCH = ActionKeys(needed=("side_m", "height_m", "spacing_m"))
+RASTER_SEARCH = ActionKeys(needed=("side_m", "height_m"), optional=("spacing_m", "overlap"))
 GROUND_PATROL = ActionKeys(needed=("side_m",))
 DELIVERY = ActionKeys(needed=("pickup",))
 SENSOR_ACTIVATION = ActionKeys(needed=("duration_s",), has_geometry=False)

@@ -68,7 +68,10 @@ def _portals(task: Task) -> tuple[Point, ...]:
 
 
 def _lanes(action: Action) -> float:
-    return 1.0 if action.side_m is None or action.spacing_m is None else action.side_m / action.spacing_m
+    """At most so many, or one less; as many as there may be where they follow from a camera."""
+    if action.side_m is None or action.height_m is None:
+        return 1.0
+    return _MOST_LANES if action.spacing_m is None else action.side_m / action.spacing_m
 
 
 def _action_bound(action: Action | None, metres: float) -> float:

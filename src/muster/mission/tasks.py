@@ -24,7 +24,14 @@ class Action(Checked):
     heading_deg: float | None = spec(Number(), "stationary-observation: direction of view, 0 if absent", default=None)
     side_m: float | None = spec(Number(above=0), "raster-search, ground-patrol: side of the square", default=None)
     height_m: float | None = spec(Number(above=0), "raster-search: height of flight", default=None)
-    spacing_m: float | None = spec(Number(above=0), "raster-search: distance between lanes", default=None)
+    spacing_m: float | None = spec(
+        Number(above=0), "raster-search: distance between lanes; without it from the camera's footprint", default=None
+    )
+    overlap: float | None = spec(
+        Number(minimum=0, below=1),
+        "raster-search: share of what the camera sees that lanes share, 0.1 if absent",
+        default=None,
+    )
     pickup: Point | None = spec(Place(), "delivery: where the load is taken up", default=None)
     duration_s: float | None = spec(Number(minimum=0), "sensor-activation: time it takes", default=None)
 
@@ -69,6 +76,8 @@ class Action(Checked):
         for key in keys.needed:
             if key not in given:
                 yield Fault((key,), "missing", f"a value: {name} needs {', '.join(keys.needed)}")
+        if name == "raster-search" and {"spacing_m", "overlap"} <= given:
+            yield Fault(("overlap",), shown(values["overlap"]), "spacing_m or overlap, not both")
         for key in sorted(given.difference(keys.names)):
             yield Fault((key,), "unknown key", f"the keys of {name}: {', '.join(keys.names) or 'none'}")
 

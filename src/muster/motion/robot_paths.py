@@ -71,7 +71,7 @@ class RobotPaths:
         """A path with its corners rounded by a radius where the map leaves room."""
         return smoothed(path, self._finder(body).clear, radii_m=(radius_m,))
 
-    def clear(self, body: Body, points: Sequence[Sequence[float]]) -> bool:
+    def clear(self, body: Body, points: npt.ArrayLike) -> bool:
         """Whether a body can move straight from each point of the map frame, (k, d) metres, to the next."""
         return self._finder(body).clear(np.array(points, dtype=np.float64))
 

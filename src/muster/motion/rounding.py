@@ -74,18 +74,26 @@ class Rounding:
             if (corner := self._corners[k]) is not None:
                 self._try(_Turn(k, k, corner, (0.0, 0.0)), radius_m)
 
-    def control(self) -> Floats:
-        """The segments (m, 4, d): straight pieces, and the arcs in place of corners."""
+    def control(self) -> tuple[Floats, tuple[int, ...]]:
+        """The segments (m, 4, d), straight pieces and arcs in place of corners; and how many come before each point.
+
+        A point that the curve does not pass through counts as in the middle of the arcs that replace it.
+        """
         found: list[Floats] = []
+        before, count = [0], 0
         place, k = self._points[0], 1
         while k < len(self._points):
             last, arcs = self._arcs.get(k, (k, self._points[k][None, None]))
             if np.linalg.norm(arcs[0, 0] - place) > _SPARE:
                 found.append(Curve.along(Path(np.stack([place, arcs[0, 0]]))).control)
-            if arcs.shape[1] == 4:
+                count += 1
+            rounded = arcs.shape[1] == 4
+            before += [count + (len(arcs) // 2 if rounded else 0)] * (last + 1 - k)
+            if rounded:
                 found.append(arcs)
+                count += len(arcs)
             place, k = arcs[-1, -1], last + 1
-        return np.concatenate(found)
+        return np.concatenate(found), tuple(before)
 
     def _angle(self, k: int) -> float:
         corner = self._corners[k]

@@ -36,10 +36,13 @@ class Smoothed:
         its curvature is at most 1 / radius, but for `corners`.
     corners
         (c, d) metres: the points at which no radius fitted.
+    before
+        how many segments come before each point of the path; empty where shortcuts were taken.
     """
 
     curve: Curve
     corners: Floats
+    before: tuple[int, ...] = ()
 
 
 def clear_by_points(free: Callable[[Floats], Bools], step_m: float) -> Clear:
@@ -93,15 +96,17 @@ def smoothed(
         raise ParameterError(f"radii_m: {list(radii_m)}; expected finite metres above 0")
     if not tolerance_m > 0:
         raise ParameterError(f"tolerance_m: {tolerance_m}; expected metres above 0")
-    points, kept = _distinct(np.asarray(path.points, dtype=np.float64), keep or ())
+    points, numbers = _distinct(np.asarray(path.points, dtype=np.float64))
+    kept = frozenset(int(numbers[k]) for k in keep or ())
     if keep is None:
-        points = shortened(Path(points).turns, clear)
+        points, numbers = shortened(Path(points).turns, clear), numbers[:0]
     if len(points) < 3:
-        return Smoothed(Curve.along(Path(points)), points[:0])
+        return Smoothed(Curve.along(Path(points)), points[:0], tuple(numbers.tolist()))
     rounding = Rounding(points, lambda segments: clear(_chords_of(segments, tolerance_m)), clear, kept)
     for radius in radii_m:
         rounding.round(radius)
-    return Smoothed(Curve(rounding.control()), points[rounding.sharp])
+    control, before = rounding.control()
+    return Smoothed(Curve(control), points[rounding.sharp], tuple(before[k] for k in numbers))
 
 
 def shortened(points: Floats, clear: Clear) -> Floats:
@@ -114,11 +119,10 @@ def shortened(points: Floats, clear: Clear) -> Floats:
     return np.asarray(points[kept])
 
 
-def _distinct(points: Floats, keep: Collection[int]) -> tuple[Floats, frozenset[int]]:
-    """The points without those that repeat the one before; and the new numbers of those to keep."""
+def _distinct(points: Floats) -> tuple[Floats, npt.NDArray[np.intp]]:
+    """The points without those that repeat the one before; and the number that each point has then."""
     new = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))
-    numbers = np.cumsum(new) - 1
-    return np.asarray(points[new]), frozenset(int(numbers[k]) for k in keep)
+    return np.asarray(points[new]), np.cumsum(new) - 1
 
 
 def _chords_of(segments: Floats, tolerance_m: float) -> Floats:

@@ -204,11 +204,15 @@ class MonteCarlo:
     def _drawn(self, weights: Floats, from_anywhere: float) -> Floats:
         """New particles: by weight, as many as KLD sampling wants, a share of them from the whole map."""
         p = self._parameters
-        chosen = self._random.choice(len(weights), p.most, p=weights)
-        new = self.particles[chosen]
-        lost = self._random.random(p.most) < from_anywhere
-        new[lost] = self._anywhere(self._random, int(lost.sum()))
-        return new[: self._wanted(new)]
+        count = min(2 * p.least, p.most)
+        while True:
+            new = self.particles[self._random.choice(len(weights), count, p=weights)]
+            lost = self._random.random(count) < from_anywhere
+            new[lost] = self._anywhere(self._random, int(lost.sum()))
+            wanted = self._wanted(new)
+            if wanted < count or count == p.most:
+                return new[:wanted]
+            count = min(4 * count, p.most)
 
     def _wanted(self, particles: Floats) -> int:
         """How many of these particles are enough for the bins that they cover."""

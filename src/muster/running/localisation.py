@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.motion.map_world import Body, World, body_of
 from muster.motion.port import Telemetry
 from muster.perception import dead_reckoning
 from muster.perception.dead_reckoning import HEADING, X, Y, Z
@@ -23,6 +24,7 @@ from muster.perception.errors import ReckoningErrors
 from muster.perception.kalman import Estimate
 from muster.simulation import Noise, SimulatedWorld
 from muster.simulation.landmark_sensors import LaserLandmarks, LaserParameters, TagCamera, TagParameters
+from muster.simulation.map_scans import MapScanParameters, MapScans, ScannedMap
 from muster.simulation.pose_sensors import (
     MotionCapture,
     MotionCaptureParameters,
@@ -32,11 +34,12 @@ from muster.simulation.pose_sensors import (
     SensorParameters,
 )
 
-ODOMETRY, INERTIAL, TAGS, LASERS, MOTION_CAPTURE, GPS, RTK = (
+ODOMETRY, INERTIAL, TAGS, LASERS, SCANS, MOTION_CAPTURE, GPS, RTK = (
     "odometry",
     "inertial",
     "tags",
     "lasers",
+    "scans",
     "motion-capture",
     "gps",
     "rtk",
@@ -46,6 +49,7 @@ SENSORS: Mapping[str, SensorParameters] = {
     INERTIAL: SensorParameters(),
     TAGS: TagParameters(),
     LASERS: LaserParameters(),
+    SCANS: MapScanParameters(),
     MOTION_CAPTURE: MotionCaptureParameters(),
     GPS: SatelliteParameters(),
     RTK: SatelliteParameters(rate_hz=5.0, position_m=0.02),
@@ -121,6 +125,8 @@ def require_possible(sensors: Mapping[str, SensorParameters], mission: Mission) 
         )
     if LASERS in sensors and not any(landmark.known for landmark in mission.landmarks):
         raise ParameterError(f"localise: lasers in mission {mission.name}; expected a mission with known landmarks")
+    if SCANS in sensors and (mission.map is None or mission.travel_rule != "map"):
+        raise ParameterError(f"localise: scans in mission {mission.name}; expected a mission that travels by its map")
     capture = sensors.get(MOTION_CAPTURE)
     if isinstance(capture, MotionCaptureParameters) and capture.robot:
         robots = [robot.id for robot in mission.robots]
@@ -136,6 +142,7 @@ class Localisation:
     sensors: Mapping[str, SensorParameters]
     mission: Mission
     seed: int
+    _maps: dict[Body, ScannedMap] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def of(self, world: SimulatedWorld, robot: str) -> PoseEstimate:
         """The estimate of one robot that is in the world."""
@@ -155,9 +162,17 @@ class Localisation:
             return Satellites(world, robot.id, how, self.seed)
         if isinstance(how, LaserParameters):
             return LaserLandmarks(world, robot.id, self.mission.landmarks, how, self.seed)
+        if isinstance(how, MapScanParameters):
+            return MapScans(world, robot.id, self._map_of(robot), how, reckoning_errors(robot, world.noise), self.seed)
         if isinstance(how, TagParameters) and robot.camera is not None:
             return TagCamera(world, robot, robot.camera, self.mission.tags, how, self.seed)
         return None
+
+    def _map_of(self, robot: Robot) -> ScannedMap:
+        body = body_of(robot)
+        if body not in self._maps:
+            self._maps[body] = ScannedMap.of(World.of(self.mission), body)
+        return self._maps[body]
 
 
 class PoseEstimate:

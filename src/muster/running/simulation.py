@@ -29,7 +29,7 @@ from muster.running.camera_search import CameraSearch, OnLook, camera_search_for
 from muster.running.localisation import Localise
 from muster.running.replanning import reallocation_by
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
-from muster.running.worlds import recorded_world
+from muster.running.worlds import recorded_world, with_tracking
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
 from muster.verification import verify
@@ -58,9 +58,9 @@ class Simulation:
     dt_s
         step of the world in seconds.
     avoidance
-        how robots pass each other: orca, rvo, hrvo or none.
+        how robots pass each other: orca, rvo, hrvo, avo or none.
     law
-        how robots move: profile, or thesis, by the control laws of [tcf-thesis].
+        how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise
         of motion and telemetry.
     pose, localise
@@ -231,7 +231,7 @@ class Simulation:
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
         if isinstance(self._robots, EstimatedWorld):
             report = replace(report, remarks=(*report.remarks, self._robots.remark))
-        return with_found(report, self._camera_search)
+        return with_tracking(with_found(report, self._camera_search), world)
 
     @property
     def status(self) -> Status:

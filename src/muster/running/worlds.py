@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
 from muster.mission.plugins import Registry
+from muster.motion.laws import PROFILE
 from muster.simulation.batteries import NO_CHARGES, Charges
 from muster.simulation.wind import CALM, Wind
 
 if TYPE_CHECKING:
-    from muster.execution import Recorder
+    from muster.execution import Recorder, Report
     from muster.mission.model import Mission
     from muster.simulation import SimulatedWorld
 
 MakeWorld = Callable[..., "SimulatedWorld"]
 """Makes a world of a mission: `make(mission, seed=, dt_s=, avoidance=, noise=, observer=, observe_s=)`, with
 `law=` where it is not `profile`, and `wind=`, `batteries=`, `rotor_level=` where they are asked for."""
-PROFILE = "profile"
-"""The law by which robots of every world move."""
 
 
 def _checked(name: str, found: object) -> MakeWorld:
@@ -92,3 +92,14 @@ def _taken(make: MakeWorld, option: str, value: Any, expected: str) -> Any:
     if option not in taken and not any(parameter.kind is Parameter.VAR_KEYWORD for parameter in taken.values()):
         raise ParameterError(f"{option}: {value}; {expected}")
     return value
+
+
+def with_tracking(report: Report, world: SimulatedWorld) -> Report:
+    """A report that tells, too, by how much robots were off the trajectories that they followed."""
+    from muster.simulation.world_base import WorldBase
+
+    error = world.tracking_error_m if isinstance(world, WorldBase) else None
+    if error is None:
+        return report
+    remark = f"trajectories followed: off by {error[0]:.4f} m on average, {error[1]:.4f} m at most"
+    return replace(report, remarks=(*report.remarks, remark))

@@ -12,6 +12,7 @@ from muster import core
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import wrapped
+from muster.motion.order_trajectory import STEP_S, TrajectoryMaker
 from muster.motion.port import Inertial, Telemetry, Waypoint
 from muster.perception.dead_reckoning import Odometry
 from muster.simulation.batteries import Battery
@@ -21,11 +22,21 @@ from muster.simulation.noise import Noise
 class SimulatedPort:
     """The port of one robot of a world, a `RobotPort`; `body` is the robot.
 
-    A muted robot's telemetry stays as it last was; the robot goes on, and still receives way points.
+    With `trajectories` orders become trajectories that the robot follows. A muted robot's telemetry stays as it last
+    was; the robot goes on, and still receives way points.
     """
 
-    def __init__(self, robot: Robot, number: int, crowd: core.CrowdWorld, noise: Noise, seed: int) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        number: int,
+        crowd: core.CrowdWorld,
+        noise: Noise,
+        seed: int,
+        trajectories: TrajectoryMaker | None = None,
+    ) -> None:
         self.body = robot
+        self._trajectories = trajectories
         self.battery: Battery | None = None
         self._held_before_s = 0.0
         self._axes = np.array([1.0, 1.0, float(len(robot.position) == 3)])
@@ -60,6 +71,9 @@ class SimulatedPort:
         self._sent = {self._orders: tuple(waypoints)}
         labelled = [bool(p.label) for p in waypoints]
         self._crowd.send(self._number, np.array(stops, dtype=np.float64).reshape(-1, 5), labelled, self._orders)
+        if self._trajectories is not None and waypoints:
+            made = self._trajectories.trajectory(self._crowd.told_pose(self._number), waypoints)
+            self._crowd.follow(self._number, made.poses, STEP_S, made.times.tolist())
         return self._orders
 
     def cancel(self) -> int:

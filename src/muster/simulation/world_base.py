@@ -10,7 +10,6 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import TypedDict
 
 import numpy as np
 
@@ -22,9 +21,12 @@ from muster.mission.near_matches import did_you_mean
 from muster.motion.avoidance.names import require_avoidance
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats
-from muster.motion.kinematics.registry import kinematics_named, limits_of
+from muster.motion.kinematics.registry import kinematics_named, limits_of, turning_radius_of
+from muster.motion.laws import PROFILE, THESIS, TRAJECTORY, require_law
 from muster.motion.limits import Limits
 from muster.motion.map_world import Body, World, body_of
+from muster.motion.order_trajectory import TrajectoryMaker
+from muster.motion.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.batteries import (
     NO_CHARGES,
@@ -39,7 +41,6 @@ from muster.simulation.port import SimulatedPort
 from muster.simulation.walls import Slab, faces_and_slabs
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
 
-LAWS = ("profile", "thesis")
 NEIGHBOURS = 10
 FLIGHT_M = 1.5
 """How high drones fly in a mission in the plane."""
@@ -57,11 +58,6 @@ OF_THE_THESIS = ("quadcopter", "differential-drive")
 _NO_FACES = np.empty((0, 6))
 _SLICE = 10_000
 """Steps between checks for Ctrl-C."""
-
-
-class _LawOfRobot(TypedDict):
-    law: str
-    climb: float
 
 
 class WorldBase(SimulatedWorld, ABC):
@@ -84,7 +80,8 @@ class WorldBase(SimulatedWorld, ABC):
         `orca`, in the plane `rvo` or `hrvo` too, or `none`: robots drive through each other and through walls.
     law
         how robots come to the velocity that they want: `profile`, speeds and turns on the spot as fast as the limits
-        allow; `thesis`, quadcopters and differential drives by (4.9)-(4.16) and (4.21)-(4.25) of [tcf-thesis].
+        allow; `thesis`, quadcopters and differential drives by (4.9)-(4.16) and (4.21)-(4.25) of [tcf-thesis];
+        `trajectory`, along smooth curves with velocities, which a controller follows ([market-paper], section 3.2.3).
     horizon_s
         lookahead of avoidance.
     arrival_m
@@ -122,13 +119,14 @@ class WorldBase(SimulatedWorld, ABC):
         observer: Observer | None = None,
         observe_s: float = 0.0,
     ) -> None:
-        _require_choice("law", law, LAWS)
+        require_law(law)
         _require(avoidance, mission, seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
         self._map = World.of(mission) if mission.map is not None and mission.travel_rule == "map" else None
         self._dimensions = mission.dimensions
         self._lowest_m = _lowest(mission)
         self._dt_s = dt_s
         self._law = law
+        self._paths: RobotPaths | None = None
         self._noise = noise
         self._seed = seed
         self._observer = observer
@@ -208,11 +206,13 @@ class WorldBase(SimulatedWorld, ABC):
             faces_its_way=kinematics.faces_its_way,
             flies=robot.kind == "air",
             walls=self._walls_for(body_of(robot)),
-            **self._law_of(robot, limits),
+            law=self._law_of(robot),
+            climb=limits.climb if self._law == THESIS and robot.kinematics == "quadcopter" else 0.0,
         )
         self._numbers[robot.id] = number
         self._robots.append(robot)
-        port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed)
+        trajectories = self._trajectories_of(robot)
+        port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories)
         self._ports[robot.id] = port
         at_start = charge_at_start(self._batteries, robot.id)
         if at_start is not None:
@@ -288,6 +288,13 @@ class WorldBase(SimulatedWorld, ABC):
         ids = list(self._numbers)
         return tuple(Contact(time, (ids[a], ids[b]), least) for a, b, time, least in self._crowd.contacts())
 
+    @property
+    def tracking_error_m(self) -> tuple[float, float] | None:
+        """By how much robots were off their trajectories, on average and at most; None where none followed one."""
+        errors = [self._crowd.tracking_errors(number) for number in self._numbers.values()]
+        steps = sum(count for _, _, count in errors)
+        return (sum(total for total, _, _ in errors) / steps, max(most for _, most, _ in errors)) if steps else None
+
     def idle(self, robot: str) -> bool:
         return not self._crowd.busy(self._number(robot))
 
@@ -311,12 +318,24 @@ class WorldBase(SimulatedWorld, ABC):
     def _limits(self, robot: Robot) -> Limits:
         return limits_of(robot)
 
-    def _law_of(self, robot: Robot, limits: Limits) -> _LawOfRobot:
+    def _law_of(self, robot: Robot) -> str:
         """The law of one robot: that of the thesis is for quadcopters and differential drives."""
-        if self._law != "thesis" or robot.kinematics not in OF_THE_THESIS:
-            return {"law": "profile", "climb": 0.0}
-        climbs = robot.kinematics == "quadcopter"
-        return {"law": "thesis", "climb": limits.climb if climbs else 0.0}
+        return PROFILE if self._law == THESIS and robot.kinematics not in OF_THE_THESIS else self._law
+
+    def _trajectories_of(self, robot: Robot) -> TrajectoryMaker | None:
+        """What makes trajectories of a robot's orders, where robots follow such."""
+        if self._law != TRAJECTORY:
+            return None
+        if self._map is not None and self._paths is None:
+            self._paths = RobotPaths(self._map)
+        paths, body = self._paths, body_of(robot)
+        return TrajectoryMaker(
+            limits=self._limits(robot),
+            faces_its_way=kinematics_named(robot.kinematics).faces_its_way,
+            radius_m=turning_radius_of(robot),
+            clear=(lambda _: True) if paths is None else (lambda points: paths.clear(body, points)),
+            dimensions=self._dimensions,
+        )
 
     def _advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         ids = list(self._numbers)
@@ -364,11 +383,6 @@ def _lowest(mission: Mission) -> float:
     if mission.dimensions == 2:
         return -math.inf
     return min(0.0, *(place[2] for _, place in positions(mission) if len(place) == 3))
-
-
-def _require_choice(name: str, value: str, allowed: tuple[str, ...]) -> None:
-    if value not in allowed:
-        raise ParameterError(f"{name}: {value}; expected {', '.join(allowed)}{did_you_mean(value, allowed)}")
 
 
 def _require(avoidance: str, mission: Mission, seed: int, **numbers: float) -> None:

@@ -16,14 +16,12 @@ from muster.mission.model import Robot
 from muster.motion.frames import wrapped
 from muster.motion.grid import Floats
 from muster.motion.map_world import body_of
-from muster.motion.maps.free_points import free
 from muster.motion.path import NoPath
 from muster.motion.port import Waypoint
 from muster.motion.robot_paths import RobotPaths
 from muster.perception.laser import Scanner
-from muster.perception.likelihood_field import LikelihoodField
 from muster.simulation import KinematicWorld
-from muster.simulation.walls import faces_and_slabs
+from muster.simulation.map_scans import ScannedMap
 from muster_studies.runs import mission_named
 
 MISSION = "floor"
@@ -65,33 +63,14 @@ def floor_paths() -> RobotPaths:
 
 
 @cache
-def floor_walls() -> Floats:
-    """The walls (k, 4) that stop a rover."""
-    faces: Floats = faces_and_slabs(floor_paths().world, body_of(rover()))[0][:, :4]
-    return faces
-
-
-@cache
-def field_of_floor() -> LikelihoodField:
-    """The likelihood field of the floor plan."""
-    return LikelihoodField.of_walls(floor_walls())
+def scanned_floor() -> ScannedMap:
+    """The floor plan as the laser of a rover sees it."""
+    return ScannedMap.of(floor_paths().world, body_of(rover()))
 
 
 def rover() -> Robot:
     """The robot that drives."""
     return mission_named(MISSION).robots[0]
-
-
-def anywhere(random: np.random.Generator, count: int) -> Floats:
-    """Poses (count, 3) at which a rover could be."""
-    body = body_of(rover())
-    space = floor_paths().world.free_space(body.radius_m, body.kind)
-    ends = floor_walls().reshape(-1, 2)
-    places = np.empty((0, 2))
-    while len(places) < count:
-        drawn = random.uniform(ends.min(axis=0), ends.max(axis=0), (2 * count + 10, 2))
-        places = np.concatenate([places, drawn[free(space, drawn)]])
-    return np.column_stack([places[:count], random.uniform(-math.pi, math.pi, count)])
 
 
 def drive(starts: Floats, until_s: float, seed: int) -> Iterator[Reading]:
@@ -117,7 +96,7 @@ def drive(starts: Floats, until_s: float, seed: int) -> Iterator[Reading]:
 def _way(start: tuple[float, float], random: np.random.Generator) -> list[Waypoint]:
     """The shortest path to a random place that can be reached."""
     while True:
-        found = floor_paths().path(body_of(rover()), start, tuple(anywhere(random, 1)[0, :2]))
+        found = floor_paths().path(body_of(rover()), start, tuple(scanned_floor().anywhere(random, 1)[0, :2]))
         if not isinstance(found, NoPath):
             return [Waypoint((float(x), float(y), 0.0)) for x, y in found.points[1:]]
 

@@ -18,7 +18,7 @@ from muster.perception.kalman import Estimate, extended_prediction
 from muster.perception.laser import points_of
 from muster.perception.monte_carlo import MonteCarlo
 from muster.perception.scan_matching import matched
-from muster_studies.localisation.drives import SCANNER, SLIP, TURN_RAD, Reading, anywhere, drive, field_of_floor
+from muster_studies.localisation.drives import SCANNER, SLIP, TURN_RAD, Reading, drive, scanned_floor
 
 SEEN_M = 8.0
 """The distance within which robots see each other."""
@@ -52,7 +52,7 @@ class Track:
 @cache
 def drives(seed: int, until_s: float) -> tuple[Reading, ...]:
     """One rover's drive from a random place."""
-    return tuple(drive(anywhere(np.random.default_rng(seed), 1), until_s, seed))
+    return tuple(drive(scanned_floor().anywhere(np.random.default_rng(seed), 1), until_s, seed))
 
 
 @cache
@@ -61,7 +61,7 @@ def carried(seed: int, until_s: float) -> tuple[Reading, ...]:
 
     Odometry counts nothing of its being carried.
     """
-    first, other = drives(seed, until_s), anywhere(np.random.default_rng((seed, 2)), 1)
+    first, other = drives(seed, until_s), scanned_floor().anywhere(np.random.default_rng((seed, 2)), 1)
     later = drive(other, until_s, seed + 1000)
     return (*first, *(Reading(until_s + one.time_s, one.poses, one.moves, one.ranges) for one in later))
 
@@ -84,7 +84,9 @@ def by_scan_matching(readings: Iterable[Reading]) -> Track:
 def by_monte_carlo(readings: Iterable[Reading], seed: int, *, known: bool) -> Track:
     """Particles, from the true start where it is `known`, else from anywhere."""
     first = next(iter(readings))
-    particles = MonteCarlo(field_of_floor(), anywhere, seed=seed, start=_pose(first.poses[0]) if known else None)
+    particles = MonteCarlo(
+        scanned_floor().field, scanned_floor().anywhere, seed=seed, start=_pose(first.poses[0]) if known else None
+    )
     estimates = []
     for reading in readings:
         particles.move(*map(float, reading.moves[0]))
@@ -95,12 +97,12 @@ def by_monte_carlo(readings: Iterable[Reading], seed: int, *, known: bool) -> Tr
 
 def of_team(seed: int, until_s: float, *, together: bool) -> Track:
     """The second of two robots, which has no map: odometry alone, or with sightings of the first, which has one."""
-    start = anywhere(np.random.default_rng(seed), 1)
+    start = scanned_floor().anywhere(np.random.default_rng(seed), 1)
     starts = np.concatenate([start, start])
     starts[1, :2] = _beside(starts[0])
     random = np.random.default_rng((seed, 3))
     readings = tuple(drive(starts, until_s, seed))
-    guide = MonteCarlo(field_of_floor(), anywhere, seed=seed, start=_pose(starts[0]))
+    guide = MonteCarlo(scanned_floor().field, scanned_floor().anywhere, seed=seed, start=_pose(starts[0]))
     follower = Estimate(starts[1], np.diag([0.01, 0.01, 0.01]) ** 2)
     errors = []
     for reading in readings:
@@ -121,7 +123,7 @@ def _pose(row: Floats) -> tuple[float, float, float]:
 
 def _beside(pose: Floats) -> Floats:
     """A free place (2,) near a pose."""
-    near = anywhere(np.random.default_rng(0), 4000)[:, :2]
+    near = scanned_floor().anywhere(np.random.default_rng(0), 4000)[:, :2]
     apart = np.hypot(*(near - pose[:2]).T)
     found: Floats = near[np.argmin(np.where(apart > 1.0, apart, np.inf))]
     return found

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from muster.mission.plan import Plan, Route
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster.running.worlds import WORLDS
 from muster_studies.effort import Effort
@@ -15,10 +16,12 @@ from muster_studies.figures import StudyFigure
 from muster_studies.market_5.arena import BEACONS, SURVIVORS
 from muster_studies.market_5.searches import LANDMARKED, PLACES, Search, SearchResult, performed, searches
 from muster_studies.market_5.tracks import SHOWN, measured, team
+from muster_studies.market_rescue.scenario import market_case
 from muster_studies.rescue.flights import repetitions
 from muster_studies.rescue.metrics import SHOWN_ROBOT, Metric, printed_goal_error_m
-from muster_studies.rescue.teams import ARENA, mission_of
+from muster_studies.rescue.teams import ARENA, mission_of, verdict_of
 from muster_studies.rescue.tracking import deviations, legs, track
+from muster_studies.world_pictures import world_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,7 +67,22 @@ def _measure(found: Sequence[SearchResult], metric: Metric, place: str, robots: 
     )
 
 
+def _world(effort: Effort) -> Figure:
+    """The arena in the physics world, with the robots at their starts."""
+    found = verdict_of(ARENA, market_case(effort).iterations or 0)
+    plan = Plan(routes=tuple(Route(route.robot, route.tasks) for route in found.routes))
+    return world_figure(mission_of(ARENA), plan, "The arena in the physics world")
+
+
 FIGURES = (
+    StudyFigure(
+        number="4",
+        source="market-paper",
+        shows="the arena with its obstacles, survivors and three robots, in V-REP and as a photograph",
+        draw=_world,
+        tables=("Figure 7",),
+        differs="the simulated half alone, in the physics world; places are chosen here",
+    ),
     StudyFigure(
         number="7",
         source="market-paper",

@@ -1,4 +1,4 @@
-"""Collision avoidance of [tcf-thesis], appendices A3 and A6.2, with RVO, HRVO and ORCA side by side."""
+"""Collision avoidance of [tcf-thesis], appendices A3 and A6.2, with RVO, HRVO, ORCA and AVO side by side."""
 
 from muster_studies.rvo.study import RVO
 

@@ -1,4 +1,4 @@
-"""Figures A.4 to A.9 and A.15 to A.17: trajectories, least distances and velocities, all methods side by side."""
+"""Figures A.4 to A.9 and A.15 to A.17: trajectories, least distances and velocities of three methods."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 from muster.report.trajectories import MethodRun, plot_trajectories, plot_velocities
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure
-from muster_studies.rvo.runs import METHODS, Job
+from muster_studies.rvo.runs import Job
 from muster_studies.rvo.scenarios import Scenario, scenarios, tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _BESIDE = "two methods of later years stand beside the published one"
+
+_PICTURED = ("RVO", "HRVO", "ORCA")
 
 Plot = Callable[[Sequence[MethodRun], str], "Figure"]
 
@@ -46,9 +48,9 @@ def _figure(number: str, table: str, scenario: str, plot: Plot, shows: str) -> S
 
 
 def _draw(table: str, number: str, plot: Plot, title: str, effort: Effort) -> Figure:
-    """All methods in a scenario; a misprinted one as printed and as corrected."""
+    """Three methods in a scenario; a misprinted one as printed and as corrected."""
     variants = [scenario for scenario in scenarios(table) if scenario.number == number]
-    return plot([_run(scenario, method) for scenario in variants for method in METHODS], title)
+    return plot([_run(scenario, method) for scenario in variants for method in _PICTURED], title)
 
 
 @cache

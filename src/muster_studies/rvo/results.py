@@ -16,6 +16,7 @@ from muster_studies.rvo.runs import (
     CIRCLE_SHARE,
     HOLD_S,
     METHODS,
+    PERTURBED,
     SHARE,
     Job,
 )
@@ -63,14 +64,14 @@ def verdict(found: Sequence[Found]) -> str:
 
 @dataclass(frozen=True)
 class Published:
-    """The scenarios of a published table, by all methods. RVO and HRVO have no need of chance, ORCA has."""
+    """The scenarios of a published table, by all methods. RVO and HRVO have no need of chance, ORCA and AVO have."""
 
     number: str
 
     def jobs(self, effort: Effort) -> Iterator[Job]:
         for scenario in scenarios(self.number):
             for method in METHODS:
-                seeds = range(effort.seed_count) if method == "ORCA" else (None,)
+                seeds = range(effort.seed_count) if method in PERTURBED else (None,)
                 yield from (Job(scenario, method, seed) for seed in seeds)
 
     def table(self, effort: Effort, results: Mapping[Job, Found]) -> Table:
@@ -87,7 +88,7 @@ class Published:
             f"inflated ones at {inflated:.2f} m. Looked at between points of time too.",
             f"A robot is there within {ARRIVAL_M} m of its goal, for good. Two with one goal are there when they stand "
             f"beside each other and both so near to it: {inflated:.2f} m and {ARRIVAL_M} m.",
-            f"The preferred velocities of ORCA are shifted by {SHARE} of their length (seeds 0 and up).",
+            f"The preferred velocities of ORCA and AVO are shifted by {SHARE} of their length (seeds 0 and up).",
             *misprints(self.number),
             "The thesis takes 0.16 m between centres for contact, its robots' radius; two of them touch at 0.32 m.",
         )
@@ -120,8 +121,8 @@ class Circle:
             "Radius 1.5 m each, at most 2 m/s; the circle has a radius of 200 m for 250 robots (on a diameter of 200 m "
             "they would overlap), and in proportion for others. A robot is there within "
             f"{CIRCLE_ARRIVAL_M} m of its goal, for good. contacts: pairs that ever overlap, over all runs.",
-            f"ORCA has a horizon of {CIRCLE_HORIZON_S:.0f} s. All preferred velocities are shifted, by {CIRCLE_SHARE} "
-            "of their length.",
+            f"ORCA and AVO have a horizon of {CIRCLE_HORIZON_S:.0f} s; AVO accelerates by 1 m/s^2 at most. All "
+            f"preferred velocities are shifted, by {CIRCLE_SHARE} of their length.",
         )
         return Table(self.number, "Crossing circle, to the opposite side", columns, tuple(rows), notes, decimals=3)
 
@@ -138,6 +139,6 @@ _ROUNDING_M = 1e-9
 LEGEND = (
     "s: until the last robot of the slowest run is there, or time is up. least gap: least distance between two bodies "
     "in any run, in metres. no fault: all robots of all runs arrive, and none touches another.",
-    "ORCA alone would wait for ever where robots meet head on, so its preferred velocities are shifted at random, anew "
-    f"every {HOLD_S:.0f} s; on the circle so are those of all methods. RVO and HRVO find a side without that.",
+    "ORCA and AVO would wait for ever where robots meet head on, so their preferred velocities are shifted at random, "
+    f"anew every {HOLD_S:.0f} s; on the circle so are those of all methods. RVO and HRVO find a side without that.",
 )

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from muster.motion.avoidance import (
+    Avo,
     Crowd,
     Hrvo,
     Method,
     Orca,
     Rvo,
     Trajectories,
+    avo,
     hrvo,
     orca,
     perturbed,
@@ -21,14 +23,16 @@ from muster.motion.avoidance import (
 )
 from muster_studies.rvo.scenarios import Scenario, circle, tables
 
-METHODS = ("RVO", "HRVO", "ORCA")
+METHODS = ("RVO", "HRVO", "ORCA", "AVO")
+PERTURBED = ("ORCA", "AVO")
+"""Those that wait for ever where robots meet head on, unless preferred velocities are shifted."""
 ARRIVAL_M = 0.05
 """How near to its goal a robot is there, in the published scenarios."""
 CIRCLE_ARRIVAL_M = 0.1
 UNTIL_S = 300.0
 CIRCLE_UNTIL_S = {8: 600.0, 32: 600.0, 100: 900.0, 250: 1500.0}
 CIRCLE_HORIZON_S = 2.0
-"""Of ORCA; with longer ones the circle of 8 sometimes holds itself up for ever."""
+"""Of ORCA and AVO; with longer ones the circle of 8 sometimes holds itself up for ever."""
 CIRCLE_NEIGHBOURS: dict[str, Any] = {"most_neighbours": 10, "neighbour_distance_m": 15.0}
 
 SHARE, CIRCLE_SHARE, HOLD_S = 0.1, 0.8, 5.0
@@ -64,7 +68,7 @@ class Job:
 
 
 def _method(name: str) -> Method:
-    methods: dict[str, Method] = {"RVO": Rvo(), "HRVO": Hrvo(), "ORCA": Orca()}
+    methods: dict[str, Method] = {"RVO": Rvo(), "HRVO": Hrvo(), "ORCA": Orca(), "AVO": Avo()}
     return methods[name]
 
 
@@ -73,5 +77,6 @@ def _circle_method(name: str) -> Method:
         "RVO": Rvo(rvo.Parameters(**CIRCLE_NEIGHBOURS)),
         "HRVO": Hrvo(hrvo.Parameters(**CIRCLE_NEIGHBOURS)),
         "ORCA": Orca(orca.Parameters(horizon_s=CIRCLE_HORIZON_S, **CIRCLE_NEIGHBOURS)),
+        "AVO": Avo(avo.Parameters(horizon_s=CIRCLE_HORIZON_S, **CIRCLE_NEIGHBOURS)),
     }
     return methods[name]

@@ -14,6 +14,7 @@ from muster.execution.report import Report
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.motion.grid import Floats
+from muster.motion.laws import PROFILE
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster.simulation import NO_NOISE, Noise
@@ -53,7 +54,7 @@ class Flight:
         of search, and of the world.
     world
         `kinematic` or `physics`.
-    avoidance, noise
+    avoidance, noise, law
         of the world; without avoidance robots drive through each other.
     marker
         robots steer by motion capture, and one has these markers; None: they steer by their true poses.
@@ -68,6 +69,7 @@ class Flight:
     world: str = "kinematic"
     avoidance: str = "orca"
     noise: Noise = NO_NOISE
+    law: str = PROFILE
     marker: Marker | None = None
 
 
@@ -135,6 +137,7 @@ def carried_out(flight: Flight, recorder: Recorder) -> Report:
         "seed": flight.seed,
         "avoidance": flight.avoidance,
         "noise": flight.noise,
+        "law": flight.law,
         "ignore": flight.ignored,
         "pose": "true" if flight.marker is None else "estimate",
         "localise": None if flight.marker is None else {"motion-capture": asdict(flight.marker)},
@@ -150,7 +153,7 @@ def mission_with(flight: Flight) -> Mission:
 
 def _on_paper(flight: Flight) -> Flight:
     """A flight without what makes no difference to its plan."""
-    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE, marker=None)
+    return replace(flight, world="kinematic", avoidance="none", noise=NO_NOISE, marker=None, law=PROFILE)
 
 
 @lru_cache(maxsize=1000)

@@ -6,6 +6,7 @@ from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.thesis_6.action_paths import ActionPaths
 from muster_studies.thesis_6.disturbed import CapacityReserve, UsageUnderNoise
 from muster_studies.thesis_6.flights import Flight, FlightResult, fly
+from muster_studies.thesis_6.laws import ByLaw
 from muster_studies.thesis_6.misaligned import MisalignedMarkers
 from muster_studies.thesis_6.physics import BesidePhysics
 from muster_studies.thesis_6.pictures import FIGURES
@@ -23,6 +24,7 @@ _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
     SystemTotals("6.11", "6.9"),
     ActionPaths(),
     BesidePhysics(),
+    ByLaw(),
     UsageUnderNoise(),
     MisalignedMarkers(),
     CapacityReserve(),

@@ -105,6 +105,15 @@ def test_motion_capture_says_where_robots_are(ros, one):
     assert "expected a topic such as /vrpn_client_node/{robot}/pose" in err
 
 
+def test_robots_are_steered_by_the_method_that_is_asked_for(ros, one):
+    """The thesis' node RVO_planner; who finds the way itself is not steered."""
+    ros.robot("r_0", 0, 0)
+    tasks, _ = done(ros.muster(one, *QUICK, "--avoidance", "rvo", "--allocator", "greedy"))
+    assert set(tasks) == {"t_1", "t_2"}
+    _, err = ros.muster(one, *QUICK, "--avoidance", "rvo", "--drive", "goals").communicate(timeout=20)
+    assert err == "--avoidance rvo with --drive goals; expected --drive cmd_vel\n"
+
+
 def test_tasks_routes_and_robots_are_drawn_for_rviz(ros, one):
     pytest.importorskip("visualization_msgs", reason="python3-visualization-msgs is not installed")
     ros.robot("r_0", 0, 0)

@@ -105,7 +105,7 @@ def test_no_path_is_a_value_with_its_reason(planner):
     assert find(space, here, wall, planner=planner).reason == "goal blocked"
     assert find(space, here, (0.0, 0.0), planner=planner).reason == "goal blocked"
     assert find(space, here, beyond, planner=planner).reason == (
-        "not found" if planner == "rrt-star" else "disconnected"
+        "not found" if planner in ("rrt-star", "rrt", "potential-field") else "disconnected"
     )
 
 

@@ -112,3 +112,10 @@ def test_no_places_no_lengths():
 def test_bad_places_are_named(places, threads):
     with pytest.raises(ParameterError):
         travel_lengths(GridSpace(Grid(np.zeros((2, 2), dtype=bool), 1.0)), places, places, threads)
+
+
+def test_what_leaves_the_region_is_not_clear():
+    finder = PathFinder(PolygonSpace(shapely.box(0, 0, 10, 10)))
+    assert finder.clear(np.array([[1.0, 5.0], [10.0, 5.0]]))
+    assert not finder.clear(np.array([[0.2, 5.0], [-0.2, 5.0]]))
+    assert not finder.clear(np.array([[-0.2, 5.0], [-3.0, 5.0]]))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 
-AVOIDANCE = ("orca", "rvo", "hrvo", "none")
-_IN_THE_PLANE = ("rvo", "hrvo")
+AVOIDANCE = ("orca", "rvo", "hrvo", "avo", "none")
+_IN_THE_PLANE = ("rvo", "hrvo", "avo")
 
 
 def require_avoidance(avoidance: str, dimensions: int) -> None:

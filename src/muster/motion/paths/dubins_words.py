@@ -52,6 +52,14 @@ class DubinsPath:
             x, y, heading = _driven((x, y, heading), _TURN[letter] / self.radius_m, length)
         return x, y, heading
 
+    def after(self, length_m: float) -> Pose:
+        """The pose at a length along it."""
+        at = self.start
+        for letter, length in zip(self.word, self.lengths_m, strict=True):
+            at = _driven(at, _TURN[letter] / self.radius_m, min(length, length_m))
+            length_m = max(0.0, length_m - length)
+        return at
+
     def poses(self, step_m: float) -> Floats:
         """Poses (k, 3) along it at most a step apart, both ends and those between pieces among them."""
         found, at = [self.start], self.start

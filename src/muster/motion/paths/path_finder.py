@@ -56,7 +56,7 @@ class PathFinder:
     def clear(self, points: Floats) -> bool:
         """Whether the straight pieces through points (k, d) are free from end to end: a `Clear` for smoothing."""
         places = points_of(self._space, points, "points")
-        return all(self._ways.sees(a, b) for a, b in pairwise(places))
+        return bool(free(self._space, places).all()) and all(self._ways.sees(a, b) for a, b in pairwise(places))
 
     def lengths(self, exits: npt.ArrayLike, entries: npt.ArrayLike | None = None, *, threads: int = 1) -> Floats:
         """The lengths of the shortest paths from each exit (n, d) to each entry (m, d): (n, m) metres.

@@ -2,5 +2,16 @@
 
 from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
 from muster.planning.explaining.impossible import Possible, possible
+from muster.planning.explaining.unseen_searches import unseen_findings, unseen_in_plan
 
-__all__ = ["LeftOut", "OneTask", "Possible", "left_out", "one_task", "possible", "require_fit"]
+__all__ = [
+    "LeftOut",
+    "OneTask",
+    "Possible",
+    "left_out",
+    "one_task",
+    "possible",
+    "require_fit",
+    "unseen_findings",
+    "unseen_in_plan",
+]

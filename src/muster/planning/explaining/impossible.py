@@ -11,7 +11,9 @@ from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.mission.model import Mission
 from muster.mission.plan import Reason, Unassigned
+from muster.motion.actions.coverage import Unseen
 from muster.planning.explaining.explanations import admits
+from muster.planning.explaining.unseen_searches import unseen_searches
 
 
 @dataclass(frozen=True)
@@ -24,10 +26,13 @@ class Possible:
         tasks that no robot can ever do.
     together
         whether one plan can do all others.
+    unseen
+        raster searches of which robots that may do them do not see all.
     """
 
     impossible: tuple[Unassigned, ...] = ()
     together: Together = Together()
+    unseen: tuple[Unseen, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Return what `muster check --format json` prints of it."""
@@ -36,6 +41,7 @@ class Possible:
             "impossible": [asdict(item) for item in self.impossible],
             "conflict": None if conflict is None else asdict(conflict),
             "unknown": self.together.unknown,
+            "unseen": [asdict(item) for item in self.unseen],
         }
 
     @classmethod
@@ -45,11 +51,12 @@ class Possible:
             Unassigned(item["task"], tuple(Reason(**reason) for reason in item["reasons"]))
             for item in data["impossible"]
         )
-        return cls(tuple(lost), Together(_conflict(data["conflict"]), data["unknown"]))
+        unseen = tuple(Unseen(**item) for item in data.get("unseen", ()))
+        return cls(tuple(lost), Together(_conflict(data["conflict"]), data["unknown"]), unseen)
 
 
 def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float | None = None) -> Possible:
-    """Find the tasks of a mission that can never be done.
+    """Find the tasks of a mission that can never be done, and the searches that leave something unseen.
 
     Parameters
     ----------
@@ -64,9 +71,10 @@ def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float
         if the mission cannot be planned at all, or its map is wrong.
     """
     problem = Problem.compile(mission, ignored=ignored).ready()  # which reads the map
+    lost, unseen = impossible(problem), unseen_searches(problem)
     if time_limit is None:
-        return Possible(impossible(problem), Together(unknown=True))
-    return Possible(impossible(problem), together(problem, admits, time_limit=time_limit))
+        return Possible(lost, Together(unknown=True), unseen)
+    return Possible(lost, together(problem, admits, time_limit=time_limit), unseen)
 
 
 def _conflict(data: Mapping[str, Any] | None) -> Conflict | None:

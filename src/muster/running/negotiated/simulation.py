@@ -26,7 +26,7 @@ from muster.running.negotiated.robot_process import run_robot_process
 from muster.running.negotiated.team_log import TeamLog
 from muster.running.simulation import OnWorld
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
-from muster.running.worlds import recorded_world
+from muster.running.worlds import recorded_world, with_tracking
 from muster.simulation import CALM, NO_NOISE, Noise, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
 
@@ -133,7 +133,7 @@ def negotiate_and_carry_out(
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
         if isinstance(robots, EstimatedWorld):
             report = replace(report, remarks=(*report.remarks, robots.remark))
-        report = with_found(report, camera_search)
+        report = with_tracking(with_found(report, camera_search), bodies)
         if recorder is not None:
             recorder.on_report(report.as_dict())
         return report

@@ -63,6 +63,7 @@ class Checked:
     """What is wrong with a mission, which tasks can never be done, and its size (null if it cannot be read).
 
     `conflict` are tasks that no single plan can do together; `unknown` is true if that was not checked or not decided.
+    `unseen` are raster searches of which robots that may do them do not see all.
     `floor` is the image of the mission's map, one of its files, with its resolution and origin.
     """
 
@@ -70,6 +71,7 @@ class Checked:
     impossible: list[dict[str, Any]]
     conflict: dict[str, Any] | None
     unknown: bool
+    unseen: list[dict[str, Any]]
     summary: dict[str, Any] | None
     mission: dict[str, Any] | None
     floor: dict[str, Any] | None

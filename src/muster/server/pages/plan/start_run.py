@@ -22,8 +22,12 @@ _SPEEDS = {
     "": "as fast as it goes",
 }
 _SIMULATED = {"kinematic": "simulated", "physics": "simulated with physics"}  # others by their names
-_AVOIDANCE = {"orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "none": "not at all"}
-_LAWS = {"profile": "speed profiles, turns on the spot", "thesis": "control laws of the thesis"}
+_AVOIDANCE = {"orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "avo": "AVO", "none": "not at all"}
+_LAWS = {
+    "profile": "speed profiles, turns on the spot",
+    "thesis": "control laws of the thesis",
+    "trajectory": "smooth trajectories",
+}
 _DRIVES = {"cmd_vel": "velocities (cmd_vel)", "goals": "goals (WP)"}
 _GIVES = {"goals": "goals (goal_pose)", "nav2": "Nav2's action"}
 _ENDS = {"hold": "hover where they are", "return": "return and land", "land": "land where they are"}

@@ -1,0 +1,1 @@
+"""Draws the figures of all studies and makes the page that shows them."""
