@@ -1,12 +1,12 @@
 """The random algorithms of [tcf-thesis] as its published runs had them: Table A.15.
 
 They differ from those of section 3.2.2 by the bounds of mutation alone (`bounds_of_mutation`). This is inferred from
-the published values, not printed. That only places strictly between k1 and k2 are drawn, and both are looked for beyond
-the receiving sequence, follows from the greedy plan of eil51 with five salesmen: the climbs from it end at the four values
-of Table A.15 (787.23, 774.59, 780.42 and 775.01), as they do with `all-inner`. `others-inner` was chosen from these two as
-its runs from random plans are nearer. It was chosen by the same ten runs that it is held against, among some dozens of
-variants, so that its p values say how well it fits, and do not confirm it. Its climbs from random plans still spread less
-than the published ones.
+the published values, not printed. That only places strictly between k1 and k2 are drawn, and both are looked for
+beyond the receiving sequence, follows from the greedy plan of eil51 with five salesmen: the climbs from it end at the
+four values of Table A.15 (787.23, 774.59, 780.42 and 775.01), as they do with `all-inner`. `others-inner` was chosen
+from these two as its runs from random plans are nearer. It was chosen by the same ten runs that it is held against,
+among some dozens of variants, so that its p values say how well it fits, and do not confirm it. Its climbs from
+random plans still spread less than the published ones.
 """
 
 from __future__ import annotations

@@ -105,8 +105,8 @@ _NOTES = (
     "bounds: of which sequences k1 and k2 of Algorithm 4 are order numbers; -inner: only places strictly between them, "
     "and never the first task of a sequence. The thesis prints neither: both are inferred. ALLOCATOR-as-run has "
     "others-inner.",
-    "The reading was chosen by these same published runs, among some dozens of variants: a p value says how well a reading "
-    "fits, and does not confirm it. Ten runs do not tell all readings apart: all-inner is not rejected either.",
+    "The reading was chosen by these same published runs, among some dozens of variants: a p value says how well a "
+    "reading fits, and does not confirm it. Ten runs do not tell all readings apart: all-inner is not rejected either.",
     "p: probability of samples at least as different if both came from one distribution (Mann-Whitney, "
     "Kolmogorov-Smirnov).",
 )
