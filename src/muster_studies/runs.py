@@ -9,6 +9,7 @@ from functools import cache
 from statistics import fmean, stdev
 from typing import Any
 
+from muster.allocation.allocator import make_parameters
 from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Progress, Stop
@@ -40,6 +41,7 @@ class Case:
     iterations: int | None = None
     time_limit: float | None = None
     processor_time: bool = False  # whether the limit, and the times found, are of it
+    parameters: tuple[tuple[str, str], ...] = ()
 
     @property
     def random(self) -> bool:
@@ -154,7 +156,7 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
     clock = ProcessorClock() if case.processor_time else None
     stop = Stop(iterations=case.iterations, time_limit=case.time_limit, clock=clock, on_progress=end_if_unwanted)
     begin = time.process_time()
-    plan = allocator.solve(problem, stop, seed=seed)
+    plan = allocator.solve(problem, stop, seed=seed, params=make_parameters(allocator, dict(case.parameters)))
     cpu_s = time.process_time() - begin
     verdict = accepted(
         mission,

@@ -32,7 +32,7 @@ def test_lists_studies_as_json(capsys):
     assert run(["study", "--format", "json"]) == 0
     listed = json.loads(capsys.readouterr().out)
     studies = {study["name"]: study["tables"] for study in listed}
-    counts = {"thesis-3.3": 21, "auction-5": 22, "market-rescue": 3}
+    counts = {"thesis-3.3": 24, "auction-5": 22, "market-rescue": 3}
     assert {name: len(studies[name]) for name in counts} == counts
     (rvo,) = [study["figures"] for study in listed if study["name"] == "rvo"]
     assert [figure["number"] for figure in rvo] == [f"A.{k}" for k in (4, 5, 6, 7, 8, 9, 15, 16, 17)]
@@ -66,7 +66,7 @@ def test_quick_study_prints_all_tables(capsys, tmp_path):
     assert report["seeds"] == 2
     assert [table["number"] for table in report["tables"]] == list(STUDIES["thesis-3.3"].tables)
     for table in report["tables"]:
-        assert f"Table {table['number']}. {table['title'].split(';')[0]}" in captured.out
+        assert f"{table['number']}. {table['title'].split(';')[0]}" in captured.out
         assert all(list(row) == table["columns"] for row in table["rows"])
     (row,) = [
         r for r in report["tables"][5]["rows"] if (r["scenario"], r["tasks"], r["iterations"]) == ("16T-3R", 16, None)

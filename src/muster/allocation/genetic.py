@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from muster import core
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.bounds_of_mutation import RECEIVER, checked_bounds
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
@@ -34,6 +35,7 @@ class Parameters:
     crossover_probability: float = 0.7
     replaced_share: float = 0.4
     start_mutants: int = 4  # of a start plan, beside the plan itself; the thesis leaves their number open
+    bounds: str = RECEIVER
 
     def __post_init__(self) -> None:
         if self.population_size < 1:
@@ -43,6 +45,7 @@ class Parameters:
                 raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to 1")
         if self.start_mutants < 0:
             raise ParameterError(f"start_mutants: {self.start_mutants}; expected a whole number of at least 0")
+        checked_bounds(self.bounds)
 
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
@@ -52,7 +55,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
 def first_population(problem: Problem, seed: int, params: Parameters, start: Routes | None) -> core.Population:
     """Random admissible allocations; with a start plan it comes first, then its mutants (Algorithm 7, step 2)."""
-    population = core.Population(problem.core, params.population_size, seed)
+    population = core.Population(problem.core, params.population_size, seed, params.bounds)
     for member in range(params.population_size):
         if start is None or member > params.start_mutants:
             population.set_random(member)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from muster import core
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.bounds_of_mutation import RECEIVER, checked_bounds
 from muster.allocation.genetic import Best
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -16,12 +17,23 @@ from muster.allocation.stop import Stop
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Hill climbing has none."""
+    """Parameters of hill climbing.
+
+    Raises
+    ------
+    ParameterError
+        if one is out of range.
+    """
+
+    bounds: str = RECEIVER
+
+    def __post_init__(self) -> None:
+        checked_bounds(self.bounds)
 
 
 def climb(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Algorithm 2: a population of one, where every iteration is one mutation; from a random plan or from `start`."""
-    climber = core.Population(problem.core, 1, seed)
+    climber = core.Population(problem.core, 1, seed, params.bounds)
     if start is None:
         climber.set_random(0)  # 1
     else:

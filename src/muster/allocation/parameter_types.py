@@ -15,6 +15,7 @@ class AllocatorParameters(TypedDict, total=False):
     beta: float
     bid: str | None
     blink: float
+    bounds: str
     bundle_size: int
     cold: float
     combinations: int

@@ -100,8 +100,10 @@ class Population:
     Task allocations that evolve ([tcf-thesis], Algorithm 3). One thread at a time may use one.
     """
 
-    def __init__(self, problem: Problem, size: int, seed: int) -> None:
-        """`size` empty allocations."""
+    def __init__(self, problem: Problem, size: int, seed: int, bounds: str = 'receiver') -> None:
+        """
+        `size` empty allocations. `bounds`: where mutation looks for a task's prerequisites and dependants.
+        """
 
     def __len__(self) -> int: ...
 

@@ -1,7 +1,12 @@
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "bindings.hpp"
 #include "population.hpp"
@@ -19,7 +24,8 @@ using Unlocked = nb::call_guard<nb::gil_scoped_release>;
 // A population with the problem it belongs to, and bounds checked where Python passes indices.
 class Evolving : public Population {
  public:
-  Evolving(const Problem& problem, int size, std::uint64_t seed) : Population(problem, size, seed), problem_(problem) {}
+  Evolving(const Problem& problem, int size, std::uint64_t seed, const std::string& bounds)
+      : Population(problem, size, seed, bounds_named(bounds)), problem_(problem) {}
 
   void set_routes(int k, const Routes& routes) {
     if (!set(checked(k), draft_from(problem_, routes))) throw std::invalid_argument("the routes are not admissible");
@@ -44,6 +50,22 @@ class Evolving : public Population {
     return p;
   }
 
+  static Bounds bounds_named(const std::string& name) {
+    for (const auto& [known, bounds] : kBounds) {
+      if (name == known) return bounds;
+    }
+    throw std::invalid_argument("no bounds of that name");
+  }
+
+  static constexpr std::array<std::pair<std::string_view, Bounds>, 6> kBounds{{
+      {"receiver", {Scope::kReceiver, false}},
+      {"receiver-inner", {Scope::kReceiver, true}},
+      {"all", {Scope::kAll, false}},
+      {"all-inner", {Scope::kAll, true}},
+      {"others", {Scope::kOthers, false}},
+      {"others-inner", {Scope::kOthers, true}},
+  }};
+
   const Problem& problem_;
 };
 
@@ -52,8 +74,9 @@ class Evolving : public Population {
 void bind_population(nb::module_& m) {
   nb::class_<Evolving>(m, "Population",
                        "Task allocations that evolve ([tcf-thesis], Algorithm 3). One thread at a time may use one.")
-      .def(nb::init<const Problem&, int, std::uint64_t>(), "problem"_a, "size"_a, "seed"_a, nb::keep_alive<1, 2>(),
-           "`size` empty allocations.")
+      .def(nb::init<const Problem&, int, std::uint64_t, const std::string&>(), "problem"_a, "size"_a, "seed"_a,
+           "bounds"_a = "receiver", nb::keep_alive<1, 2>(),
+           "`size` empty allocations. `bounds`: where mutation looks for a task's prerequisites and dependants.")
       .def("__len__", &Evolving::size)
       .def("set_random", &Evolving::randomize, "member"_a, Unlocked(), "A random admissible allocation.")
       .def("set", &Evolving::set_routes, "member"_a, "routes"_a, "Raises ValueError if the routes are not admissible.")

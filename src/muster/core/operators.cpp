@@ -99,24 +99,76 @@ int choose_robot(const Problem& problem, Random& random, int task, int present) 
   return allowed[k + (beyond ? 1 : 0)];
 }
 
-}  // namespace
-
-Mutation reassign(const Problem& problem, Random& random, const Draft& draft, Draft& mutant) {
+// Step 5: the task leaves its sequence and stands at a random place within the bounds.
+Mutation moved(Random& random, const Draft& draft, const Choice& chosen, int robot, Window allowed, Draft& mutant) {
   Mutation mutation;
-  const Choice chosen = choose_task(problem, random, draft);
-  if (chosen.task == Draft::kNobody) return mutation;
-  const int robot = choose_robot(problem, random, chosen.task, chosen.robot);
-  if (robot == Draft::kNobody) return mutation;
-  const Window allowed = window(problem, draft.route(robot), chosen.task);  // step 4
-  if (allowed.earliest > allowed.latest) return mutation;
   mutant = draft;
   if (chosen.robot != Draft::kNobody) {
     mutant.remove(chosen.robot, chosen.at);
     mutation.changed[mutation.count++] = chosen.robot;
   }
-  mutant.insert(chosen.task, robot, allowed.earliest + random.below(allowed.latest - allowed.earliest + 1));  // step 5
+  mutant.insert(chosen.task, robot, allowed.earliest + random.below(allowed.latest - allowed.earliest + 1));
   mutation.changed[mutation.count++] = robot;
   return mutation;
+}
+
+}  // namespace
+
+Mutation reassign(const Problem& problem, Random& random, const Draft& draft, Draft& mutant) {
+  const Choice chosen = choose_task(problem, random, draft);
+  if (chosen.task == Draft::kNobody) return {};
+  const int robot = choose_robot(problem, random, chosen.task, chosen.robot);
+  if (robot == Draft::kNobody) return {};
+  const Window allowed = window(problem, draft.route(robot), chosen.task);  // step 4
+  return allowed.earliest > allowed.latest ? Mutation{} : moved(random, draft, chosen, robot, allowed, mutant);
+}
+
+namespace {
+
+bool another_may(const Problem& problem, int task, int robot) {
+  const auto allowed = problem.robots_allowed(task);
+  return std::ranges::any_of(allowed, [&](int other) { return other != robot; });
+}
+
+// Steps 1 and 2 with tasks alone that another robot may do, from the place `first` on.
+Choice choose_movable(const Problem& problem, Random& random, const Draft& draft, int first) {
+  Choice choice = choose_task(problem, random, draft);
+  if (choice.robot == Draft::kNobody || choice.task == Draft::kNobody) return choice;
+  std::vector<int> places;
+  const auto route = draft.route(choice.robot);
+  for (int k = first; k < static_cast<int>(route.size()); ++k) {
+    if (another_may(problem, route[k], choice.robot)) places.push_back(k);
+  }
+  if (places.empty()) return {choice.robot, 0, Draft::kNobody};
+  choice.at = places[random.below(static_cast<int>(places.size()))];
+  choice.task = route[choice.at];
+  return choice;
+}
+
+// Step 4 over a scope: the latest of all lower bounds, the earliest of all upper ones.
+Window window_over(const Problem& problem, const Draft& draft, const Choice& chosen, int receiver, Bounds bounds) {
+  Window result{0, draft.length(receiver)};
+  for (int robot = 0; robot < problem.robots(); ++robot) {
+    if (bounds.scope == Scope::kReceiver && robot != receiver) continue;
+    if (bounds.scope == Scope::kOthers && robot == chosen.robot) continue;
+    const auto route = draft.route(robot);
+    const Window one = window(problem, route, chosen.task);
+    result.earliest = std::max(result.earliest, one.earliest);
+    if (one.latest < static_cast<int>(route.size())) result.latest = std::min(result.latest, one.latest);
+  }
+  if (bounds.inner) return {std::max(result.earliest, 1), result.latest - 1};
+  return result;
+}
+
+}  // namespace
+
+Mutation reassign_within(const Problem& problem, Random& random, const Draft& draft, Bounds bounds, Draft& mutant) {
+  const Choice chosen = choose_movable(problem, random, draft, bounds.inner ? 1 : 0);
+  if (chosen.task == Draft::kNobody) return {};
+  const int robot = choose_robot(problem, random, chosen.task, chosen.robot);
+  if (robot == Draft::kNobody) return {};
+  const Window allowed = window_over(problem, draft, chosen, robot, bounds);
+  return allowed.earliest > allowed.latest ? Mutation{} : moved(random, draft, chosen, robot, allowed, mutant);
 }
 
 bool Crossover::operator()(Draft& p, Draft& q) {

@@ -39,6 +39,17 @@ struct Mutation {
 };
 Mutation reassign(const Problem& problem, Random& random, const Draft& draft, Draft& mutant);
 
+// Which sequences k1 and k2 of Algorithm 4 are looked for in, and whether only places strictly between them count: then
+// the first task of a sequence is neither taken nor displaced, and the place at k2 is not drawn.
+enum class Scope { kReceiver, kAll, kOthers };  // kOthers: all but the one that the task leaves
+struct Bounds {
+  Scope scope = Scope::kReceiver;
+  bool inner = false;
+};
+// Algorithm 4 with k1 and k2 so read: order numbers of any sequence of the scope, whatever sequence receives the task.
+// A task that no other robot may do is not drawn.
+Mutation reassign_within(const Problem& problem, Random& random, const Draft& draft, Bounds bounds, Draft& mutant);
+
 // Constrained multi-agent partially mapped crossover, CM-PMX (Algorithm 5): tasks that both parents give to the same
 // robot exchange their places in its sequence where prerequisites allow it. False if nothing was exchanged.
 class Crossover {

@@ -9,8 +9,9 @@
 
 namespace muster {
 
-Population::Population(const Problem& problem, int size, std::uint64_t seed)
+Population::Population(const Problem& problem, int size, std::uint64_t seed, Bounds bounds)
     : problem_(problem),
+      bounds_(bounds),
       random_(seed),
       evaluator_(problem),
       random_allocation_(problem),
@@ -44,10 +45,16 @@ bool Population::set(int k, const Draft& draft) {
   return true;
 }
 
+// Writes the mutant into the first child.
+Mutation Population::mutant_of(const Draft& draft) {
+  if (bounds_.scope == Scope::kReceiver && !bounds_.inner) return reassign(problem_, random_, draft, first_child_);
+  return reassign_within(problem_, random_, draft, bounds_, first_child_);
+}
+
 void Population::set_mutant(int k, int of) {
   constexpr int kTries = 100;
   for (int n = 0; n < kTries; ++n) {
-    const Mutation mutation = reassign(problem_, random_, members_[of], first_child_);
+    const Mutation mutation = mutant_of(members_[of]);
     if (mutation.count == 0) continue;
     if (evaluator_.evaluate(first_child_, std::span(mutation.changed, mutation.count))) {
       members_[k] = first_child_;
@@ -68,7 +75,7 @@ void Population::replace_worst(double share) {
 void Population::mutate(double probability) {
   for (Draft& member : members_) {
     if (random_.uniform() > probability) continue;
-    const Mutation mutation = reassign(problem_, random_, member, first_child_);
+    const Mutation mutation = mutant_of(member);
     if (mutation.count == 0) continue;
     if (!evaluator_.evaluate(first_child_, std::span(mutation.changed, mutation.count))) continue;
     if (first_child_.value().better_than(member.value())) std::swap(member, first_child_);

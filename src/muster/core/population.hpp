@@ -12,7 +12,7 @@ namespace muster {
 
 class Population {
  public:
-  Population(const Problem& problem, int size, std::uint64_t seed);
+  Population(const Problem& problem, int size, std::uint64_t seed, Bounds bounds = {});
 
   int size() const { return static_cast<int>(members_.size()); }
   const Draft& member(int k) const { return members_[k]; }
@@ -32,8 +32,10 @@ class Population {
 
  private:
   void cross_pair(int n, int k);
+  Mutation mutant_of(const Draft& draft);
 
   const Problem& problem_;
+  Bounds bounds_;
   Random random_;
   Evaluator evaluator_;
   RandomAllocation random_allocation_;

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from muster_studies.repetition import Repetition, Reproduction, over_seeds
 from muster_studies.runs import Case, Sample
+from muster_studies.thesis_3_3.pictures import FIGURES
 from muster_studies.thesis_3_3.routes import Routes
 from muster_studies.thesis_3_3.rules import Capacities, Chains, Violations
 from muster_studies.thesis_3_3.totals import Totals
+from muster_studies.thesis_3_3.trials import Readings, Trials
 
 _RUN = ("scenario", "allocator")
 _FIGURES = ("iterations", "tasks", "C", "F", "mean", "worst", "s")
@@ -34,6 +36,9 @@ _TABLES: tuple[Reproduction[Case, Sample], ...] = (
     Totals("3.20", ("scenario", "rules ignored"), _FIGURES),
     Totals("3.21", ("scenario", "objective"), ("tasks", "C", "max u", "F", "E", "s")),
     Totals("3.22", ("scenario", "objective"), ("iterations", "tasks", "C", "max u", "F", "E", "mean", "worst", "s")),
+    Trials("A.15", "total+max"),
+    Trials("A.16", "iterations"),
+    Readings(),
 )
 
 _LEGEND = (
@@ -47,10 +52,11 @@ _LEGEND = (
 
 THESIS_3_3 = Repetition(
     name="thesis-3.3",
-    summary="task allocation algorithms, TCF thesis, section 3.3: Tables 3.2 to 3.22",
+    summary="task allocation algorithms, TCF thesis, section 3.3: Tables 3.2 to 3.22, A.15, A.16",
     document="TCF thesis, section 3.3",
     legend=_LEGEND,
     reproductions=_TABLES,
     perform=over_seeds,
+    figures=FIGURES,
 )
 """Greedy, genetic, hill-climbing and combined task allocation against a benchmark, and under each rule."""
