@@ -9,7 +9,6 @@ from types import MappingProxyType
 _DIAGRAM = "a diagram that explains a definition or a method; it has no data"
 _ELSEWHERE = "taken from other publications, or a diagram of them"
 _PHOTOGRAPH = "a photograph of the laboratory or of hardware"
-_ONE_AT_A_TIME = "drawn one plan at a time, by `muster solve --plot`; study thesis-3.3 has no figures yet"
 _SOFTWARE = "a diagram of software or of ROS topics, or a screenshot of a program"
 
 
@@ -47,7 +46,6 @@ class NotDrawn:
 NOT_DRAWN = (
     NotDrawn("tcf-thesis", _chapter("2", 1, 6), "methods of the literature", _ELSEWHERE),
     NotDrawn("tcf-thesis", _chapter("3", 1, 5), "patrols, coefficients and steps of the algorithms", _DIAGRAM),
-    NotDrawn("tcf-thesis", (*_chapter("3", 6, 23), "A.1"), "plans of section 3.3, values over time", _ONE_AT_A_TIME),
     NotDrawn("tcf-thesis", _chapter("4", 1, 10), "frames, kinematics, observation tasks and a tag", _DIAGRAM),
     NotDrawn("tcf-thesis", _chapter("4", 12, 14), "transformations, a tag's diagonal and clusters", _DIAGRAM),
     NotDrawn("tcf-thesis", ("5.1", "5.3", "5.6", "5.7"), "the architecture, its topics and a program", _SOFTWARE),

@@ -87,3 +87,14 @@ def test_limits_of_processor_time_are_kept():
     outcome = perform(Case(mission="6T-2R", allocator="ipga", time_limit=0.05, processor_time=True), 0)
     assert 0.05 <= outcome.cpu_s < 0.5
     assert outcome.history[-1][1] == outcome.value
+
+
+def test_path_planners_are_beside_the_shortest_path():
+    pytest.importorskip("shapely")
+    report = study_named("thesis-2").run(Effort(seeds=1, tables=("planners",)))
+    rows = {row["planner"]: row for row in report.tables[0].records()}
+    assert rows["shortest"]["longer %"] == pytest.approx(0.0, abs=1e-9)
+    assert all(row["longer %"] >= -1e-6 for row in rows.values() if row["found"])
+    incomplete = {name for name, row in rows.items() if row["found"] < row["searches"]}
+    assert incomplete <= {"potential-field", "rrt", "dubins"}
+    assert rows["dubins"]["sharpest turn"] < rows["a-star"]["sharpest turn"]

@@ -10,6 +10,7 @@ from muster_studies.repetition import OnDone, Performed, Repetition, one_by_one,
 from muster_studies.runs import Case
 from muster_studies.thesis_2 import samples
 from muster_studies.thesis_2.diversity import Diversity
+from muster_studies.thesis_2.planners import PathPlanners
 from muster_studies.thesis_2.ranking import Ranking, Verdicts
 
 
@@ -38,11 +39,11 @@ def _remarks(effort: Effort, found: Mapping[Any, Any]) -> tuple[str, ...]:
 
 THESIS_2 = Repetition(
     name="thesis-2",
-    summary="the reviewed allocators ranked, TCF thesis, section 2.3: Table 2.2",
+    summary="the reviewed allocators and path planners ranked, TCF thesis, sections 2.2 and 2.3: Table 2.2",
     document="TCF thesis, section 2",
-    reproductions=(Ranking(), Verdicts(), Diversity()),
+    reproductions=(Ranking(), Verdicts(), Diversity(), PathPlanners()),
     perform=_perform,
     seeds=samples.seed_count,
-    extras=("studies",),
+    extras=("studies", "map"),
     remarks=_remarks,
 )
