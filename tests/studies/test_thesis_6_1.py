@@ -204,3 +204,18 @@ def test_only_fixes_bound_the_drift_of_a_drone(capsys):
     odometry, inertial, fixes, thesis = table["rows"]
     assert fixes["greatest"] < 0.15 < inertial["greatest"] <= odometry["greatest"] < 1.0
     assert thesis["greatest"] == "0.15 to 0.5"
+
+
+def test_a_tag_is_placed_by_its_corners_where_the_printed_equations_err():
+    (table,) = study_named("thesis-6.1").run(replace(QUICK, tables=("sizes",))).tables
+    for row in table.records():
+        assert row["by size"] < 1e-6
+        assert row["by size, noise"] < 0.05 < row["as printed"]
+
+
+def test_images_that_are_late_make_patterns_along_the_flight():
+    (table,) = study_named("thesis-6.1").run(replace(QUICK, tables=("delays",))).tables
+    *own, thesis = table.records()
+    assert [row["raw, rms"] for row in own] == sorted(row["raw, rms"] for row in own)
+    assert own[0]["mean error"] < 0.01 < own[-1]["mean error"] < thesis["mean error"]
+    assert min(row["long to short"] for row in own[1:]) > 10

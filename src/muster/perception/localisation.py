@@ -4,9 +4,10 @@
 the tag's pose from the image of its four corners (perspective-n-point). OpenCV's own method for squares,
 `SOLVEPNP_IPPE_SQUARE`, is not used: on exact corners it gives NaN for many poses (5.0).
 
-`by_length_as_printed` is (4.44) and (4.45), which the thesis proposes for that. It is kept to show its error: a tag
-seen aslant looks shorter, so that it is placed too far away; and L f / l is the depth along the optical axis, which
-the thesis takes for the distance along the ray, so that what is off the axis is placed too near.
+`by_length_as_printed` is (4.44) and (4.45), which the thesis proposes for that. It is kept to show its error (table
+`sizes` of study thesis-6.1): a tag seen aslant looks shorter, so that it is placed too far away; and L f / l is the
+depth along the optical axis, which the thesis takes for the distance along the ray, so that what is off the axis is
+placed too near.
 """
 
 from __future__ import annotations

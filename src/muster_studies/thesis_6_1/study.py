@@ -12,6 +12,7 @@ from muster_studies.thesis_6_1.drifts import Drifts
 from muster_studies.thesis_6_1.errors import TagErrors
 from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
 from muster_studies.thesis_6_1.published import points, seed_count
+from muster_studies.thesis_6_1.sizes import Sizes
 from muster_studies.thesis_6_1.usages import DroneTotals, DroneUsages
 
 _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
@@ -31,6 +32,7 @@ _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
     ),
     Clusterings(),
     Delays(),
+    Sizes(),
     Drifts(),
 )
 
