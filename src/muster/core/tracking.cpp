@@ -33,6 +33,15 @@ double limit(const CrowdRobot& robot) {
   return r.times[k];
 }
 
+// By how much the reference is ahead of the robot, along its own way. A robot beside it is not behind: were the clock
+// to wait for that, the law, whose steering to the side is in proportion to the speed, would hardly steer.
+double behind(const CrowdRobot& robot, double dt) {
+  const double clock = robot.reference.clock;
+  const Vec<3> now = at(robot, clock).at, way = at(robot, clock + dt).at - now;
+  const double length = norm(way);
+  return length < kSmall ? 0.0 : std::max(0.0, dot(now - robot.position, way) / length);
+}
+
 // The clock of a robot that goes without: to the place of the reference that is nearest to it, never back.
 void catch_up(CrowdRobot& robot, double most) {
   Reference& r = robot.reference;
@@ -70,7 +79,7 @@ bool tracks(CrowdRobot& robot, double dt, Vec<3>& velocity) {
   r.astray = error > (r.astray ? 0.5 * most : most);
   if (r.astray) catch_up(robot, end);
   if (r.astray || r.clock >= end - kSmall) return false;
-  const double rate = robot.slowed * std::clamp(2.0 - 2.0 * error / most, 0.0, 1.0);
+  const double rate = robot.slowed * std::clamp(2.0 - 2.0 * behind(robot, dt) / most, 0.0, 1.0);
   const double later = std::min(end, r.clock + rate * dt);
   const Waypoint now = at(robot, r.clock), then = at(robot, later);
   const Vec<3> went = (1.0 / dt) * (then.at - now.at), off = now.at - robot.position;
