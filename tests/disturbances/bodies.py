@@ -72,7 +72,7 @@ def bodily_mission(seed):
     for robot in mission.robots:
         placed = replace(robot, position=_free(robot.position, robots), end_position=moved(robot.end_position))
         robots.append(_with_body(placed, random))
-    avoidance = "orca" if mission.dimensions == 3 else random.choice(("orca", "orca", "rvo", "hrvo", "avo"))
+    avoidance = "orca" if mission.dimensions == 3 else random.choice(("orca", "orca", "rvo", "hrvo"))
     return replace(mission, robots=tuple(robots), tasks=tasks, events=events), avoidance
 
 

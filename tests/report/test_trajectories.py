@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from muster.report.trajectories import MethodRun, plot_trajectories
+from muster.report.trajectories import MethodRun, plot_trajectories, plot_velocities
 
 pytest.importorskip("matplotlib")
 
@@ -27,8 +27,11 @@ def ways(method):
 
 def test_panels():
     figure = plot_trajectories([ways("RVO"), ways("ORCA")], "a title")
-    assert len(figure.axes) == 8
-    paths, distances, x, y = figure.axes[0], figure.axes[2], figure.axes[4], figure.axes[6]
+    assert len(figure.axes) == 4
+    paths, distances = figure.axes[0], figure.axes[2]
+    velocities = plot_velocities([ways("RVO"), ways("ORCA")], "a title")
+    assert len(velocities.axes) == 4
+    x, y = velocities.axes[0], velocities.axes[2]
     assert [ax.get_title() for ax in figure.axes[:2]] == ["RVO", "ORCA"]
     assert paths.lines[0].get_xydata().tolist() == [[0, 0], [1, 0.5], [2, 0]]
     assert distances.lines[0].get_xydata().tolist() == [[0.5, 2.2], [1.0, 0.5]]
@@ -42,8 +45,8 @@ def test_methods_are_drawn_to_one_scale():
     slow = ways("ORCA")
     slow = replace(slow, least_distances_m=np.array([9.0, 0.1]), velocities=slow.velocities * 3, dt=2.0)
     figure = plot_trajectories([ways("RVO"), slow], "a title")
-    for row in (2, 4, 6):
-        first, second = figure.axes[row : row + 2]
+    velocities = plot_velocities([ways("RVO"), slow], "a title")
+    for first, second in (figure.axes[2:], velocities.axes[:2], velocities.axes[2:]):
         assert first.get_xlim() == second.get_xlim()
         assert first.get_ylim() == second.get_ylim()
         for ax in (first, second):

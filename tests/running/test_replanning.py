@@ -7,6 +7,7 @@ import pytest
 import muster
 from muster.allocation.auction import AUCTION
 from muster.allocation.greedy import GREEDY
+from muster.allocation.market import MARKET
 from muster.allocation.search import SEARCH
 from muster.execution import Reallocation
 from muster.execution.travel import travel_of
@@ -28,11 +29,12 @@ def test_search_keeps_its_low_temperature_unless_one_is_given():
     assert (own.parameters.hot, own.parameters.removed, own.fill_waiting) == (2.5, 4.0, True)
 
 
-def test_greedy_plans_again_itself_and_auctions_leave_that_to_search():
+def test_allocators_that_keep_fixed_tasks_plan_again_themselves_and_others_leave_that_to_search():
     assert replanning(allocator="greedy").allocator is GREEDY
-    assert replanning(allocator="auction", parameters={"winner": "least-contested"}).allocator is SEARCH
-    with pytest.raises(ParameterError, match="auction; expected one that keeps fixed tasks"):
-        Reallocation(travel=travel_of(muster.load("6T-2R")), allocator=AUCTION)
+    assert replanning(allocator="auction", parameters={"winner": "least-contested"}).allocator is AUCTION
+    assert replanning(allocator="market").allocator is SEARCH
+    with pytest.raises(ParameterError, match="market; expected one that keeps fixed tasks"):
+        Reallocation(travel=travel_of(muster.load("6T-2R")), allocator=MARKET)
 
 
 def test_a_mission_goes_on_by_the_allocator_that_planned_it():

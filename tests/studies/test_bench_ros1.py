@@ -43,6 +43,6 @@ def test_what_is_missing_among_the_numbers_of_a_robots_poses_is_lost():
 
 
 def test_without_rospy_the_bench_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(extra, "_absent", lambda: ["rospy"])
+    monkeypatch.setattr(extra, "_absent", lambda *_: ["rospy"])
     with pytest.raises(MissingExtraError, match="apt-get install python3-rospy"):
         under_load(runs=1, robots=1, window_s=1.0)

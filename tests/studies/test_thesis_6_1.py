@@ -188,7 +188,7 @@ def test_pictures(tmp_path, six_tags, capsys):
         == 0
     )
     assert "Six tags found by one drone" in capsys.readouterr().out
-    assert [path.name for path in tmp_path.iterdir()] == ["figure-6.7.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["figure-6.6.png", "figure-6.7.png"]
 
 
 def test_without_the_extra_one_line_says_so(monkeypatch, capsys):

@@ -93,7 +93,7 @@ class Team:
         can = (self._at == _FREE)[:, None] & ~self._done & (self._waiting == 0) & np.isfinite(self._times)
         can &= self._of != np.arange(len(self._at))[:, None]
         capacity = self._problem.capacity[:, None] * (1.0 + _ROUNDING)
-        can &= self._usage[:, None] + self._costs + self._to_end <= capacity
+        can &= np.isfinite(self._to_end) & (self._usage[:, None] + self._costs + self._to_end <= capacity)
         if not can.any():
             return np.zeros((len(self._at), n))
         least = max(1e-300, _SOON * float(self._times[can].mean()))

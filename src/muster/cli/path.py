@@ -40,7 +40,14 @@ _FILE = click.Path(path_type=File)
 @mission_argument
 @click.option("--from", "start", metavar="X,Y[,Z]", help="Where the path begins, metres.")
 @click.option("--to", "goal", metavar="X,Y[,Z]", help="Where it ends.")
-@click.option("--planner", type=click.Choice(_PLANNERS), default="shortest", show_default=True, help="What finds it.")
+@click.option(
+    "--planner",
+    type=click.Choice(_PLANNERS),
+    default="shortest",
+    show_default=True,
+    metavar="PLANNER",
+    help=f"What finds it: {', '.join(_PLANNERS)}.",
+)
 @click.option("--robot", metavar="ID", help="Radius and kind are those of this robot.")
 @click.option("--radius", type=float, metavar="R", help="Radius of the body, metres.  [default: 0]")
 @click.option("--kind", type=click.Choice(("ground", "air")), help="Where the body moves.  [default: ground]")

@@ -27,9 +27,9 @@ from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.localisation import Localise
+from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.replanning import reallocation_by
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
-from muster.running.worlds import recorded_world, with_tracking
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
 from muster.verification import verify

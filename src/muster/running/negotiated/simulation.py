@@ -24,9 +24,9 @@ from muster.running.localisation import Localise
 from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
 from muster.running.negotiated.robot_process import run_robot_process
 from muster.running.negotiated.team_log import TeamLog
+from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.simulation import OnWorld
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
-from muster.running.worlds import recorded_world, with_tracking
 from muster.simulation import CALM, NO_NOISE, Noise, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
 
