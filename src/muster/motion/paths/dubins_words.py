@@ -18,7 +18,7 @@ Pose = tuple[float, float, float]
 """x, y in metres and heading in radians from east."""
 _Angles = tuple[float, float, float]
 
-_ROUNDING = 1e-9
+_ROUNDING = 1e-7
 _TURN = {"L": 1.0, "S": 0.0, "R": -1.0}
 _MIRRORED = str.maketrans("LR", "RL")
 
@@ -92,8 +92,11 @@ def _all(a: float, b: float, d: float) -> Iterator[tuple[str, _Angles]]:
 
 def _lsl(a: float, b: float, d: float) -> _Angles | None:
     across, along = math.cos(b) - math.cos(a), d + math.sin(a) - math.sin(b)
+    straight = math.hypot(across, along)
+    if straight < _ROUNDING:  # both arcs are of one circle, and the course between them is but rounding
+        return _turn(b - a), 0.0, 0.0
     course = math.atan2(across, along)
-    return _turn(course - a), math.hypot(across, along), _turn(b - course)
+    return _turn(course - a), straight, _turn(b - course)
 
 
 def _lsr(a: float, b: float, d: float) -> _Angles | None:
