@@ -7,6 +7,7 @@ Motion capture without odometry is taken as it is, as the thesis' real robots do
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 
@@ -175,7 +176,7 @@ class Localisation:
         return self._maps[body]
 
 
-class PoseEstimate:
+class PoseEstimate(ABC):
     """Where one robot takes itself to be; `update` once after each step of the world."""
 
     def __init__(self, world: SimulatedWorld, robot: str) -> None:
@@ -186,9 +187,9 @@ class PoseEstimate:
         self.spread_m = START_M
         """A standard deviation of each coordinate of the place in the plane."""
 
+    @abstractmethod
     def update(self) -> None:
         """Take in what sensors measured in the last step."""
-        raise NotImplementedError
 
     def told(self, said: Telemetry) -> Telemetry:
         """Telemetry with the estimated pose, and the velocity by odometry in its axes."""
