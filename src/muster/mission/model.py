@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from muster.mission.consistency import inconsistencies
+from muster.mission.cooperation import Lag, TeamPart
 from muster.mission.data_frames import frame_of_records
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
@@ -34,6 +35,7 @@ __all__ = [
     "DelayedTask",
     "Event",
     "Found",
+    "Lag",
     "Landmark",
     "Map",
     "Mission",
@@ -44,6 +46,7 @@ __all__ = [
     "Rules",
     "Tag",
     "Task",
+    "TeamPart",
     "TravelTable",
     "Work",
     "Zone",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from muster.mission.clock_times import SHIFT
 from muster.mission.near_matches import did_you_mean
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, record, spec
@@ -41,11 +42,19 @@ class Robot(Checked):
         "how well it can do that, for bids; of skills that are not named 1",
         default=None,
     )
+    abilities: Mapping[str, float] | None = spec(
+        Table(Number(minimum=0), "a mapping from abilities to amounts"),
+        "what it can add to a team, for tasks with needs",
+        default=None,
+    )
     speed_mps: float = spec(Number(above=0), "speed of travel", default=1.0)
     efficiency: float = spec(Number(above=0), "work of duration d takes d / efficiency (aging factor)", default=1.0)
     return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)
     end_position: Point | None = spec(Place(), "where its route ends; stronger than return_to_start", default=None)
     available_from_s: float = spec(Number(minimum=0), "earliest time it can leave", default=0.0)
+    available_until_s: float | None = spec(
+        Number(minimum=0), "when its route, the way to its end included, must have ended", default=None, instead=SHIFT
+    )
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)
     kind: str = spec(Choice(("ground", "air")), "where it moves", default="ground")
@@ -54,6 +63,7 @@ class Robot(Checked):
     )
     yaw_rate_radps: float | None = spec(Number(above=0), "greatest yaw rate", default=None)
     acceleration_mps2: float | None = spec(Number(above=0), "greatest acceleration", default=None)
+    climb_mps: float | None = spec(Number(above=0), "greatest speed of climb and descent, in the air", default=None)
     avoidance_priority: float = spec(Number(minimum=0), "who gives way: the lower one", default=0.0)
     camera: Camera | None = spec(Record(Camera, "a camera"), "its camera", default=None)
 
@@ -63,6 +73,9 @@ class Robot(Checked):
         for name in values.get("skill_quality") or ():
             if name not in skills:
                 yield Fault(("skill_quality", name), shown(name), f"one of its skills{did_you_mean(name, skills)}")
+        begins, ends = values.get("available_from_s", 0.0), values.get("available_until_s")
+        if ends is not None and ends < begins:
+            yield Fault(("available_until_s",), shown(ends), f"a number of at least available_from_s ({begins:g})")
 
     def place_at_end(self, rules: Rules) -> Point | None:
         """Where the robot's route must end, or None where it may end anywhere."""

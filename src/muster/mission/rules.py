@@ -5,7 +5,7 @@ from __future__ import annotations
 from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Choice, Flag, Number, Whole
 
-OBJECTIVES = ("total+max", "total", "max", "average", "makespan")
+OBJECTIVES = ("total+max", "total", "max", "average", "makespan", "lateness")
 
 
 @record
@@ -22,4 +22,10 @@ class Rules(Checked):
         default=None,
     )
     capacity_reserve: float = spec(Number(minimum=0, below=1), "share of the work capacity kept free", default=0.0)
+    timing: str = spec(
+        Choice(("profile", "constant")),
+        "how long travel takes: by motion profiles where robots state accelerations, or at constant speed",
+        default="profile",
+    )
+    makespan_includes_return: bool = spec(Flag(), "makespan counts the robots' ways to their ends too", default=False)
     stability: int | None = spec(Whole(), "tasks that may change robot per event", default=None)

@@ -3,16 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
-from typing import Any
+from dataclasses import field, replace
+from typing import Any, Self
 
 from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.clock_times import DEADLINE, DUE, WINDOW
+from muster.mission.cooperation import Lag, Prerequisite, PrerequisiteOrId, TeamPart
 from muster.mission.errors import MissionError
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, findings, record, spec
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.source import IN_PYTHON
-from muster.mission.value_types import Choice, Fault, Key, Many, Number, Position, Text, Whole, shown
+from muster.mission.time_types import Window, Windows
+from muster.mission.value_types import (
+    Choice,
+    Fault,
+    Key,
+    Many,
+    Number,
+    OneOrMany,
+    Position,
+    Table,
+    Text,
+    Whole,
+    shown,
+)
 
 
 @record
@@ -88,8 +103,33 @@ class Work(Checked):
 
     type: str | None = spec(Text(), "column of the suitability table", default=None)
     actuation_cost: float = spec(Number(minimum=0), "cost of doing it", unit="unit of usage", default=0.0)
-    prerequisites: tuple[str, ...] = spec(Many(Text()), "ids of tasks that must be done before", default=())
+    prerequisites: tuple[str, ...] = spec(
+        Many(PrerequisiteOrId()),
+        "ids of tasks that must be done before; with a lag {task, after_s, within_s}",
+        default=(),
+    )
+    window_s: tuple[Window, ...] = spec(
+        Windows(), "when work may begin: [from, until], or several such pairs", default=(), instead=WINDOW
+    )
+    deadline_s: float | None = spec(Number(minimum=0), "when it must have ended", default=None, instead=DEADLINE)
+    due_s: float | None = spec(
+        Number(minimum=0), "when it should have ended, for the objective lateness", default=None, instead=DUE
+    )
     requires: tuple[str, ...] = spec(Many(Text()), "skills a robot must have", default=())
+    robots_needed: int | None = spec(Whole(minimum=1), "how many robots do it together", default=None)
+    team: tuple[TeamPart, ...] = spec(
+        Many(Record(TeamPart, "a part of a team")), "the robots that do it together, by what they must be", default=()
+    )
+    needs: Mapping[str, float] | None = spec(
+        Table(Number(above=0), "a mapping from abilities to amounts"),
+        "what the abilities of the robots that do it together must sum to",
+        default=None,
+    )
+    same_robot_as: tuple[str, ...] = spec(OneOrMany(Text()), "ids of tasks that the same robot does", default=())
+    other_robot_than: tuple[str, ...] = spec(OneOrMany(Text()), "ids of tasks that another robot does", default=())
+    starts_with: tuple[str, ...] = spec(
+        OneOrMany(Text()), "ids of tasks that other robots begin at the same moment", default=()
+    )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)
     only_robots: tuple[str, ...] | None = spec(
@@ -100,14 +140,54 @@ class Work(Checked):
         Choice(("at-least-once", "at-most-once")), "what a split network may do to it", default="at-least-once"
     )
 
+    lags: Mapping[str, Lag] = field(default_factory=dict, hash=False)
+    """By prerequisite, those that have one; in files they stand inside `prerequisites`."""
+
+    @property
+    def is_for_team(self) -> bool:
+        """Whether more robots than one may have to do it."""
+        return (self.robots_needed or 1) > 1 or bool(self.team) or bool(self.needs)
+
+    def waiting_for(self, prerequisites: Iterable[str]) -> Self:
+        """The same work with only those prerequisites, and their lags."""
+        kept = tuple(prerequisites)
+        return replace(self, prerequisites=kept, lags={name: lag for name, lag in self.lags.items() if name in kept})
+
+    @classmethod
+    def settled(cls, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        given = values.get("prerequisites", ())
+        lags = dict(values.get("lags", {}))
+        for one in given:
+            if isinstance(one, Prerequisite):
+                lags[one.task] = Lag(after_s=one.after_s, within_s=one.within_s)
+        ids = tuple(one.task if isinstance(one, Prerequisite) else one for one in given)
+        return {"prerequisites": ids, "lags": {name: lag for name, lag in lags.items() if lag != Lag()}}
+
+    def file_values(self) -> Mapping[str, Any]:
+        return {"prerequisites": tuple(self._prerequisite(name) for name in self.prerequisites)}
+
+    def _prerequisite(self, name: str) -> Prerequisite | str:
+        lag = self.lags.get(name)
+        return name if lag is None else Prerequisite(task=name, after_s=lag.after_s, within_s=lag.within_s)
+
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        yield from _team_faults(values)
+        for name in values.get("lags", {}):
+            if name not in values.get("prerequisites", ()):
+                yield Fault(("lags", name), shown(name), "one of its prerequisites")
         action = values.get("action")
         if action is not None and action.has_geometry and values.get("actuation_cost"):
             cost = shown(values["actuation_cost"])
             yield Fault(("actuation_cost",), cost, f"no typed cost beside {action.name}, whose cost is computed")
         if action is not None and action.duration_s is not None and values.get("duration_s") is not None:
             yield Fault(("duration_s",), shown(values["duration_s"]), f"no second duration beside {action.name}")
+
+
+def _team_faults(values: Mapping[str, Any]) -> Iterable[Fault]:
+    ways = [name for name in ("robots_needed", "team", "needs") if values.get(name)]
+    if len(ways) > 1:
+        yield Fault((ways[1],), f"beside {ways[0]}", "exactly one of robots_needed, team, needs")
 
 
 @record
