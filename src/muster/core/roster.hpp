@@ -26,6 +26,7 @@ struct Trial {
   int most_places = 0;                    // beyond so many only places beside near tasks; 0: at every place
   double blink = 0.0;                     // how often a place is overlooked
   Random* random = nullptr;               // for that
+  const class Neighbours* neighbours = nullptr;  // for `most_places`
   const std::vector<char>* robots = nullptr;  // by robot, whether it may be a member; none: all
 };
 
@@ -67,7 +68,7 @@ class Roster {
   void drop_orphans();
   // Propagates removals, which `insert` and `best_insertion` do on their own.
   bool settle();
-  // Whether all routes are within capacities, and relations hold.
+  // Whether the routes changed since the last commit are within the robots' capacities.
   bool admissible();
 
   // Of the present units.
@@ -93,6 +94,7 @@ class Roster {
   void measure(int robot);
   void appear(int unit);
   void vanish(int unit);
+  double total() const;
   double lateness() const;
   double arrivals() const;
 
@@ -102,11 +104,11 @@ class Roster {
   std::vector<double> usage_;   // by robot
   std::vector<int> absent_, listed_;
   double absent_weight_ = 0.0;
-  bool valid_ = true;
   // Undo: what happened to units, the last at the end.
   std::vector<std::pair<int, bool>> moves_;
   std::vector<Saved> saved_;
   std::vector<char> touched_;
+  std::vector<int> unmeasured_;
   std::unique_ptr<class Placement> placement_;
 };
 

@@ -56,6 +56,7 @@ class Timeline {
   bool present(int unit) const { return !nodes_[unit].visits.empty(); }
   double begin_of(int unit) const { return nodes_[unit].begin; }
   double end_of(int task) const { return nodes_[problem_.unit(task)].begin + work_[task]; }
+  double work_of(int task) const { return work_[task]; }
   double latest_of(int unit) const { return nodes_[unit].latest; }
   double tail_of(int unit) const { return nodes_[unit].tail; }
   double label_of(int unit) const { return nodes_[unit].label; }
@@ -87,6 +88,7 @@ class Timeline {
 
   // When the last task ends, or the last robot is at its end where that counts.
   double end() const;
+  double end_of_route(int robot) const;
   // One after the other the units that the end waits for, the last first.
   void critical(std::vector<int>& units) const;
 
@@ -145,20 +147,26 @@ class Timeline {
   const Visit& behind(const Visit& v) const { return visits_[routes_[v.robot][v.at + 1]]; }
 
   void queue(int unit, Side side);
-  int pop(std::vector<Entry>& heap);
-  void queue_around(int unit);
+  int pop(std::vector<Entry>& heap, Side side);
+  void queue_later(int unit);
+  void queue_earlier(int unit);
   void queue_all();
+  void drop_queues();
   bool forward();
   void backward();
   bool settle_cycles();
   double earliest_begin(int unit) const;
-  double latest_begin(int unit) const;
+  double latest_begin(int unit);
   double longest_tail(int unit) const;
+  bool keeps_bounds(int unit) const;
   void set_begin(Node& node, double begin);
+  void set_latest(Node& node, double latest, double tail);
+  int holder_of(int unit) const;
   void save(int unit);
 
   const Problem& problem_;
   bool has_windows_, has_limits_, has_within_, has_tails_;
+  bool looks_back_;
   std::vector<std::vector<Arc>> before_, behind_;  // by task: prerequisites, dependants
   std::vector<Visit> visits_;                      // starts, ends, then those of tasks
   std::vector<int> free_;
@@ -166,7 +174,8 @@ class Timeline {
   std::vector<Node> nodes_;
   std::vector<double> work_;  // by task, of its slowest member
   std::vector<Entry> forward_, backward_;
-  int reversed_ = 0;  // whether `settle_cycles` found a bound beyond all time
+  int budget_ = 0;  // units that `settle_cycles` still looks at, before it holds that bounds rise for ever
+  std::vector<double> works_;
   // Undo.
   int step_ = 1;
   std::vector<Change> changes_;
