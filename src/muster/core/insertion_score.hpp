@@ -11,18 +11,18 @@ namespace muster {
 // A robot that could do a task between two stops of its route.
 struct Offer {
   int robot = -1;
-  int at = 0;            // the place: after so many tasks
-  double arrive = 0.0;   // at the task
-  double work = 0.0;     // if it did the task alone
-  double out = 0.0;      // the time from the task to the next stop
+  int at = 0;              // the place: after so many tasks
+  double arrive = 0.0;     // at the task
+  double work = 0.0;       // if it did the task alone
+  double out = 0.0;        // the time from the task to the next stop
   double latest = kNever;  // end of the task for which the next stop is still in time
-  double onward = 0.0;   // the time from the end of the task to the end of all that waits for the next stop
-  double direct = 0.0;   // the time from the stop before to the next, without the task
-  double next = kNever;  // when the next stop begins now; never: there is none
-  double in = 0.0;       // the time to the task
-  double growth = 0.0;   // of usage
-  double usage = 0.0;    // before the growth
-  double late = 0.0;     // of objective `average`: what later arrivals add up to, and this one
+  double onward = 0.0;     // the time from the end of the task to the end of all that waits for the next stop
+  double direct = 0.0;     // the time from the stop before to the next, without the task
+  double next = kNever;    // when the next stop begins now; never: there is none
+  double in = 0.0;         // the time to the task
+  double growth = 0.0;     // of usage
+  double usage = 0.0;      // before the growth
+  double late = 0.0;       // of objective `average`: what later arrivals add up to, and this one
 };
 
 // Sums over the members of a team; then `value`.

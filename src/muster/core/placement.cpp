@@ -151,6 +151,10 @@ void Placement::try_place(int robot, int task, int at) {
   if (overlooked()) return;
   const double work = problem_.work_time(robot, task);
   measure_alone(task, work);
+  if (problem_.objective() == Objective::makespan) {  // where the ways take no time
+    const double begin = std::max(ready_, timeline_.stop(robot, at).leave);
+    if (begin + std::max(tail_, work + timeline_.stop(robot, at + 1).tail) - peak_ >= best_.score) return;
+  }
   const int unit = problem_.unit(task);
   const Offer there = offer(robot, task, at, work);
   const double begin = timeline_.open(unit, std::max(ready_, there.arrive));

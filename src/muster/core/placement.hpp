@@ -66,8 +66,8 @@ class Placement {
   Rows teams_;
   std::vector<double> cuts_, keys_, works_;
   std::vector<int> candidates_, at_, free_;
-  std::vector<Offer> offers_;   // tasks of the unit x candidates
-  std::vector<Offer> team_;     // chosen, parallel to `members_`
+  std::vector<Offer> offers_;       // tasks of the unit x candidates
+  std::vector<const Offer*> team_;  // chosen, parallel to `members_`
   std::vector<Member> members_;
   std::vector<char> busy_;
 };

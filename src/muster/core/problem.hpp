@@ -111,7 +111,9 @@ class Problem {
     return data_.available_until.empty() ? kInfinity : data_.available_until[robot];
   }
   // Of a task's prerequisite number k: the least and the most time between its end and the task's begin.
-  double after(int task, int k) const { return data_.after.empty() ? 0.0 : data_.after[data_.prerequisites.first[task] + k]; }
+  double after(int task, int k) const {
+    return data_.after.empty() ? 0.0 : data_.after[data_.prerequisites.first[task] + k];
+  }
   double within(int task, int k) const {
     return data_.within.empty() ? kInfinity : data_.within[data_.prerequisites.first[task] + k];
   }
@@ -140,9 +142,12 @@ class Problem {
     if (data_.parts.empty()) return {};
     return data_.parts[task];
   }
-  int abilities() const { return data_.needs.empty() || tasks_ == 0 ? 0 : static_cast<int>(data_.needs.size()) / tasks_; }
+  int abilities() const {
+    return data_.needs.empty() || tasks_ == 0 ? 0 : static_cast<int>(data_.needs.size()) / tasks_;
+  }
   std::span<const double> ability(int robot) const {
-    return {data_.abilities.data() + static_cast<std::size_t>(robot) * abilities(), static_cast<std::size_t>(abilities())};
+    return {data_.abilities.data() + static_cast<std::size_t>(robot) * abilities(),
+            static_cast<std::size_t>(abilities())};
   }
   std::span<const double> needs(int task) const {
     return {data_.needs.data() + static_cast<std::size_t>(task) * abilities(), static_cast<std::size_t>(abilities())};

@@ -91,7 +91,8 @@ bool Roster::settle() {
 }
 
 bool Roster::admissible() {
-  return std::ranges::all_of(saved_, [&](const Saved& saved) { return problem_.fits(saved.robot, usage_[saved.robot]); });
+  return std::ranges::all_of(saved_,
+                             [&](const Saved& saved) { return problem_.fits(saved.robot, usage_[saved.robot]); });
 }
 
 // --- Figures ---------------------------------------------------------------------------------------------------------

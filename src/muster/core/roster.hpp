@@ -22,12 +22,12 @@ struct Insertion {
 
 // Where `best_insertion` looks.
 struct Trial {
-  bool append_only = false;               // at the ends of routes alone
-  int most_places = 0;                    // beyond so many only places beside near tasks; 0: at every place
-  double blink = 0.0;                     // how often a place is overlooked
-  Random* random = nullptr;               // for that
+  bool append_only = false;                      // at the ends of routes alone
+  int most_places = 0;                           // beyond so many only places beside near tasks; 0: at every place
+  double blink = 0.0;                            // how often a place is overlooked
+  Random* random = nullptr;                      // for that
   const class Neighbours* neighbours = nullptr;  // for `most_places`
-  const std::vector<char>* robots = nullptr;  // by robot, whether it may be a member; none: all
+  const std::vector<char>* robots = nullptr;     // by robot, whether it may be a member; none: all
 };
 
 struct StopTimes {

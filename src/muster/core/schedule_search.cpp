@@ -9,11 +9,11 @@ namespace muster {
 
 namespace {
 
-constexpr double kTie = 1e-2;     // weight of the robots' own routes where the objective does not see them
-constexpr int kAdjacent = 100;    // tasks that a ruin may spread to
+constexpr double kTie = 1e-2;   // weight of the robots' own routes where the objective does not see them
+constexpr int kAdjacent = 100;  // tasks that a ruin may spread to
 constexpr int kNearRobots = 4;
-constexpr int kRetried = 20;      // units left out that a step tries again
-constexpr int kMostPlaces = 64;   // beyond twice as many a unit is tried beside near tasks alone
+constexpr int kRetried = 20;     // units left out that a step tries again
+constexpr int kMostPlaces = 64;  // beyond twice as many a unit is tried beside near tasks alone
 
 // More than leaving out a unit of weight 1 can ever save.
 double penalty_of(const Problem& problem) {

@@ -1,5 +1,5 @@
-// Ruin and recreate under simulated annealing, as in `Search`, for problems in which tasks are bound to times, teams and
-// relations [christiaens2020].
+// Ruin and recreate under simulated annealing, as in `Search`, for problems in which tasks are bound to times, teams
+// and relations [christiaens2020].
 #pragma once
 
 #include <vector>
@@ -51,9 +51,9 @@ class ScheduleSearch {
   Neighbours neighbours_;
   Roster roster_;
   Trial trial_;
-  bool sees_end_;   // whether the objective is when the mission ends
+  bool sees_end_;               // whether the objective is when the mission ends
   double at_once_share_ = 0.3;  // of ruins that take out what begins at about the same time
-  double penalty_;  // of a unit of weight left out
+  double penalty_;              // of a unit of weight left out
   double current_ = 0.0;
   Routes best_;
   Value best_value_;

@@ -1,6 +1,7 @@
 #include "team_choice.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -57,15 +58,14 @@ void TeamChoice::number_abilities() {
 void TeamChoice::teams(int task, std::span<const int> robots, std::span<const double> keys, Rows& found) {
   found.values.clear();
   found.first.assign(1, 0);
-  order_.clear();
+  ranks_.clear();
   for (std::size_t k = 0; k < robots.size(); ++k) {
-    if (keys[k] < kInfinity) order_.push_back(static_cast<int>(k));
+    if (keys[k] < kInfinity) ranks_.emplace_back(keys[k], static_cast<int>(k));
   }
-  std::ranges::sort(order_, [&](int a, int b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
   if (has_parts(task)) {
     by_parts(task, robots, found);
   } else if (!has_needs(task)) {
-    if (!order_.empty()) append(found, {order_.data(), 1});
+    if (!ranks_.empty()) append(found, std::array{std::ranges::min(ranks_).second});
   } else if (covers(task).size() > 0) {
     by_covers(task, robots, found);
   } else {
@@ -86,16 +86,26 @@ bool TeamChoice::complete(int task, std::span<const int> robots) {
 // The robots that can fill parts together are the independent sets of a matroid, so that the cheapest first is right.
 void TeamChoice::by_parts(int task, std::span<const int> robots, Rows& found) {
   const auto parts = problem_.parts(task);
+  if (parts.size() == 1) return by_one_part(parts.front(), robots, found);
+  std::ranges::sort(ranks_);
   seats_.clear();  // the part of each seat
   for (std::size_t p = 0; p < parts.size(); ++p) seats_.insert(seats_.end(), parts[p].count, static_cast<int>(p));
   seat_of_.assign(seats_.size(), -1);
   taken_.clear();
-  for (const int index : order_) {
+  for (const auto& [key, index] : ranks_) {
     if (taken_.size() == seats_.size()) break;
     seen_.assign(seats_.size(), 0);
     if (give(task, robots, index)) taken_.push_back(index);
   }
   if (taken_.size() == seats_.size()) append(found, taken_);
+}
+
+void TeamChoice::by_one_part(const TeamPart& part, std::span<const int> robots, Rows& found) {
+  std::erase_if(ranks_, [&](const auto& rank) { return !part.allowed[problem_.kind(robots[rank.second])]; });
+  if (static_cast<int>(ranks_.size()) < part.count) return;
+  std::ranges::nth_element(ranks_, ranks_.begin() + (part.count - 1));
+  for (int k = 0; k < part.count; ++k) found.values.push_back(ranks_[k].second);
+  found.first.push_back(part.count);
 }
 
 // Finds a seat, by an augmenting path.
@@ -114,7 +124,8 @@ bool TeamChoice::give(int task, std::span<const int> robots, int index) {
 
 void TeamChoice::by_covers(int task, std::span<const int> robots, Rows& found) {
   for (auto& ranked : ranked_) ranked.clear();
-  for (const int index : order_) ranked_[ability_class_[robots[index]]].push_back(index);
+  for (const auto& rank : ranks_) ranked_[ability_class_[robots[rank.second]]].push_back(rank);
+  for (auto& ranked : ranked_) std::ranges::sort(ranked);
   const Rows& all = covers(task);
   for (int k = 0; k < all.size(); ++k) {
     taken_.clear();
@@ -124,7 +135,7 @@ void TeamChoice::by_covers(int task, std::span<const int> robots, Rows& found) {
       rank = kind == last ? rank + 1 : 0;
       last = kind;
       if (rank >= ranked_[kind].size()) break;
-      taken_.push_back(ranked_[kind][rank]);
+      taken_.push_back(ranked_[kind][rank].second);
     }
     if (taken_.size() == all[k].size()) append(found, taken_);
   }
@@ -134,8 +145,9 @@ void TeamChoice::by_covers(int task, std::span<const int> robots, Rows& found) {
 void TeamChoice::by_greedy_cover(int task, std::span<const int> robots, Rows& found) {
   const auto needs = problem_.needs(task);
   std::vector<double> missing(needs.begin(), needs.end());
+  std::ranges::sort(ranks_);
   taken_.clear();
-  for (const int index : order_) {
+  for (const auto& [key, index] : ranks_) {
     if (covered(missing)) break;
     const auto abilities = problem_.ability(robots[index]);
     bool helps = false;

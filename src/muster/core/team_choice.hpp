@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "problem.hpp"
@@ -26,6 +27,7 @@ class TeamChoice {
   bool has_needs(int task) const;
   void number_abilities();
   void by_parts(int task, std::span<const int> robots, Rows& found);
+  void by_one_part(const TeamPart& part, std::span<const int> robots, Rows& found);
   bool give(int task, std::span<const int> robots, int index);
   void by_covers(int task, std::span<const int> robots, Rows& found);
   void by_greedy_cover(int task, std::span<const int> robots, Rows& found);
@@ -38,10 +40,11 @@ class TeamChoice {
   std::vector<int> ability_class_;  // by robot: equal for robots of equal abilities
   std::vector<int> class_robot_;    // one robot of each class
   std::vector<int> class_size_;
-  std::vector<char> known_;  // by task, whether its covers are
-  std::vector<Rows> covers_;  // by task: minimal covers, each as classes in order; empty: too many
-  std::vector<int> order_, seat_of_, seats_, taken_;
-  std::vector<std::vector<int>> ranked_;
+  std::vector<char> known_;                    // by task, whether its covers are
+  std::vector<Rows> covers_;                   // by task: minimal covers, each as classes in order; empty: too many
+  std::vector<std::pair<double, int>> ranks_;  // key and index of the robots that can take part
+  std::vector<int> seat_of_, seats_, taken_;
+  std::vector<std::vector<std::pair<double, int>>> ranked_;  // by class
   std::vector<char> seen_;
   int budget_ = 0;
 };

@@ -9,7 +9,8 @@ namespace muster {
 
 namespace {
 
-constexpr int kKeys = 3;  // ways to rank robots
+constexpr int kKeys = 3;           // ways to rank robots
+constexpr double kFirstKey = 0.5;  // how often an algorithm with random numbers takes the first at a cut
 
 }  // namespace
 
@@ -93,7 +94,11 @@ void Placement::make_offers(int unit, std::size_t candidate) {
 }
 
 void Placement::try_cut(int unit) {
-  for (int key = 0; key < kKeys; ++key) try_key(unit, key);
+  if (!trial_->random) {
+    for (int key = 0; key < kKeys; ++key) try_key(unit, key);
+  } else {
+    try_key(unit, trial_->random->uniform() < kFirstKey ? 0 : 1 + trial_->random->below(kKeys - 1));
+  }
 }
 
 // Robots are ranked by what they cost the objective, by when they come, or by how long the mission takes through them.
@@ -128,7 +133,7 @@ void Placement::try_key(int unit, int key) {
         team_.clear();
         for (const int c : teams_[t]) {
           members_.push_back({tasks[k], candidates_[c], at_[c]});
-          team_.push_back(offers[c]);
+          team_.push_back(&offers[c]);
         }
         judge(unit);
         continue;
@@ -144,7 +149,7 @@ void Placement::try_key(int unit, int key) {
     if (cheapest < 0) break;
     for (const int c : teams_[cheapest]) {
       members_.push_back({tasks[k], candidates_[c], at_[c]});
-      team_.push_back(offers[c]);
+      team_.push_back(&offers[c]);
       busy_[candidates_[c]] = 1;
     }
     if (k + 1 == tasks.size()) judge(unit);
@@ -157,11 +162,13 @@ void Placement::judge(int unit) {
   const auto tasks = problem_.tasks_of_unit(unit);
   works_.assign(tasks.size(), 0.0);
   double begin = ready_;
-  const auto number = [&](int task) { return static_cast<std::size_t>(std::ranges::find(tasks, task) - tasks.begin()); };
+  const auto number = [&](int task) {
+    return static_cast<std::size_t>(std::ranges::find(tasks, task) - tasks.begin());
+  };
   for (std::size_t m = 0; m < members_.size(); ++m) {
     double& work = works_[number(members_[m].task)];
-    work = std::max(work, team_[m].work);
-    begin = std::max(begin, team_[m].arrive);
+    work = std::max(work, team_[m]->work);
+    begin = std::max(begin, team_[m]->arrive);
   }
   begin = timeline_.open(unit, begin);
   if (!timeline_.in_time(begin, timeline_.latest_for(unit, works_))) return;
@@ -170,16 +177,16 @@ void Placement::judge(int unit) {
   const bool looks_late = problem_.objective() == Objective::lateness;
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const double work = works_[number(members_[m].task)];
-    if (!timeline_.in_time(begin + work, team_[m].latest)) return;
-    if (problem_.usage_is_time() && work > team_[m].work) {
-      Offer slower = team_[m];
+    if (!timeline_.in_time(begin + work, team_[m]->latest)) return;
+    if (problem_.usage_is_time() && work > team_[m]->work) {
+      Offer slower = *team_[m];
       slower.growth += work - slower.work;
       if (!problem_.fits(slower.robot, slower.usage + slower.growth)) return;
       score.add(slower, begin, work);
     } else {
-      score.add(team_[m], begin, work);
+      score.add(*team_[m], begin, work);
     }
-    if (looks_late) late += delays(team_[m], begin + work);
+    if (looks_late) late += delays(*team_[m], begin + work);
   }
   if (looks_late) {
     for (std::size_t k = 0; k < tasks.size(); ++k) late += lateness(tasks[k], begin + works_[k]);

@@ -1,10 +1,10 @@
 #include "timeline.hpp"
 
 #include <algorithm>
-#include <tuple>
-#include <utility>
 #include <cmath>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace muster {
 
@@ -50,7 +50,8 @@ void Timeline::build_arcs() {
   for (int task = 0; task < problem_.tasks(); ++task) {
     const auto prerequisites = problem_.prerequisites(task);
     for (std::size_t k = 0; k < prerequisites.size(); ++k) {
-      const double after = problem_.after(task, static_cast<int>(k)), within = problem_.within(task, static_cast<int>(k));
+      const double after = problem_.after(task, static_cast<int>(k)),
+                   within = problem_.within(task, static_cast<int>(k));
       before_[task].push_back({prerequisites[k], after, within});
       behind_[prerequisites[k]].push_back({task, after, within});
       has_within_ |= std::isfinite(within);
@@ -102,7 +103,8 @@ double Timeline::latest_for(int unit, std::span<const double> work) const {
     const int task = tasks[k];
     double bound = problem_.deadline(task) - work[k];
     for (const Arc& arc : behind_[task]) {
-      if (present(problem_.unit(arc.task))) bound = std::min(bound, latest_of(problem_.unit(arc.task)) - arc.after - work[k]);
+      if (present(problem_.unit(arc.task)))
+        bound = std::min(bound, latest_of(problem_.unit(arc.task)) - arc.after - work[k]);
     }
     for (const Arc& arc : before_[task]) {
       const int other = problem_.unit(arc.task);

@@ -77,7 +77,9 @@ class Timeline {
   double tail_after(int unit, std::span<const double> work) const;
   // The first time from `earliest` on that the windows of all its tasks allow.
   double open(int unit, double earliest) const;
-  bool in_time(double begin, double latest) const { return begin <= latest + kRounding * (latest < 1.0 ? 1.0 : latest); }
+  bool in_time(double begin, double latest) const {
+    return begin <= latest + kRounding * (latest < 1.0 ? 1.0 : latest);
+  }
 
   // Both leave times as they were until `settle`. A unit goes in at a label between those of its neighbours in every
   // route, and within `labels_for`.

@@ -185,7 +185,8 @@ void Timeline::backward() {
 // rise from nothing, and latest begins fall from the end of time.
 bool Timeline::settle_cycles() {
   drop_queues();
-  const auto present_units = static_cast<int>(std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); }));
+  const auto present_units =
+      static_cast<int>(std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); }));
   budget_ = 1000 + 64 * present_units;
   for (std::size_t unit = 0; unit < nodes_.size(); ++unit) {
     if (nodes_[unit].visits.empty()) continue;
