@@ -15,7 +15,7 @@ from datetime import datetime, time, timedelta
 from typing import Any, ClassVar
 
 from muster.mission.raw_records import robots_in, tasks_in
-from muster.mission.time_types import Moment, Windows, is_pair, moment_in, pair_or_pairs
+from muster.mission.time_types import Windows, is_pair, moment_in, pair_or_pairs
 from muster.mission.value_types import INVALID, Fault, JsonSchema, Path, refuse, shown
 
 _CLOCK = re.compile(r"([01]?\d|2[0-3]):[0-5]\d(:[0-5]\d(\.\d+)?)?")
@@ -39,7 +39,7 @@ class ClockTime:
 
 @dataclass(frozen=True)
 class ClockPairs:
-    """`["10:00", "14:00"]`, or with `several` a list of such pairs too; the second null where it has no end."""
+    """`["10:00", "14:00"]`, or with `several` a list of such pairs too; null where an end is open."""
 
     several: bool
     filler: ClassVar[None] = None
@@ -47,7 +47,7 @@ class ClockPairs:
     @property
     def expected(self) -> str:
         lists = ", or a list of such pairs" if self.several else ""
-        return f'["10:00", "14:00"]{lists}, each {_A_TIME}; the second null where it is open'
+        return f'["10:00", "14:00"]{lists}, each {_A_TIME}; null where an end is open'
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         pairs = self.pairs(value)
@@ -72,7 +72,7 @@ def _is_time(value: object) -> bool:
 def _is_pair_of_times(pair: object) -> bool:
     if isinstance(pair, str) or not isinstance(pair, Sequence) or len(pair) != 2:
         return False
-    return _is_time(pair[0]) and (pair[1] is None or _is_time(pair[1]))
+    return all(end is None or _is_time(end) for end in pair)
 
 
 WINDOW = ("window", ClockPairs(several=True), "in place of window_s: clock times, beside starts_at")
@@ -116,7 +116,7 @@ class _Clock:
     def __init__(self, data: object, faults: list[Fault]) -> None:
         given = data.get("starts_at") if isinstance(data, Mapping) else None
         self._given = given is not None
-        self._start: Any = INVALID if given is None else Moment().read(given, (), [])
+        self._start: Any = moment_in(given)
         self._faults = faults
 
     def seconds(self, kind: ClockTime | ClockPairs, value: object, at: Path) -> Any:
@@ -133,7 +133,7 @@ class _Clock:
         return INVALID if INVALID in pairs else self._ordered(pairs, value, at)
 
     def _pair(self, pair: Sequence[str | None], value: object, at: Path) -> Any:
-        begins = self._moment(str(pair[0]), self._start)
+        begins = self._start if pair[0] is None else self._moment(pair[0], self._start)
         if begins is None:
             return self._refuse_zone(value, at)
         if pair[1] is None:

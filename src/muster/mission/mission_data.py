@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from datetime import datetime
 
 from muster.mission.events import Event
 from muster.mission.records import Checked, Record, record, spec
@@ -26,9 +25,7 @@ class MissionData(Checked):
     schema: str = spec(Choice((SCHEMA,)), "the version of this format", default=SCHEMA)
     name: str = spec(Text(), "what it is called", default="mission")
     origin_wgs84: Origin | None = spec(Record(Origin, "an origin"), "where the map frame's origin is", default=None)
-    starts_at: datetime | None = spec(
-        Moment(), "date and time of its start; then window, deadline, due and shift may be clock times", default=None
-    )
+    starts_at: str | None = spec(Moment(), "date and time at which it begins, for clock times", default=None)
     rules: Rules = spec(Record(Rules, "rules"), "what counts, and how", default=Rules())
     map: Map | None = spec(Record(Map, "a map"), "walls and zones", default=None)
     travel: Mapping[str, str] | None = spec(

@@ -5,36 +5,18 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 
 
-def makespan(ends_s: Collection[float], returns_s: Collection[float] = ()) -> float:
-    """When the last task ends, seconds; 0 without tasks.
-
-    Parameters
-    ----------
-    returns_s
-        when each robot that does tasks is at its end, with `rules.makespan_includes_return`; else the ways of robots to
-        their ends do not count.
-    """
-    return max((*ends_s, *returns_s), default=0.0)
+def makespan(ends_s: Collection[float]) -> float:
+    """When the last task ends, seconds; 0 without tasks. The ways to the robots' ends count where given."""
+    return max(ends_s, default=0.0)
 
 
-def lateness(work: Iterable[tuple[float, float, float | None]]) -> float:
-    """The sum over tasks done of priority x seconds after the due time.
-
-    Parameters
-    ----------
-    work
-        for each task done its priority, its end in seconds, and its due time, None where it has none.
-    """
-    return sum((priority * max(0.0, end_s - due_s) for priority, end_s, due_s in work if due_s is not None), start=0.0)
+def lateness(done: Iterable[tuple[float, float, float | None]]) -> float:
+    """The sum over tasks done of priority times seconds after the due time; `done` holds priority, end, due time."""
+    return sum(priority * max(0.0, end - due) for priority, end, due in done if due is not None)
 
 
 def objective_values(
-    usages: Collection[float],
-    arrivals: Collection[float],
-    ends_s: Collection[float],
-    *,
-    lateness_s: float = 0.0,
-    returns_s: Collection[float] = (),
+    usages: Collection[float], arrivals: Collection[float], ends_s: Collection[float], late: float = 0.0
 ) -> dict[str, float]:
     """The value of each objective.
 
@@ -45,11 +27,9 @@ def objective_values(
     arrivals
         for each task done the usage of its robot when it arrived at it.
     ends_s
-        when each task done ended, seconds.
-    lateness_s
-        as `lateness` sums it up. Of two plans as late as each other the one of less total cost is the better one.
-    returns_s
-        as in `makespan`.
+        when each task done ended, seconds; with `rules.makespan_includes_return` when each robot was at its end too.
+    late
+        the `lateness` of the tasks done.
     """
     total, most = sum(usages), max(usages, default=0.0)
     return {
@@ -57,6 +37,6 @@ def objective_values(
         "max": most,
         "total+max": total + most,
         "average": sum(arrivals) / len(arrivals) if arrivals else 0.0,
-        "makespan": makespan(ends_s, returns_s),
-        "lateness": lateness_s,
+        "makespan": makespan(ends_s),
+        "lateness": late,
     }

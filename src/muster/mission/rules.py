@@ -22,10 +22,8 @@ class Rules(Checked):
         default=None,
     )
     capacity_reserve: float = spec(Number(minimum=0, below=1), "share of the work capacity kept free", default=0.0)
-    timing: str = spec(
-        Choice(("profile", "constant")),
-        "how long travel takes: by motion profiles where robots state accelerations, or at constant speed",
-        default="profile",
-    )
-    makespan_includes_return: bool = spec(Flag(), "makespan counts the robots' ways to their ends too", default=False)
     stability: int | None = spec(Whole(), "tasks that may change robot per event", default=None)
+    timing: str = spec(
+        Choice(("profile", "constant")), "travel times: of the motion profile, or by the speed alone", default="profile"
+    )
+    makespan_includes_return: bool = spec(Flag(), "the makespan counts the ways of robots to their ends", default=False)

@@ -148,6 +148,10 @@ class Work(Checked):
         """Whether more robots than one may have to do it."""
         return (self.robots_needed or 1) > 1 or bool(self.team) or bool(self.needs)
 
+    def lag(self, prerequisite: str) -> Lag:
+        """How long after the end of a prerequisite work begins."""
+        return self.lags.get(prerequisite, Lag())
+
     def waiting_for(self, prerequisites: Iterable[str]) -> Self:
         """The same work with only those prerequisites, and their lags."""
         kept = tuple(prerequisites)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -24,13 +24,8 @@ class Moment:
     expected: ClassVar[str] = "a date and a time, as 2027-03-01T08:00:00+01:00"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        if isinstance(value, datetime):
-            return value
-        moment = moment_in(value)
-        return refuse(self, value, at, faults) if moment is None else moment
-
-    def file_form(self, value: datetime) -> str:
-        return value.isoformat()
+        text = value.isoformat() if isinstance(value, datetime) else value
+        return refuse(self, value, at, faults) if moment_in(text) is None else text
 
     def schema(self) -> JsonSchema:
         return {"type": "string", "minLength": len("2027-03-01T08")}
@@ -48,13 +43,13 @@ def moment_in(value: object) -> datetime | None:
 
 @dataclass(frozen=True)
 class Windows:
-    """`[from, until]`, or a list of such pairs: until null where it has no end.
+    """`[from, until]`, or a list of such pairs; null where an end is open.
 
     The order of the pairs does not matter; windows that overlap are refused, as one of them is a mistake.
     """
 
     filler: ClassVar[tuple[Window, ...]] = ()
-    expected: ClassVar[str] = "[from, until] in seconds, or a list of such pairs; until null where it is open"
+    expected: ClassVar[str] = "[from, until] in seconds, or a list of such pairs; null where an end is open"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, str) or not isinstance(value, Sequence):
@@ -76,7 +71,7 @@ class Windows:
     def _window(self, pair: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(pair, str) or not isinstance(pair, Sequence) or len(pair) != 2:
             return refuse(self, pair, at, faults)
-        opens = _SECONDS.read(pair[0], (*at, 0), faults)
+        opens = 0.0 if pair[0] is None else _SECONDS.read(pair[0], (*at, 0), faults)
         closes = None if pair[1] is None else _SECONDS.read(pair[1], (*at, 1), faults)
         if opens is INVALID or closes is INVALID:
             return INVALID
@@ -93,16 +88,24 @@ class Windows:
         return pair_or_pairs({"type": "number", "minimum": 0})
 
 
+def clock_text(seconds: float, starts_at: str) -> str:
+    """The clock time so many seconds after the start, `10:00:30`; of later days `+1 10:00:30`."""
+    start = datetime.fromisoformat(starts_at)
+    moment = start + timedelta(seconds=round(seconds))
+    days = (moment.date() - start.date()).days
+    return (f"+{days} " if days else "") + moment.strftime("%H:%M:%S")
+
+
 def is_pair(value: Sequence[object]) -> bool:
     """Whether a list is one window, and not a list of windows."""
     return len(value) == 2 and not any(isinstance(item, list | tuple) for item in value)
 
 
 def pair_or_pairs(end: JsonSchema) -> JsonSchema:
-    """JSON Schema of a pair of such values, the second of which may be null, or a list of such pairs."""
+    """JSON Schema of a pair of such values, each of which may be null, or a list of such pairs."""
     pair: JsonSchema = {
         "type": "array",
-        "prefixItems": [end, {"anyOf": [end, {"type": "null"}]}],
+        "items": {"anyOf": [end, {"type": "null"}]},
         "minItems": 2,
         "maxItems": 2,
     }
