@@ -29,6 +29,7 @@ from muster.motion.actions import duration_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
+    from muster.allocation.timed_rules import TimedRules
     from muster.motion.robot_paths import RobotPaths
 
 Floats = npt.NDArray[np.float64]
@@ -162,6 +163,13 @@ class Problem:
         if not self.holds("prerequisite"):
             return [[] for _ in self.tasks]
         return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
+
+    @cached_property
+    def timed_rules(self) -> TimedRules:
+        """The rules of time, teams and relations that hold."""
+        from muster.allocation.timed_rules import TimedRules
+
+        return TimedRules(self)
 
     @cached_property
     def dependants(self) -> list[list[int]]:
