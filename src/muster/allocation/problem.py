@@ -18,6 +18,7 @@ from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
 from muster.allocation.task_geometry import TaskGeometry
+from muster.allocation.timed_rules import TimedRules
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -162,6 +163,11 @@ class Problem:
         if not self.holds("prerequisite"):
             return [[] for _ in self.tasks]
         return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
+
+    @cached_property
+    def timed_rules(self) -> TimedRules:
+        """The rules of time, teams and relations that hold."""
+        return TimedRules(self)
 
     @cached_property
     def dependants(self) -> list[list[int]]:

@@ -141,7 +141,9 @@ class Beginning:
             if next_begin([task], max(now, earliest)) > latest + TIME_ROUNDING_S:
                 ended = _seconds(self.ledger.ends_s[before])
                 within = _seconds(latest - self.ledger.ends_s[before])
-                yield Missed("prerequisite", f"prerequisite: not begun within {within} after {before}, ended at {ended}")
+                yield Missed(
+                    "prerequisite", f"prerequisite: not begun within {within} after {before}, ended at {ended}"
+                )
 
 
 def next_begin(tasks: Sequence[Task], now: float) -> float:

@@ -205,7 +205,12 @@ def new_robot_state(
     home = robot.place_at_end(mission.rules)
     in_time = mission.rules.usage == "time"
     return RobotState(
-        robot_as_it_holds(robot, ignored), ports[robot.id], None if home is None else place(home), in_time, last_heard_s=now, since_s=now
+        robot_as_it_holds(robot, ignored),
+        ports[robot.id],
+        None if home is None else place(home),
+        in_time,
+        last_heard_s=now,
+        since_s=now,
     )
 
 

@@ -164,7 +164,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
         elif robots is not None and not robots:
             hopeless[task.id] = why
         else:
-            hopeful[task.id] = replace(task, prerequisites=_open_prerequisites(rest, task), only_robots=robots)
+            hopeful[task.id] = replace(task.waiting_for(_open_prerequisites(rest, task)), only_robots=robots)
     _drop_units_without_hope(rest, hopeful, hopeless)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
     waiting = dict(hopeful)
@@ -196,15 +196,14 @@ def _drop_units_without_hope(rest: RemainingMission, hopeful: dict[str, Task], h
 
 
 def _related_to(task: Task, there: Collection[str]) -> Task:
-    """A task with those relations and lags that concern tasks of the problem."""
-    if not (task.same_robot_as or task.other_robot_than or task.starts_with or task.lags):
+    """A task with those relations that concern tasks of the problem."""
+    if not (task.same_robot_as or task.other_robot_than or task.starts_with):
         return task
     return replace(
         task,
         same_robot_as=tuple(name for name in task.same_robot_as if name in there),
         other_robot_than=tuple(name for name in task.other_robot_than if name in there),
         starts_with=tuple(name for name in task.starts_with if name in there),
-        lags={name: lag for name, lag in task.lags.items() if name in task.prerequisites},
     )
 
 

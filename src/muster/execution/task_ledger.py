@@ -13,7 +13,7 @@ from muster.mission.model import Point, Robot, Task
 
 @dataclass(frozen=True)
 class MissedTask:
-    """A task that was not begun in time: when that was noticed, why, and when it may begin all the same, None: never."""
+    """A task that was not begun in time: noticed when, and why; `next_s` is when it may begin all the same, or None."""
 
     task: str
     at_s: float
@@ -85,7 +85,9 @@ class Ledger:
     def within_dependants(self, unit: Collection[str]) -> list[str]:
         """Tasks not done that must begin within some time after one of these."""
         return [
-            task.id for task in self.open if any(task.lags[name].within_s is not None for name in unit if name in task.lags)
+            task.id
+            for task in self.open
+            if any(task.lags[name].within_s is not None for name in unit if name in task.lags)
         ]
 
     def has_within(self, task: str) -> bool:
