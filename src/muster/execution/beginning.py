@@ -10,12 +10,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger
+from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.teams import lacking
 from muster.mission.model import Task
-
-TIME_ROUNDING_S = 1e-6
-"""By which a time may be past a limit: clocks add up steps."""
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from muster.execution.beginning import TIME_ROUNDING_S, Beginning, next_begin
+from muster.execution.beginning import Beginning, next_begin
 from muster.execution.changes import Change
 from muster.execution.monitor import exceeds
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger
-from muster.execution.team_work import break_off
+from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, Work, path_length, work_of
+from muster.execution.team_work import break_off
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 
@@ -207,7 +207,7 @@ class Dispatch:
             self._emit("waits", {"robot": state.robot.id, "task": task, "cause": cause, "words": words})
 
     def _too_late(self, state: RobotState, task: str, begin_s: float) -> str:
-        """Why a robot cannot do a task that it begins at a time, by the task's deadline or its own shift; else empty."""
+        """Why a robot that is at a task at a time cannot do it, by window, deadline or shift; else empty."""
         what = self._ledger.tasks[task]
         begin_s, arrive_s = next_begin([what], begin_s), begin_s
         if begin_s == math.inf:

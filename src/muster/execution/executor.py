@@ -25,7 +25,7 @@ from muster.execution.report import Account
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
 from muster.execution.supervision import Supervisor
-from muster.execution.task_ledger import Ledger
+from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
 from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
@@ -337,7 +337,26 @@ class Executor:
             mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
             reallocations=len(self.revisions),
             charges={name: state.charge for name, state in self.crew.items() if state.charge is not None},
+            shifts_exceeded_s=self._shifts_exceeded(),
+            back_s=tuple(self._back_s()) if self.mission.rules.makespan_includes_return else (),
         )
+
+    def _shifts_exceeded(self) -> dict[str, float]:
+        """By how much robots were under way after their shifts."""
+        back = {
+            state.robot.id: state.begun_s if state.activity is Activity.IDLE else self.now_s for state in self._worked
+        }
+        until = {state.robot.id: state.robot.available_until_s for state in self._worked}
+        over = {name: back[name] - limit for name, limit in until.items() if limit is not None}
+        return {name: seconds for name, seconds in over.items() if seconds > TIME_ROUNDING_S}
+
+    def _back_s(self) -> Iterable[float]:
+        return (state.begun_s for state in self._worked if state.activity is Activity.IDLE)
+
+    @property
+    def _worked(self) -> list[RobotState]:
+        """Robots that take part and have done something, or are at it."""
+        return [state for state in self._present if state.done or state.activity is not Activity.IDLE]
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""

@@ -46,7 +46,7 @@ class Forecast:
         return times.begins if times.settle() else None
 
     def hold_until_s(self, task: str, now: float) -> float:
-        """When a task should begin so that its dependants can begin in time after it: `now` if nothing speaks for later."""
+        """When a task should begin so that its dependants can begin in time after it; `now` if it need not wait."""
         if not self.ledger.has_within(task):
             return now
         found = (self.begins(now, margin) for margin in (_MARGIN, 0.0))
@@ -96,7 +96,7 @@ class _Times:
             if state.activity is Activity.WORKING:
                 self._ends.setdefault(state.route[0], self.now + state.work_left_s(self.now))
         names = list(dict.fromkeys(name for route in self._ahead.values() for name in route))
-        self.begins = {name: self.now for name in names}
+        self.begins = dict.fromkeys(names, self.now)
         self._arrives = dict(self.begins)
         self._lasts = {
             name: max(self.of.lasts_s(state, name) for state in present if name in self._ahead[state.robot.id])

@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from muster.execution.beginning import TIME_ROUNDING_S, Beginning, Missed, next_begin
+from muster.execution.beginning import Beginning, Missed, next_begin
 from muster.execution.changes import Change
 from muster.execution.forecast import Forecast
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger, MissedTask
+from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger, MissedTask
 
 _CHANGES = {"window": "window_missed", "deadline": "deadline_missed", "prerequisite": "within_missed"}
 

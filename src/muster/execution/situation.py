@@ -7,8 +7,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from muster.allocation.charges import Charge
-from muster.execution.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.relations import binding_of, narrowed
+from muster.execution.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger, task_as_it_holds
 from muster.execution.travel import Spot

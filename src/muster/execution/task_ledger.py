@@ -10,6 +10,9 @@ from typing import Any
 from muster.execution.teams import units_of
 from muster.mission.model import Point, Robot, Task
 
+TIME_ROUNDING_S = 1e-6
+"""By which a time may be past a limit: clocks add up steps."""
+
 
 @dataclass(frozen=True)
 class MissedTask:
@@ -163,6 +166,18 @@ class Ledger:
         by_cause = self.waits_s.setdefault(task, {})
         by_cause[cause] = by_cause.get(cause, 0.0) + seconds
 
+    def late_s(self, task: str) -> float:
+        """By how much a task done ended after its due time."""
+        return _over(self.ends_s[task], self.tasks[task].due_s)
+
+    def overdue_s(self, task: str) -> float:
+        """By how much a task done ended after its deadline."""
+        return _over(self.ends_s[task], self.tasks[task].deadline_s)
+
+    def begun_too_late_s(self, task: str) -> float:
+        """By how much a task done began too long after a prerequisite."""
+        return max((_over(self.starts_s[task], latest) for _, latest in self.lag_limits(task).values()), default=0.0)
+
     def members(self, task: str) -> tuple[str, ...]:
         """The robots that do a task that has begun, or did it."""
         return self.teams.get(task, (self.done_by[task],) if task in self.done_by else ())
@@ -199,6 +214,12 @@ class Ledger:
     def withdraw(self, task: str, now: float) -> None:
         self.cancelled[task] = now
         self.give_up(task)
+
+
+def _over(time_s: float, limit_s: float | None) -> float:
+    """By how much a time is past a limit, more than by rounding."""
+    over = 0.0 if limit_s is None else time_s - limit_s
+    return over if over > TIME_ROUNDING_S else 0.0
 
 
 def task_as_it_holds(task: Task, ignored: Collection[str]) -> Task:
