@@ -18,6 +18,7 @@ from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
 from muster.allocation.task_geometry import TaskGeometry
+from muster.allocation.timed_arrays import timed_arrays
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -29,6 +30,7 @@ from muster.motion.actions import duration_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
+    from muster.allocation.timed_rules import TimedRules
     from muster.motion.robot_paths import RobotPaths
 
 Floats = npt.NDArray[np.float64]
@@ -164,6 +166,13 @@ class Problem:
         return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
 
     @cached_property
+    def timed_rules(self) -> TimedRules:
+        """The rules of time, teams and relations that hold."""
+        from muster.allocation.timed_rules import TimedRules
+
+        return TimedRules(self)
+
+    @cached_property
     def dependants(self) -> list[list[int]]:
         """For each task the indices of the tasks that wait for it."""
         waiting: list[list[int]] = [[] for _ in self.tasks]
@@ -234,6 +243,7 @@ class Problem:
     @cached_property
     def _kind_keys(self) -> list[tuple[object, ...]]:
         columns = [kinds for rule in RULES if (kinds := rule.kinds(self)) is not None]
+        columns.append([self.timed_rules.in_team(i) for i in range(len(self.robots))])
         return list(zip(*columns, strict=True))
 
     def _allowed_row(self, i: int) -> Bools:
@@ -272,6 +282,7 @@ class Problem:
             exit=self._exits[0],
             table=measured.table,
             travel_class=measured.classes,
+            **timed_arrays(self),
         )
 
     @cached_property
