@@ -29,6 +29,7 @@ from muster.motion.actions import duration_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
+    from muster.allocation.timed_rules import TimedRules
     from muster.motion.robot_paths import RobotPaths
 
 Floats = npt.NDArray[np.float64]
@@ -162,6 +163,13 @@ class Problem:
         if not self.holds("prerequisite"):
             return [[] for _ in self.tasks]
         return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
+
+    @cached_property
+    def timed_rules(self) -> TimedRules:
+        """The rules of time, teams and relations that hold."""
+        from muster.allocation.timed_rules import TimedRules
+
+        return TimedRules(self)
 
     @cached_property
     def dependants(self) -> list[list[int]]:
@@ -386,6 +394,11 @@ class Problem:
         else:
             metres = np.linalg.norm(self._exits[0, places][:, None] - self._entries[0, to][None], axis=2)
         return np.asarray(metres / self.robots[i].speed_mps if self.in_time else metres)
+
+    def travel_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
+        """(len(places), len(to)) the time that robot i takes between places."""
+        legs = self.legs(i, places, to)
+        return legs if self.in_time else np.asarray(legs / self.robots[i].speed_mps)
 
     def work_usage(self, i: int) -> Floats:
         """(n,) usage of robot i for the work of each task."""

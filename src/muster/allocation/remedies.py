@@ -25,6 +25,8 @@ _NEAR_ENOUGH = 1e-3  # relative
 
 def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Remedy, ...]:
     """For every robot, in mission order, the remedy with which it can do task j."""
+    if problem.timed_rules.are_any:
+        return tuple(timed_remedy(problem, routes, problem.robot_index[robot.id], j, judge) for robot in problem.mission.robots)
     first = dict(_needs_as_is(problem, routes, j))
     able = [i for i, remedy in first.items() if not remedy.unable]
     searched = set(sorted(able, key=lambda i: first[i].size)[:_MOST_SEARCHED])
@@ -115,13 +117,22 @@ def changed(problem: Problem, remedy: Remedy, i: int, j: int) -> Problem:
     for change in remedy.changes.values():
         abler, freer = change.robot(abler), change.task(freer, robot)
         suitability = None if suitability is None else change.suitability(suitability)
+    more = tuple(one for change in remedy.changes.values() for one in change.more_robots())
+    others = {one.id: _beside(remedy, one, task) for one in problem.mission.tasks}
     mission = replace(
         problem.mission,
-        robots=tuple(abler if one.id == robot.id else one for one in problem.mission.robots),
-        tasks=tuple(freer if one.id == task.id else one for one in problem.mission.tasks),
+        robots=(*(abler if one.id == robot.id else one for one in problem.mission.robots), *more),
+        tasks=tuple(freer if one.id == task.id else others[one.id] for one in problem.mission.tasks),
         suitability=suitability,
     )
     return Problem.compile(mission, problem.objective, problem.ignored)
+
+
+def _beside(remedy: Remedy, other: Task, task: Task) -> Task:
+    """Another task with the changes of the remedy for a task."""
+    for change in remedy.changes.values():
+        other = change.other(other, task)
+    return other
 
 
 def _without(routes: Routes, j: int) -> Routes:
@@ -246,7 +257,9 @@ def least_beside(bounds: UsageBounds, i: int, j: int, tasks: Sequence[int]) -> f
     problem = bounds.problem
     others = [k for k in range(len(problem.robots)) if k != i]
     few, reached = list(tasks), [0]
-    if len(few) <= FEW:
+    if problem.timed_rules.are_any:
+        few = [j]  # others may do all else, as far as usage tells
+    elif len(few) <= FEW:
         reached = bounds.shares(others, few)
     else:
         own = [k for k in tasks if k != j and not bounds.possible[others, k].any()]

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import ROUNDING, Bools, Floats, InPlan, Outlook, Question, Rule
+from muster.allocation.rules.rule import ROUNDING, Bools, InPlan, Outlook, Question, Rule
+
+if TYPE_CHECKING:
+    from muster.allocation.limits import Limits
 
 
 class Capacity(Rule):
@@ -16,8 +19,8 @@ class Capacity(Rule):
 
     word: ClassVar[str] = "capacity"
 
-    def possible(self, problem: Question, least: Floats) -> Bools:
-        return np.asarray(least <= problem.capacity[:, None] * (1 + ROUNDING))
+    def possible(self, limits: Limits) -> Bools:
+        return np.asarray(limits.usage <= limits.problem.capacity[:, None] * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         if outlook.least <= problem.capacity[i] * (1 + ROUNDING):
@@ -26,6 +29,8 @@ class Capacity(Rule):
         return f"takes at least {outlook.least:.2f} {unit}, of {problem.capacity[i]:.2f} {unit}"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        if plan.is_timed:
+            return plan.kept_out(self.word, i, j)
         insertion, problem = plan.insertion(i, j), plan.problem
         if insertion is None or insertion.usage <= problem.capacity[i]:
             return None

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, Floats, InPlan, Outlook, Question, Rule
+from muster.allocation.rules.rule import Bools, InPlan, Outlook, Question, Rule
+
+if TYPE_CHECKING:
+    from muster.allocation.limits import Limits
 
 
 class Unreachable(Rule):
@@ -16,13 +19,15 @@ class Unreachable(Rule):
     word: ClassVar[str] = "unreachable"
     ignorable = False
 
-    def possible(self, problem: Question, least: Floats) -> Bools:
-        return np.isfinite(least)
+    def possible(self, limits: Limits) -> Bools:
+        return np.isfinite(limits.usage)
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         return problem.no_way_to(i, j) if math.isinf(outlook.least) else None
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        if plan.is_timed:
+            return plan.kept_out(self.word, i, j)
         insertion = plan.insertion(i, j)
         if insertion is None or not math.isinf(insertion.usage):
             return None
