@@ -29,6 +29,7 @@ Objective objective_of(const std::string& name) {
   if (name == "total+max") return Objective::total_max;
   if (name == "average") return Objective::average;
   if (name == "makespan") return Objective::makespan;
+  if (name == "lateness") return Objective::lateness;
   throw std::invalid_argument("no such objective: " + name);
 }
 

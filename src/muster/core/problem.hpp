@@ -8,7 +8,7 @@
 
 namespace muster {
 
-enum class Objective { total, max, total_max, average, makespan };
+enum class Objective { total, max, total_max, average, makespan, lateness };
 
 // Rows of different lengths in one array: row i is values[first[i]] .. values[first[i + 1]].
 struct Rows {

@@ -11,13 +11,13 @@ namespace muster {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kSplit = 0.5;        // strings that leave a part in between where it is
-constexpr double kLongerGap = 0.01;   // how often that part is longer by one
-constexpr double kTie = 1e-2;         // weight of the route's own growth where the objective does not see it
-constexpr int kAdjacent = 100;        // tasks that a ruin may spread to
-constexpr int kNearRobots = 4;        // robots whose starts are tried for a task, in large teams
-constexpr int kMostEverywhere = 400;  // tasks and robots, up to which a task is tried at every place
-constexpr int kRetried = 20;          // tasks left out that a step tries again
+constexpr double kSplit = 0.5;       // strings that leave a part in between where it is
+constexpr double kLongerGap = 0.01;  // how often that part is longer by one
+constexpr double kTie = 1e-2;        // weight of the route's own growth where the objective does not see it
+constexpr int kAdjacent = 100;       // tasks that a ruin may spread to
+constexpr int kNearRobots = 4;       // robots whose starts are tried for a task
+constexpr int kFew = 200;            // tasks, up to which each is tried at every place, which costs little
+constexpr int kRetried = 20;         // tasks left out that a step tries again
 
 // More than leaving out a task of weight 1 can ever save.
 double penalty_of(const Problem& problem, const Team& team) {
@@ -44,8 +44,8 @@ Search::Search(const Problem& problem, const Routes& start, std::uint64_t seed, 
       settings_(settings),
       random_(seed),
       neighbours_(problem, kAdjacent, kNearRobots),
-      everywhere_(problem.tasks() + problem.robots() <= kMostEverywhere),
-      sees_waiting_(everywhere_ && problem.objective() == Objective::makespan && problem.has_prerequisites()),
+      everywhere_(problem.tasks() <= kFew),
+      sees_waiting_(problem.objective() == Objective::makespan && problem.has_prerequisites()),
       penalty_(0.0),
       team_(problem, start),
       ruined_(problem.robots(), 0) {
@@ -204,23 +204,37 @@ bool Search::insert(int task) {
   if (everywhere_) {
     for (const int robot : problem_.robots_allowed(task)) try_route(robot, task);
   } else {
-    int tried = 0;
-    for (const int near : neighbours_.of(task)) {
-      if (!team_.present(near)) continue;
-      const int robot = team_.robot_of(near);
-      if (problem_.allowed(robot, task)) {
-        try_place(robot, task, team_.at(near));
-        try_place(robot, task, team_.at(near) + 1);
-      }
-      if (++tried == settings_.near) break;
-    }
-    for (const int robot : neighbours_.robots(task)) try_place(robot, task, problem_.fixed(robot));
+    try_near(task);
     if (raises_greatest()) try_idlest(task);
+    if (place_.robot == Team::kAbsent) try_far(task);
   }
   if (place_.robot == Team::kAbsent) return false;
   team_.insert(task, place_.robot, place_.at);
   peak_ = sees_waiting_ ? peak() : std::max(peak_, load(place_.robot));
   return true;
+}
+
+// The places beside tasks that are near, and the starts of robots that are.
+void Search::try_near(int task) {
+  int tried = 0;
+  for (const int near : neighbours_.of(task)) {
+    if (!team_.present(near)) continue;
+    const int robot = team_.robot_of(near);
+    if (problem_.allowed(robot, task)) {
+      try_place(robot, task, team_.at(near));
+      try_place(robot, task, team_.at(near) + 1);
+    }
+    if (++tried == settings_.near) break;
+  }
+  for (const int robot : neighbours_.robots(task)) try_place(robot, task, problem_.fixed(robot));
+}
+
+// Every place of the routes that may have room: where all near ones are full, there may be some far away.
+void Search::try_far(int task) {
+  for (const int robot : problem_.robots_allowed(task)) {
+    const RouteCost& cost = team_.cost(robot);
+    if (problem_.fits(robot, cost.usage + problem_.work_usage(robot, task) - cost.longest)) try_route(robot, task);
+  }
 }
 
 // The place where the route grows least; scores never fall with growth but for `average`, and where tasks wait.

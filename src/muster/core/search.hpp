@@ -16,7 +16,7 @@ struct SearchSettings {
   int longest_string = 10;      // of tasks taken out of one route
   double blink = 0.01;          // how often a place is overlooked
   double greatest_share = 0.5;  // of ruins that begin at the robot that does most
-  int near = 30;                // tasks beside which a task is tried, in large teams
+  int near = 30;                // tasks beside which a task is tried, where there are many
 };
 
 class Search {
@@ -46,6 +46,8 @@ class Search {
   bool insert(int task);
   void try_route(int robot, int task);
   void try_place(int robot, int task, int at);
+  void try_near(int task);
+  void try_far(int task);
   bool raises_greatest() const;
   void try_idlest(int task);
   void propose(int robot, int task, int at, double growth);

@@ -15,6 +15,7 @@ struct RouteCost {
   double usage = 0.0;     // with the way to the end
   double arrivals = 0.0;  // sum of usages on arrival
   double done = 0.0;      // seconds, when the last task ends if nothing waits
+  double longest = 0.0;   // usage of a single leg
 };
 
 // A route on its way to one of its places: what it has come to before it sets out, and the way there.
@@ -23,6 +24,7 @@ struct Leg {
   double arrivals = 0.0;
   double time = 0.0;
   double way = 0.0;
+  double longest = 0.0;  // of the ways up to here, this one included
 };
 
 // Where a task could go, and what that adds to the route.

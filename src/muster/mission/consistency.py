@@ -19,6 +19,7 @@ def inconsistencies(mission: MissionData) -> Iterator[Fault]:
     """Every fault that lies between the parts of a mission."""
     yield from _repeated_ids(mission)
     yield from _prerequisites(mission)
+    yield from _relations(mission)
     yield from _cycles(mission)
     yield from _locks(mission)
     yield from _suitability(mission)
@@ -75,6 +76,19 @@ def _prerequisites(mission: MissionData) -> Iterator[Fault]:
             elif name in seen:
                 yield Fault(at, shown(name), "each prerequisite once")
             seen.add(name)
+
+
+def _relations(mission: MissionData) -> Iterator[Fault]:
+    ids = [t.id for t in mission.tasks]
+    with_new = [*ids, *(t.id for _, t in _new_tasks(mission))]
+    for path, task in _all_work(mission):
+        known = ids if path[0] == "tasks" else with_new
+        for key in ("same_robot_as", "other_robot_than", "starts_with"):
+            for k, name in enumerate(getattr(task, key)):
+                if name not in known:
+                    yield _unknown((*path, key, k), name, known, "task")
+                elif name == getattr(task, "id", None):
+                    yield Fault((*path, key, k), shown(name), "another task")
 
 
 def _cycles(mission: MissionData) -> Iterator[Fault]:

@@ -8,8 +8,19 @@ from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
-IGNORABLE = ("prerequisite", "suitability", "skill", "lock", "capacity")
-_PLURALS = {"prerequisites": "prerequisite", "skills": "skill"}
+IGNORABLE = (
+    "prerequisite",
+    "suitability",
+    "skill",
+    "lock",
+    "capacity",
+    "window",
+    "deadline",
+    "shift",
+    "team",
+    "relation",
+)
+_PLURALS = {"prerequisites": "prerequisite", "skills": "skill", "windows": "window", "deadlines": "deadline"}
 """Words of earlier files and commands, read as before."""
 
 

@@ -12,6 +12,7 @@ from muster.mission.rules import Rules
 from muster.mission.site import Landmark, Map, Origin, Tag, TravelTable
 from muster.mission.source import IN_PYTHON, Source
 from muster.mission.tasks import Found, Task
+from muster.mission.time_types import Moment
 from muster.mission.value_types import Choice, Many, Number, Table, Text
 
 SCHEMA = "muster/1"
@@ -24,6 +25,7 @@ class MissionData(Checked):
     schema: str = spec(Choice((SCHEMA,)), "the version of this format", default=SCHEMA)
     name: str = spec(Text(), "what it is called", default="mission")
     origin_wgs84: Origin | None = spec(Record(Origin, "an origin"), "where the map frame's origin is", default=None)
+    starts_at: str | None = spec(Moment(), "date and time at which it begins, for clock times", default=None)
     rules: Rules = spec(Record(Rules, "rules"), "what counts, and how", default=Rules())
     map: Map | None = spec(Record(Map, "a map"), "walls and zones", default=None)
     travel: Mapping[str, str] | None = spec(

@@ -19,7 +19,7 @@ from muster.mission.records import findings, record
 from muster.mission.robots import Camera, Robot
 from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Landmark, Map, Origin, Point, Tag, TravelTable, Zone
-from muster.mission.tasks import Action, Found, Task, Work
+from muster.mission.tasks import Action, Found, Lag, Task, TeamPart, Work
 from muster.mission.text_files import write_text
 from muster.mission.yaml_writer import with_files_from, yaml_text
 
@@ -34,6 +34,7 @@ __all__ = [
     "DelayedTask",
     "Event",
     "Found",
+    "Lag",
     "Landmark",
     "Map",
     "Mission",
@@ -44,6 +45,7 @@ __all__ = [
     "Rules",
     "Tag",
     "Task",
+    "TeamPart",
     "TravelTable",
     "Work",
     "Zone",

@@ -22,16 +22,43 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 PLAN_SCHEMA = "muster-plan/1"
-REASONS = ("skill", "suitability", "lock", "capacity", "prerequisite", "unreachable", "not-chosen")
+REASONS = (
+    "skill",
+    "suitability",
+    "lock",
+    "capacity",
+    "prerequisite",
+    "window",
+    "deadline",
+    "shift",
+    "team",
+    "relation",
+    "unreachable",
+    "not-chosen",
+)
+
+
+@dataclass(frozen=True)
+class RouteStop:
+    """One entry of a route: when the robot arrives, when work begins, and when it ends, seconds."""
+
+    task: str
+    arrive_s: float
+    begin_s: float
+    end_s: float
 
 
 @dataclass(frozen=True)
 class Route:
-    """One robot's ordered tasks; `usage` in the unit of the plan, None in a plan from elsewhere."""
+    """One robot's ordered tasks; `usage` in the unit of the plan, None in a plan from elsewhere.
+
+    `stops` holds the times of the earliest schedule, one for each task; empty in a plan that does not state them.
+    """
 
     robot: str
     tasks: tuple[str, ...]
     usage: float | None = None
+    stops: tuple[RouteStop, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -119,7 +146,7 @@ class Plan:
         write_text(Path(path), self.text())
 
     def __repr__(self) -> str:
-        done = sum(len(route.tasks) for route in self.routes)
+        done = len({task for route in self.routes for task in route.tasks})
         value = "" if self.objective_value is None else f", {self.objective} {self.objective_value:.2f}"
         return f"<Plan of {self.mission or 'a mission'} by {self.allocator or 'hand'}: {done} tasks done{value}>"
 
@@ -308,8 +335,22 @@ class _Reading:
             if "tasks" not in route:
                 self._missing(f"routes[{k}].tasks", "a list of ids")
             tasks = self._names(route.get("tasks", []), f"routes[{k}].tasks")
-            routes.append(Route(str(route["robot"]), tasks, self._number(route, "usage", f"routes[{k}].")))
+            usage = self._number(route, "usage", f"routes[{k}].")
+            routes.append(Route(str(route["robot"]), tasks, usage, self._stops(route, tasks, f"routes[{k}].stops")))
         return tuple(routes)
+
+    def _stops(self, route: Mapping[str, Any], tasks: tuple[str, ...], at: str) -> tuple[RouteStop, ...]:
+        stops = route.get("stops") or []
+        if not isinstance(stops, list) or (stops and len(stops) != len(tasks)):
+            self._refuse(at, stops, "a list with a stop for each of its tasks")
+            return ()
+        times = ("arrive_s", "begin_s", "end_s")
+        for k, (stop, task) in enumerate(zip(stops, tasks, strict=False)):
+            right = isinstance(stop, dict) and str(stop.get("task")) == task
+            if not (right and all(_finite(stop.get(name)) for name in times)):
+                self._refuse(f"{at}[{k}]", stop, f"task {task} with {', '.join(times)}")
+                return ()
+        return tuple(RouteStop(str(stop["task"]), *(float(stop[name]) for name in times)) for stop in stops)
 
     def _unassigned(self, data: Mapping[str, Any]) -> tuple[Unassigned, ...]:
         left_out = []

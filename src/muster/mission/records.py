@@ -101,6 +101,17 @@ class Checked:
         return {}
 
     @classmethod
+    def split_file_form(
+        cls, data: Mapping[Any, Any], at: Path, faults: list[Fault]
+    ) -> tuple[Mapping[Any, Any], dict[str, Any]]:
+        """Fields that files hold within the value of another key: the data without them, and their values."""
+        return data, {}
+
+    def file_form(self, data: dict[str, Any]) -> dict[str, Any]:
+        """The plain data of the fields as a file holds them: what `split_file_form` reads."""
+        return data
+
+    @classmethod
     def further_keys(cls, data: Mapping[Any, Any]) -> Mapping[str, Key]:
         """Keys that a file may hold besides the fields, in view of its other keys; their values go into `extra`."""
         return {}
@@ -132,11 +143,12 @@ class Record:
             refuse(self, value, at, faults)
             return self._instance({})
         before = len(faults)
+        value, split = self.of.split_file_form(value, at, faults)
         known = {f.name: f for f in specified(self.of)}
         further = {key: one.kind for key, one in self.of.further_keys(value).items()}
         names = (*known, *further)
         faults.extend(_unknown_key(str(key), item, at, names) for key, item in value.items() if key not in names)
-        values = _read_further(further, value, at, faults)
+        values = _read_further(further, value, at, faults) | split
         for name, f in known.items():
             item = value.get(name, INVALID)
             if name in value and not (item is None and f.default is None):

@@ -10,6 +10,7 @@ from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.rules import Rules
 from muster.mission.site import IN_DEGREES, Point
+from muster.mission.time_types import ClockWindows
 from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Table, Text, Whole, shown
 
 
@@ -46,6 +47,17 @@ class Robot(Checked):
     return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)
     end_position: Point | None = spec(Place(), "where its route ends; stronger than return_to_start", default=None)
     available_from_s: float = spec(Number(minimum=0), "earliest time it can leave", default=0.0)
+    available_until_s: float | None = spec(
+        Number(minimum=0),
+        "when its route must have ended, the way to its end included",
+        default=None,
+        instead=("shift", ClockWindows(single=True), "available_from_s and available_until_s as clock times"),
+    )
+    abilities: Mapping[str, float] | None = spec(
+        Table(Number(minimum=0), "a mapping from abilities to amounts"),
+        "how much it gives to tasks that need abilities",
+        default=None,
+    )
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)
     kind: str = spec(Choice(("ground", "air")), "where it moves", default="ground")
@@ -54,6 +66,7 @@ class Robot(Checked):
     )
     yaw_rate_radps: float | None = spec(Number(above=0), "greatest yaw rate", default=None)
     acceleration_mps2: float | None = spec(Number(above=0), "greatest acceleration", default=None)
+    climb_mps: float | None = spec(Number(above=0), "greatest speed of climb and descent, in the air", default=None)
     avoidance_priority: float = spec(Number(minimum=0), "who gives way: the lower one", default=0.0)
     camera: Camera | None = spec(Record(Camera, "a camera"), "its camera", default=None)
 
@@ -63,6 +76,10 @@ class Robot(Checked):
         for name in values.get("skill_quality") or ():
             if name not in skills:
                 yield Fault(("skill_quality", name), shown(name), f"one of its skills{did_you_mean(name, skills)}")
+
+        first, last = values.get("available_from_s", 0.0), values.get("available_until_s")
+        if last is not None and last < first:
+            yield Fault(("available_until_s",), shown(last), f"at least available_from_s, {first:g}")
 
     def place_at_end(self, rules: Rules) -> Point | None:
         """Where the robot's route must end, or None where it may end anywhere."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Choice, Flag, Number, Whole
 
-OBJECTIVES = ("total+max", "total", "max", "average", "makespan")
+OBJECTIVES = ("total+max", "total", "max", "average", "makespan", "lateness")
 
 
 @record
@@ -23,3 +23,7 @@ class Rules(Checked):
     )
     capacity_reserve: float = spec(Number(minimum=0, below=1), "share of the work capacity kept free", default=0.0)
     stability: int | None = spec(Whole(), "tasks that may change robot per event", default=None)
+    timing: str = spec(
+        Choice(("profile", "constant")), "travel times: of the motion profile, or by the speed alone", default="profile"
+    )
+    makespan_includes_return: bool = spec(Flag(), "the makespan counts the ways of robots to their ends", default=False)

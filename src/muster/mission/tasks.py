@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from muster.mission.action_keys import ACTION_KEYS
@@ -12,7 +12,22 @@ from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, findings, record, spec
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.source import IN_PYTHON
-from muster.mission.value_types import Choice, Fault, Key, Many, Number, Position, Text, Whole, shown
+from muster.mission.time_types import ClockTime, ClockWindows, Names, Window, Windows
+from muster.mission.value_types import (
+    INVALID,
+    Choice,
+    Fault,
+    JsonSchema,
+    Key,
+    Many,
+    Number,
+    Path,
+    Position,
+    Table,
+    Text,
+    Whole,
+    shown,
+)
 
 
 @record
@@ -83,14 +98,87 @@ class Action(Checked):
 
 
 @record
+class Lag(Checked):
+    """How long after the end of a prerequisite work may begin."""
+
+    after_s: float = spec(Number(minimum=0), "at least so long after its end", default=0.0)
+    within_s: float | None = spec(Number(minimum=0), "at most so long after its end", default=None)
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        after, within = values.get("after_s", 0.0), values.get("within_s")
+        if within is not None and within < after:
+            yield Fault(("within_s",), shown(within), f"at least after_s, {after:g}")
+
+
+@record
+class _LaggedPrerequisite(Lag):
+    """A prerequisite with a lag, as files have it."""
+
+    task: str = spec(Text(), "the id of the task that comes before")
+
+
+@dataclass(frozen=True)
+class _Prerequisite(Text):
+    """The id of a task; files may have a lag beside it, which `Work.split_file_form` reads."""
+
+    def schema(self) -> JsonSchema:
+        return {"anyOf": [super().schema(), Record(_LaggedPrerequisite, "a prerequisite with a lag").schema()]}
+
+
+@record
+class TeamPart(Checked):
+    """Robots of one sort in a team."""
+
+    count: int = spec(Whole(minimum=1), "how many", default=1)
+    type: str | None = spec(Text(), "of that type", default=None)
+    kind: str | None = spec(Choice(("ground", "air")), "of that kind", default=None)
+    requires: tuple[str, ...] = spec(Many(Text()), "with these skills", default=())
+
+
+@record
 class Work(Checked):
     """What there is to do, wherever that is."""
 
     type: str | None = spec(Text(), "column of the suitability table", default=None)
     actuation_cost: float = spec(Number(minimum=0), "cost of doing it", unit="unit of usage", default=0.0)
-    prerequisites: tuple[str, ...] = spec(Many(Text()), "ids of tasks that must be done before", default=())
+    prerequisites: tuple[str, ...] = spec(
+        Many(_Prerequisite()), "ids of tasks that must be done before; or {task, after_s, within_s}", default=()
+    )
     requires: tuple[str, ...] = spec(Many(Text()), "skills a robot must have", default=())
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
+    window_s: tuple[Window, ...] = spec(
+        Windows(),
+        "when work may begin: from and to, or several such; null is open",
+        default=(),
+        instead=("window", ClockWindows(), "window_s as clock times"),
+    )
+    deadline_s: float | None = spec(
+        Number(minimum=0),
+        "when work must have ended",
+        default=None,
+        instead=("deadline", ClockTime(), "deadline_s as a clock time"),
+    )
+    due_s: float | None = spec(
+        Number(minimum=0),
+        "when work should have ended, for the objective lateness",
+        default=None,
+        instead=("due", ClockTime(), "due_s as a clock time"),
+    )
+    robots_needed: int | None = spec(Whole(minimum=1), "so many robots do it together", default=None)
+    team: tuple[TeamPart, ...] = spec(
+        Many(Record(TeamPart, "a part of a team")), "the robots that do it together, by sort", default=()
+    )
+    needs: Mapping[str, float] | None = spec(
+        Table(Number(minimum=0), "a mapping from abilities to amounts"),
+        "the robots that do it together give so much in all",
+        default=None,
+    )
+    same_robot_as: tuple[str, ...] = spec(Names("task"), "tasks that the same robots do", default=())
+    other_robot_than: tuple[str, ...] = spec(Names("task"), "tasks that other robots do", default=())
+    starts_with: tuple[str, ...] = spec(
+        Names("task"), "tasks that begin at the same moment, by other robots; all of them or none", default=()
+    )
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)
     only_robots: tuple[str, ...] | None = spec(
         Many(Text(), minimum=1), "ids of the only robots that may do it", default=None
@@ -100,14 +188,70 @@ class Work(Checked):
         Choice(("at-least-once", "at-most-once")), "what a split network may do to it", default="at-least-once"
     )
 
+    lags: Mapping[str, Lag] = field(default_factory=dict, hash=False)
+    """By prerequisite: how long after its end; in files the lag stands within `prerequisites`."""
+
+    @property
+    def is_for_team(self) -> bool:
+        """Whether more than one robot may do it together."""
+        return bool(self.team) or self.needs is not None or (self.robots_needed or 1) > 1
+
+    def lag(self, prerequisite: str) -> Lag:
+        """How long after the end of a prerequisite work may begin."""
+        return self.lags.get(prerequisite, Lag())
+
+    @classmethod
+    def split_file_form(
+        cls, data: Mapping[Any, Any], at: Path, faults: list[Fault]
+    ) -> tuple[Mapping[Any, Any], dict[str, Any]]:
+        listed = data.get("prerequisites")
+        if not isinstance(listed, list | tuple) or not any(isinstance(item, Mapping) for item in listed):
+            return data, {}
+        kind = Record(_LaggedPrerequisite, "a prerequisite with a lag")
+        names: list[object] = []
+        lags: dict[str, Lag] = {}
+        for k, item in enumerate(listed):
+            if not isinstance(item, Mapping):
+                names.append(item)
+                continue
+            before = len(faults)
+            entry = kind.read(item, (*at, "prerequisites", k), faults)
+            if len(faults) > before:
+                return {**data, "prerequisites": INVALID}, {}
+            names.append(entry.task)
+            if entry.after_s > 0 or entry.within_s is not None:
+                lags[entry.task] = Lag(after_s=entry.after_s, within_s=entry.within_s)
+        return {**data, "prerequisites": names}, {"lags": lags}
+
+    def file_form(self, data: dict[str, Any]) -> dict[str, Any]:
+        if self.lags and "prerequisites" in data:
+            data["prerequisites"] = [self._prerequisite_in_file(name) for name in self.prerequisites]
+        return data
+
+    def _prerequisite_in_file(self, name: str) -> object:
+        lag = self.lag(name)
+        parts = {"after_s": lag.after_s or None, "within_s": lag.within_s}
+        given = {key: value for key, value in parts.items() if value is not None}
+        return {"task": name} | given if given else name
+
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        yield from _team_faults(values)
+        for name in values.get("lags") or ():
+            if name not in (values.get("prerequisites") or ()):
+                yield Fault(("lags", name), shown(name), "one of its prerequisites")
         action = values.get("action")
         if action is not None and action.has_geometry and values.get("actuation_cost"):
             cost = shown(values["actuation_cost"])
             yield Fault(("actuation_cost",), cost, f"no typed cost beside {action.name}, whose cost is computed")
         if action is not None and action.duration_s is not None and values.get("duration_s") is not None:
             yield Fault(("duration_s",), shown(values["duration_s"]), f"no second duration beside {action.name}")
+
+
+def _team_faults(values: Mapping[str, Any]) -> Iterable[Fault]:
+    given = [key for key in ("robots_needed", "team", "needs") if values.get(key)]
+    for key in given[1:]:
+        yield Fault((key,), shown(values[key]), f"{given[0]} or {key}, not both")
 
 
 @record

@@ -17,7 +17,9 @@ from muster.mission.near_matches import did_you_mean
 Path = tuple[str | int, ...]
 JsonSchema = dict[str, Any]
 
-RESERVED_NAMES = frozenset({"earliest_s", "latest_s", "robots_needed", "recharge"})
+RESERVED_NAMES = frozenset(
+    {"battery", "delivers", "lanes", "load", "load_at_start", "load_capacity", "recharge", "relay", "stations"}
+)
 """Keys that a later version will give a meaning; until then they are refused, not ignored."""
 
 

@@ -59,7 +59,7 @@ def plain(value: Any) -> Any:
     if hasattr(value, "__dataclass_fields__"):
         own = {f.name: (getattr(value, f.name), f.default) for f in specified(type(value))}
         given = {name: plain(item) for name, (item, default) in own.items() if item != default}
-        return given | plain(getattr(value, "extra", {}))
+        return value.file_form(given | plain(getattr(value, "extra", {})))
     return value
 
 
