@@ -8,7 +8,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from muster.allocation.limits import Limits
-from muster.allocation.problem import Problem
 from muster.allocation.rules.deadline import too_late
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.rules.shift import beyond

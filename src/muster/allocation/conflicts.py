@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from muster.allocation.conflict_texts import conflict_text, in_mission_order
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
-from muster.allocation.conflict_texts import conflict_text, in_mission_order
 from muster.allocation.subset_times import tied_pairs
 from muster.allocation.usage_bounds import UsageBounds
 from muster.allocation.witness_plans import Judge, attempt, can_do, closed, does_all

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.bottleneck import fills, on_some_matching
+from muster.allocation.bottleneck import fills, matched, on_some_matching
 from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Outlook, Question, Rule, listed
 from muster.mission.model import Robot, Task, TeamPart
 
 if TYPE_CHECKING:
     from muster.allocation.limits import Limits
 
-_MOST_NAMED = 4
+_MOST_NAMED, _MOST_ADDED = 4, 10
 
 
 @dataclass(frozen=True)
@@ -138,3 +139,57 @@ def _places(problem: Question, j: int, able: Bools) -> Bools:
     """(places, m) which robots fit where."""
     rows = [fits & able for count, fits in problem.timed_rules.parts(j) for _ in range(count)]
     return np.array(rows, dtype=np.bool_)
+
+
+def missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRobots | None:
+    """Robots that a team of a task with robot i in it lacks; None: none, or they are not of the kind that is made up."""
+    rules, task, robot = problem.timed_rules, problem.tasks[j], problem.robots[i]
+    able = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
+    if not rules.is_for_team(j) or not able[i] or in_some_team(problem, j, able)[i]:
+        return None
+    if task.needs is not None:
+        return _as_able(problem, i, j, able, names)
+    owner = matched(_places(problem, j, able))
+    parts = [part for part in task.team or (TeamPart(count=task.robots_needed or 1),) for _ in range(part.count)]
+    empty = [part for place, part in enumerate(parts) if place not in owner.values()]
+    more = tuple(_fit_for(robot, part, _new_name(names, k)) for k, part in enumerate(empty))
+    kinds = {_like(robot, part): sum(_like(robot, other) == _like(robot, part) for other in empty) for part in empty}
+    return MoreRobots(more, f"{listed([_more(count, kind) for kind, count in kinds.items()])}") if more else None
+
+
+def _as_able(problem: Question, i: int, j: int, able: Bools, names: set[str]) -> MoreRobots | None:
+    """As many robots like robot i as make up for the abilities that are lacking, if it has all of these."""
+    count = 0
+    for needed_, abilities in problem.timed_rules.needs(j):
+        lacking = needed_ - float(abilities[able].sum())
+        if lacking > needed_ * ROUNDING and abilities[i] <= 0:
+            return None
+        if lacking > needed_ * ROUNDING:
+            count = max(count, math.ceil(lacking / float(abilities[i]) * (1 - ROUNDING)))
+    robot = problem.robots[i]
+    more = tuple(replace(robot, id=_new_name(names, k)) for k in range(count))
+    return MoreRobots(more, _more(count, f"like {robot.id}")) if 0 < count <= _MOST_ADDED else None
+
+
+def _fit_for(robot: Robot, part: TeamPart, name: str) -> Robot:
+    """A robot like another, as a part asks for."""
+    skills = tuple(dict.fromkeys((*robot.skills, *part.requires)))
+    return replace(robot, id=name, type=part.type or robot.type, kind=part.kind or robot.kind, skills=skills)
+
+
+def _like(robot: Robot, part: TeamPart) -> str:
+    asked = _part(replace(part, count=1))[2:]
+    return asked or f"like {robot.id}"
+
+
+def _more(count: int, kind: str) -> str:
+    return f"one more robot {kind}" if count == 1 else f"{count} more robots {kind}"
+
+
+def _new_name(names: set[str], k: int) -> str:
+    """An id that nothing of the mission has."""
+    number = k
+    while f"more_{number}" in names:
+        number += 1
+    names.add(f"more_{number}")
+    return f"more_{number}"

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from datetime import timedelta
 from typing import TYPE_CHECKING
 
 from muster.allocation.rules.rule import ROUNDING, Question, listed
+from muster.mission.time_types import clock_text
 
 if TYPE_CHECKING:
     from muster.allocation.limits import Limits
@@ -59,7 +59,4 @@ def _seconds(time: float, digits: int) -> str:
 
 def _of_day(problem: Question, time: float) -> str:
     start = problem.mission.starts_at
-    if start is None or time > _LONGEST:
-        return ""
-    moment = start + timedelta(seconds=time)
-    return f" ({moment:%H:%M:%S})" if moment.date() == start.date() else f" ({moment:%Y-%m-%d %H:%M:%S})"
+    return "" if start is None or time > _LONGEST else f" ({clock_text(time, start)})"
