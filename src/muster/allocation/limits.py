@@ -158,7 +158,7 @@ def _with_begins(limits: Limits) -> Limits:
 
 
 def _sweep(limits: Limits, ready: Floats, begin: Floats, awaited: list[int | None]) -> bool:
-    """Let each task wait for its prerequisites, and these for what must follow soon; returns whether anything changed."""
+    """Let tasks wait for prerequisites, and these for what must follow soon; returns whether anything changed."""
     changed = False
     for j in range(len(begin)):
         for k, after, within in limits.rules.lags(j):

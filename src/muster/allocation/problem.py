@@ -18,6 +18,7 @@ from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
 from muster.allocation.task_geometry import TaskGeometry
+from muster.allocation.timed_rules import TimedRules
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -29,7 +30,6 @@ from muster.motion.actions import duration_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
-    from muster.allocation.timed_rules import TimedRules
     from muster.motion.robot_paths import RobotPaths
 
 Floats = npt.NDArray[np.float64]
@@ -167,8 +167,6 @@ class Problem:
     @cached_property
     def timed_rules(self) -> TimedRules:
         """The rules of time, teams and relations that hold."""
-        from muster.allocation.timed_rules import TimedRules
-
         return TimedRules(self)
 
     @cached_property

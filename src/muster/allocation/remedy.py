@@ -53,7 +53,7 @@ class Remedy:
 
     @property
     def size(self) -> tuple[int, float, float]:
-        """What changes are compared by: the number of kinds, then the time they give, and the growth of the capacity."""
+        """What changes are compared by: the number of kinds, the time they give, then the growth of the capacity."""
         grown = (self.capacity.enough or 0.0) - (self.capacity.now or 0.0) if self.capacity.grows else 0.0
         return len(self.kinds), sum(change.seconds for change in self.changes.values()), grown
 

@@ -47,7 +47,7 @@ def subset_ends(limits: Limits, i: int, tasks: Sequence[int]) -> Floats:
 
 
 def keep_relations(problem: Problem, tasks: Sequence[int]) -> Bools:
-    """(2**k,) which sets of tasks one robot may do if all tasks are done: both of `same_robot_as`, not both of others."""
+    """(2**k,) which sets of tasks one robot may do if all are done: both of `same_robot_as`, not both of others."""
     rules, sets = problem.timed_rules, np.arange(1 << len(tasks))
     able = np.ones(len(sets), dtype=np.bool_)
     for k, j in enumerate(tasks):

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -140,7 +141,7 @@ class TimedPlaces(InPlan):
             ends = (self._route_end(found, i, place.routes[i]) for place, found in left)
             own = beyond(self.problem, i, min(ends))
             return own or "with it the route of another robot would end after its shift"
-        times = [(self._stop(found, i, place.at), place, found) for place, found in left]
+        times = [(stop_of(found, i, place.at), place, found) for place, found in left]
         own = self._own_lateness(word, i, j, [stop for stop, _, _ in times])
         return own or self._others_lateness(word, i, j, min(times, key=lambda one: one[0][1]))
 
@@ -158,7 +159,7 @@ class TimedPlaces(InPlan):
         _, place, found = best
         for r, route in enumerate(place.routes):
             for at, k in enumerate(route):
-                _, begin, end = self._stop(found, r, at)
+                _, begin, end = stop_of(found, r, at)
                 late = (
                     closed(self.problem, k, "begins at", begin) if word == "window" else too_late(self.problem, k, end)
                 )
@@ -167,15 +168,10 @@ class TimedPlaces(InPlan):
         what = "windows" if word == "window" else "deadlines"
         return f"at no place in its route are all {what} kept"
 
-    @staticmethod
-    def _stop(found: core.Inspection, i: int, at: int) -> tuple[float, float, float]:
-        arrive, begin, end = found.stops[i][at]
-        return arrive, begin, end
-
     def _route_end(self, found: core.Inspection, i: int, route: list[int]) -> float:
         """When robot i is at the end of its route."""
         problem = self.problem
-        end = self._stop(found, i, len(route) - 1)[2]
+        end = stop_of(found, i, len(route) - 1)[2]
         if problem.robots[i].place_at_end(problem.mission.rules) is None:
             return end
         return end + float(problem.travel_seconds(i, [route[-1]], [problem.end(i)])[0, 0])
@@ -223,7 +219,7 @@ class TimedPlaces(InPlan):
             there = problem.travel_seconds(i, [problem.start(i)], [j])
             return problem.robots[i].available_from_s + float(there[0, 0])
         there = problem.travel_seconds(i, [self.routes[i][gap - 1]], [j])
-        return self._stop(self.inspection, i, gap - 1)[2] + float(there[0, 0])
+        return stop_of(self.inspection, i, gap - 1)[2] + float(there[0, 0])
 
     # --- teams -------------------------------------------------------------------------------------------------------
 
@@ -287,6 +283,12 @@ class TimedPlaces(InPlan):
         """Whether the same members do the tasks that the same robots must do."""
         same = self.problem.timed_rules.same_robot[j]
         return all(not self.members(k) or set(self.members(k)) == set(team) for k in same)
+
+
+def stop_of(found: Any, i: int, at: int) -> tuple[float, float, float]:
+    """Arrival, begin and end of a stop of inspected routes."""
+    arrive, begin, end = found.stops[i][at]
+    return arrive, begin, end
 
 
 def in_plan(problem: Problem, routes: Sequence[Sequence[int]]) -> InPlan:

@@ -25,7 +25,7 @@ from muster.allocation.rules.shift import LongerShift
 from muster.allocation.rules.team import missing_robots
 from muster.allocation.rules.times import moments
 from muster.allocation.rules.window import LongerWindow
-from muster.allocation.timed_places import TimedPlaces
+from muster.allocation.timed_places import TimedPlaces, stop_of
 from muster.allocation.witness_plans import Judge, attempt, bare_plan, closed
 
 _RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")
@@ -174,9 +174,9 @@ def _lack(
 
 def _times(opened: Problem, routes: Routes, found: core.Inspection, at: int, of: int) -> tuple[float, float, float]:
     """When work on a task begins and ends, and when its robot's route does."""
-    stops, route = found.stops[at], routes[at]
-    _, begin, end = stops[route.index(of)]
-    over = stops[-1][2]
+    route = routes[at]
+    _, begin, end = stop_of(found, at, route.index(of))
+    over = stop_of(found, at, len(route) - 1)[2]
     if opened.robots[at].place_at_end(opened.mission.rules) is not None:
         over += float(opened.travel_seconds(at, [route[-1]], [opened.end(at)])[0, 0])
     return begin, end, over

@@ -6,11 +6,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
-from muster.allocation.problem import Bools, Floats, Problem
-from muster.mission.model import Robot, TeamPart
+from muster.mission.model import Robot, Task, TeamPart
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
 
 ROUNDING = 2e-9
 """By how much a time may be above a limit, relative; a little more than the judge allows."""
@@ -18,11 +22,28 @@ ROUNDING = 2e-9
 Windows = list[tuple[float, float]]
 
 
+class Question(Protocol):
+    """What the rules are read from: a `Problem`."""
+
+    @property
+    def objective(self) -> str: ...
+    @property
+    def robots(self) -> tuple[Robot, ...]: ...
+    @property
+    def tasks(self) -> tuple[Task, ...]: ...
+    @property
+    def prerequisites(self) -> list[list[int]]: ...
+    @property
+    def task_index(self) -> dict[str, int]: ...
+
+    def holds(self, rule: str) -> bool: ...
+
+
 @dataclass(frozen=True, eq=False)
 class TimedRules:
     """What the mission says of time and teams, as far as it is not ignored."""
 
-    problem: Problem
+    problem: Question
 
     @cached_property
     def windows(self) -> list[Windows]:

@@ -70,6 +70,7 @@ Problem::Problem(ProblemData data)
   }
   dependants_ = transposed(data_.prerequisites);
   find_robots_allowed();
+  find_units();
   if (data_.table.empty() && places_ <= kMostPlacesInTable) {
     std::vector<double> table(places * places);
     for (int from = 0; from < places_; ++from) {
@@ -77,6 +78,20 @@ Problem::Problem(ProblemData data)
     }
     data_.table = std::move(table);
   }
+}
+
+void Problem::find_units() {
+  const int units = data_.unit.empty() ? tasks_ : 1 + *std::ranges::max_element(data_.unit);
+  std::vector<std::vector<int>> tasks(units);
+  for (int task = 0; task < tasks_; ++task) tasks[unit(task)].push_back(task);
+  for (const auto& row : tasks) {
+    tasks_of_unit_.values.insert(tasks_of_unit_.values.end(), row.begin(), row.end());
+    tasks_of_unit_.first.push_back(static_cast<int>(tasks_of_unit_.values.size()));
+  }
+  timed_ = has_time_limits() || !data_.after.empty() || !data_.within.empty() || !data_.unit.empty() ||
+           !data_.parts.empty() || !data_.needs.empty() || !data_.same_robot.values.empty() ||
+           !data_.other_robot.values.empty() || data_.objective == Objective::lateness ||
+           data_.makespan_includes_return;
 }
 
 void Problem::find_robots_allowed() {

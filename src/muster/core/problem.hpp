@@ -21,6 +21,17 @@ struct Rows {
   int size() const { return static_cast<int>(first.size()) - 1; }
 };
 
+struct TimeWindow {
+  double open;
+  double close;
+};
+
+// So many robots of the kinds that are allowed.
+struct TeamPart {
+  int count;
+  std::vector<char> allowed;  // by kind
+};
+
 // Everything a Problem is made from. Places are the tasks, then the robots' starts, then the robots' ends.
 struct ProblemData {
   Objective objective = Objective::total_max;
@@ -45,6 +56,18 @@ struct ProblemData {
   std::vector<double> exit;
   std::vector<double> table;
   std::vector<int> travel_class;
+  // Times, teams and relations; what is empty, no task or robot has.
+  std::vector<std::vector<TimeWindow>> windows;  // by task, sorted
+  std::vector<double> deadline, due;             // by task; inf: none
+  std::vector<double> available_until;           // by robot; inf: without end
+  std::vector<double> after, within;             // lags, parallel to prerequisites.values; 0 and inf: none
+  std::vector<int> unit;                         // by task: its number of a node; tasks that start together share it
+  std::vector<std::vector<TeamPart>> parts;      // by task
+  std::vector<double> abilities, needs;          // robots x A, tasks x A
+  Rows same_robot, other_robot;                  // symmetric
+  std::vector<double> time;                      // time classes x places x places, seconds; empty: distance / speed
+  std::vector<int> time_class;                   // of each robot
+  bool makespan_includes_return = false;
 };
 
 // Usage of a route, and the sum over its tasks of the usage on arrival (docs/design.md, Meaning: objective `average`).
@@ -55,6 +78,8 @@ struct RouteFigures {
 
 class Problem {
  public:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
   explicit Problem(ProblemData data);
 
   int tasks() const { return tasks_; }
@@ -75,6 +100,70 @@ class Problem {
   // How many tasks at the beginning of the robot's route stay: the first place where another may go.
   int fixed(int robot) const { return data_.fixed[robot]; }
 
+  // Whether anything binds tasks to times, teams or relations: routes with one task each do not tell all then.
+  bool is_timed() const { return timed_; }
+  bool has_windows() const { return !data_.windows.empty(); }
+  // Whether work or routes must be over by a time: windows, deadlines, shifts.
+  bool has_time_limits() const { return has_windows() || !data_.deadline.empty() || !data_.available_until.empty(); }
+  double deadline(int task) const { return data_.deadline.empty() ? kInfinity : data_.deadline[task]; }
+  double due(int task) const { return data_.due.empty() ? kInfinity : data_.due[task]; }
+  double available_until(int robot) const {
+    return data_.available_until.empty() ? kInfinity : data_.available_until[robot];
+  }
+  // Of a task's prerequisite number k: the least and the most time between its end and the task's begin.
+  double after(int task, int k) const {
+    return data_.after.empty() ? 0.0 : data_.after[data_.prerequisites.first[task] + k];
+  }
+  double within(int task, int k) const {
+    return data_.within.empty() ? kInfinity : data_.within[data_.prerequisites.first[task] + k];
+  }
+  int units() const { return tasks_of_unit_.size(); }
+  int unit(int task) const { return data_.unit.empty() ? task : data_.unit[task]; }
+  std::span<const int> tasks_of_unit(int unit) const { return tasks_of_unit_[unit]; }
+  // The first time from `earliest` on at which work may begin; inf if none is left.
+  double next_begin(int task, double earliest) const {
+    if (data_.windows.empty() || data_.windows[task].empty()) return earliest;
+    for (const TimeWindow& window : data_.windows[task]) {
+      if (earliest <= window.close) return earliest < window.open ? window.open : earliest;
+    }
+    return kInfinity;
+  }
+  // The last time up to `latest` at which work may begin; -inf if none is.
+  double last_begin(int task, double latest) const {
+    if (data_.windows.empty() || data_.windows[task].empty()) return latest;
+    const auto& windows = data_.windows[task];
+    for (auto window = windows.rbegin(); window != windows.rend(); ++window) {
+      if (latest >= window->open) return latest < window->close ? latest : window->close;
+    }
+    return -kInfinity;
+  }
+  // The robots that do the task together: parts of a team, or as many as have the abilities for it.
+  std::span<const TeamPart> parts(int task) const {
+    if (data_.parts.empty()) return {};
+    return data_.parts[task];
+  }
+  int abilities() const {
+    return data_.needs.empty() || tasks_ == 0 ? 0 : static_cast<int>(data_.needs.size()) / tasks_;
+  }
+  std::span<const double> ability(int robot) const {
+    return {data_.abilities.data() + static_cast<std::size_t>(robot) * abilities(),
+            static_cast<std::size_t>(abilities())};
+  }
+  std::span<const double> needs(int task) const {
+    return {data_.needs.data() + static_cast<std::size_t>(task) * abilities(), static_cast<std::size_t>(abilities())};
+  }
+  int kind(int robot) const { return data_.kind[robot]; }
+  std::span<const int> same_robot(int task) const {
+    if (data_.same_robot.size() == 0) return {};
+    return data_.same_robot[task];
+  }
+  std::span<const int> other_robot(int task) const {
+    if (data_.other_robot.size() == 0) return {};
+    return data_.other_robot[task];
+  }
+  bool makespan_includes_return() const { return data_.makespan_includes_return; }
+  bool usage_is_time() const { return data_.usage_is_time; }
+
   int start(int robot) const { return tasks_ + robot; }
   int end(int robot) const { return tasks_ + robots_ + robot; }
   int travel_class(int robot) const { return data_.travel_class.empty() ? 0 : data_.travel_class[robot]; }
@@ -92,6 +181,9 @@ class Problem {
   }
 
   double travel_time(int robot, int from, int to) const {
+    if (!data_.time.empty()) {
+      return data_.time[(static_cast<std::size_t>(data_.time_class[robot]) * places_ + from) * places_ + to];
+    }
     return distance(travel_class(robot), from, to) / data_.speed[robot];
   }
   double actuation_cost(int robot, int task) const {
@@ -129,6 +221,7 @@ class Problem {
 
  private:
   void find_robots_allowed();
+  void find_units();
   double straight(int from, int to) const {
     const double* a = &data_.exit[3 * static_cast<std::size_t>(from)];
     const double* b = &data_.entry[3 * static_cast<std::size_t>(to)];
@@ -142,6 +235,8 @@ class Problem {
   int places_;
   int classes_;
   bool given_table_;
+  bool timed_;
+  Rows tasks_of_unit_;
   Rows dependants_;
   std::vector<int> like_;  // by task: a number that tasks share which the same robots may do
   Rows robots_allowed_;    // by that number

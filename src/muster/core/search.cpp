@@ -313,6 +313,8 @@ double Search::score(int robot, int task, int at, double growth) const {
       if (sees_waiting_) return kTie * longer + std::max(0.0, team_.end_through(robot, task, at) - peak_);
       return kTie * longer + std::max(0.0, team_.cost(robot).done + longer - peak_);
     }
+    case Objective::lateness:
+      break;  // of timed problems alone, which `ScheduleSearch` is for
   }
   return growth;
 }

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import ROUNDING, Bools, InPlan, Outlook, Question, Rule
-
-if TYPE_CHECKING:
-    from muster.allocation.limits import Limits
+from muster.allocation.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Rule
 
 
 class Capacity(Rule):

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from muster.allocation.bottleneck import on_some_matching
-from muster.allocation.rules.rule import Bools, Change, InPlan, Outlook, Question, Rule, listed
+from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
 from muster.mission.model import Robot, Task
-
-if TYPE_CHECKING:
-    from muster.allocation.limits import Limits
 
 
 @dataclass(frozen=True)
@@ -39,7 +36,7 @@ class Untied(Change):
     @staticmethod
     def _without(task: Task, relations: Sequence[tuple[str, str]]) -> Task:
         for relation, name in relations:
-            left = tuple(one for one in getattr(task, relation) if one != name)
+            left: Any = tuple(one for one in getattr(task, relation) if one != name)
             task = replace(task, **{relation: left})
         return task
 

@@ -6,17 +6,14 @@ import math
 from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.allocation.timed_rules import TimedRules
 from muster.mission.model import Mission, Robot, Task
-
-if TYPE_CHECKING:
-    from muster.allocation.limits import Limits
-    from muster.allocation.timed_rules import TimedRules
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -53,6 +50,37 @@ class Question(Protocol):
     def actions_refused(self, i: int) -> frozenset[int]: ...
 
     def no_way_to(self, i: int, j: int) -> str: ...
+
+
+class Limits(Protocol):
+    """Lower bounds of usage and times, over all admissible plans; see `muster.allocation.limits`."""
+
+    @property
+    def problem(self) -> Question: ...
+    @property
+    def rules(self) -> TimedRules: ...
+    @property
+    def is_timed(self) -> bool: ...
+    @property
+    def usage(self) -> Floats: ...
+    @property
+    def usable(self) -> Bools: ...
+    @property
+    def alone(self) -> Bools: ...
+    @property
+    def arrival(self) -> Floats: ...
+    @property
+    def home(self) -> Floats: ...
+    @property
+    def ready(self) -> Floats: ...
+    @property
+    def awaited(self) -> tuple[int | None, ...]: ...
+    @property
+    def pair_begin(self) -> Floats: ...
+    @property
+    def pair_end(self) -> Floats: ...
+
+    def must_also(self, j: int) -> list[int]: ...
 
 
 class Change:

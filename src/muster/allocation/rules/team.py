@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from muster.allocation.bottleneck import fills, matched, on_some_matching
-from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Outlook, Question, Rule, listed
+from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
 from muster.mission.model import Robot, Task, TeamPart
-
-if TYPE_CHECKING:
-    from muster.allocation.limits import Limits
 
 _MOST_NAMED, _MOST_ADDED = 4, 10
 
@@ -142,7 +139,7 @@ def _places(problem: Question, j: int, able: Bools) -> Bools:
 
 
 def missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRobots | None:
-    """Robots that a team of a task with robot i in it lacks; None: none, or they are not of the kind that is made up."""
+    """Robots that a team of a task with robot i in it lacks; None: none, or no such robot can be made up."""
     rules, task, robot = problem.timed_rules, problem.tasks[j], problem.robots[i]
     able = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
     if not rules.is_for_team(j) or not able[i] or in_some_team(problem, j, able)[i]:

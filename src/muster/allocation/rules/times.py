@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-from muster.allocation.rules.rule import ROUNDING, Question, listed
+from muster.allocation.rules.rule import ROUNDING, Limits, Question, listed
 from muster.mission.time_types import clock_text
-
-if TYPE_CHECKING:
-    from muster.allocation.limits import Limits
 
 _DIGITS = (2, 4, 6, 9)
 _LONGEST = 1e9  # seconds, up to which times are said as times of day

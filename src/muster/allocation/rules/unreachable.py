@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, InPlan, Outlook, Question, Rule
-
-if TYPE_CHECKING:
-    from muster.allocation.limits import Limits
+from muster.allocation.rules.rule import Bools, InPlan, Limits, Outlook, Question, Rule
 
 
 class Unreachable(Rule):

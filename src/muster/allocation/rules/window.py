@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, Change, InPlan, Outlook, Question, Rule
+from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule
 from muster.allocation.rules.times import known_least, longer, moments, reaches, span
 from muster.mission.model import Robot, Task
-
-if TYPE_CHECKING:
-    from muster.allocation.limits import Limits
 
 
 @dataclass(frozen=True)

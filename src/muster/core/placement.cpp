@@ -1,0 +1,229 @@
+#include "placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace muster {
+
+Placement::Placement(Roster& roster)
+    : roster_(roster),
+      problem_(roster.problem_),
+      timeline_(roster.timeline_),
+      excluded_(problem_.robots(), 0),
+      ranges_(problem_.robots()),
+      choice_(problem_),
+      busy_(problem_.robots(), 0) {}
+
+const Insertion* Placement::best(int unit, const Trial& trial) {
+  trial_ = &trial;
+  best_.unit = unit;
+  best_.score = kNever;
+  best_.members.clear();
+  labels_ = roster_.timeline_.labels_for(unit);
+  if (labels_.empty()) return nullptr;
+  look_at_relations(unit);
+  ready_ = timeline_.ready(unit);
+  peak_ = roster_.peak();
+  if (alone(unit)) {
+    try_alone(problem_.tasks_of_unit(unit).front());
+  } else {
+    try_cuts(unit);
+  }
+  return best_.members.empty() ? nullptr : &best_;
+}
+
+bool Placement::alone(int unit) const {
+  const auto tasks = problem_.tasks_of_unit(unit);
+  return tasks.size() == 1 && choice_.alone(tasks.front());
+}
+
+// Excludes the robots that a task may not share with another, and all but those that it must.
+void Placement::look_at_relations(int unit) {
+  if (excludes_) std::ranges::fill(excluded_, 0);
+  excludes_ = false;
+  team_size_ = -1;
+  const auto exclude = [&](int robot) {
+    excluded_[robot] = 1;
+    excludes_ = true;
+  };
+  if (trial_->robots) {
+    for (int robot = 0; robot < problem_.robots(); ++robot) {
+      if (!(*trial_->robots)[robot]) exclude(robot);
+    }
+  }
+  for (const int task : problem_.tasks_of_unit(unit)) {
+    for (const int other : problem_.other_robot(task)) {
+      for (const int number : timeline_.visits_of(problem_.unit(other))) {
+        if (timeline_.visit(number).place == other) exclude(timeline_.visit(number).robot);
+      }
+    }
+    for (const int other : problem_.same_robot(task)) {
+      if (!timeline_.present(problem_.unit(other))) continue;
+      std::ranges::fill(busy_, 0);
+      team_size_ = 0;
+      for (const int number : timeline_.visits_of(problem_.unit(other))) {
+        if (timeline_.visit(number).place != other) continue;
+        busy_[timeline_.visit(number).robot] = 1;
+        ++team_size_;
+      }
+      for (int robot = 0; robot < problem_.robots(); ++robot) {
+        if (!busy_[robot]) exclude(robot);
+      }
+      std::ranges::fill(busy_, 0);
+    }
+  }
+}
+
+// --- One robot, one task ---------------------------------------------------------------------------------------------
+
+void Placement::try_alone(int task) {
+  measured_work_ = -1.0;
+  if (team_size_ > 1) return;
+  const auto robots = problem_.robots_allowed(task);
+  long count = 0;
+  for (const int robot : robots) {
+    if (excluded_[robot]) continue;
+    measure_alone(task, problem_.work_time(robot, task));
+    ranges_[robot] = places(robot);
+    count += std::max(0, ranges_[robot].second - ranges_[robot].first + 1);
+  }
+  if (trial_->most_places > 0 && count > 2 * trial_->most_places) return try_near(task);
+  for (const int robot : robots) {
+    if (excluded_[robot]) continue;
+    for (int at = ranges_[robot].first; at <= ranges_[robot].second; ++at) try_place(robot, task, at);
+  }
+}
+
+// Beside tasks that are near, and at both ends of routes.
+void Placement::try_near(int task) {
+  int tried = 0;
+  const auto attempt = [&](int robot, int at) {
+    if (!usable(robot, task) || at < ranges_[robot].first || at > ranges_[robot].second) return false;
+    try_place(robot, task, at);
+    return true;
+  };
+  for (const int near : trial_->neighbours->of(task)) {
+    for (const int number : timeline_.visits_of(problem_.unit(near))) {
+      const Visit& visit = timeline_.visit(number);
+      if (visit.place != near) continue;
+      const bool before = attempt(visit.robot, visit.at - 1), after = attempt(visit.robot, visit.at);
+      tried += before || after;
+    }
+    if (tried >= trial_->most_places) break;
+  }
+  for (const int robot : problem_.robots_allowed(task)) {
+    if (excluded_[robot] || ranges_[robot].first > ranges_[robot].second) continue;
+    attempt(robot, ranges_[robot].first);
+    if (ranges_[robot].second > ranges_[robot].first) attempt(robot, ranges_[robot].second);
+  }
+}
+
+// Labels, latest begins and times of leaving rise along a route, so that the places that may do are a range.
+std::pair<int, int> Placement::places(int robot) const {
+  const auto& route = timeline_.route(robot);
+  const int size = static_cast<int>(route.size()) - 2;
+  const auto too_early = [&](int number) {  // the stop after the place
+    const Visit& next = timeline_.visit(number);
+    return next.label <= labels_.low || !timeline_.in_time(ready_ + measured_work_, next.latest);
+  };
+  const auto early_enough = [&](int number) {  // the stop before it
+    const Visit& last = timeline_.visit(number);
+    return last.label < labels_.high && timeline_.in_time(last.leave, latest_);
+  };
+  const auto first = std::partition_point(route.begin() + 1, route.end(), too_early);
+  const auto last = std::partition_point(route.begin(), route.end() - 1, early_enough);
+  int from = static_cast<int>(first - route.begin()) - 1;
+  const int to = static_cast<int>(last - route.begin()) - 1;
+  from = std::max(from, problem_.fixed(robot));
+  if (trial_->append_only) from = std::max(from, size);
+  return {from, to};
+}
+
+void Placement::measure_alone(int task, double work) {
+  if (work == measured_work_) return;
+  measured_work_ = work;
+  latest_ = timeline_.latest_for(problem_.unit(task), {&work, 1});
+  if (problem_.objective() == Objective::makespan) tail_ = timeline_.tail_after(problem_.unit(task), {&work, 1});
+}
+
+void Placement::try_place(int robot, int task, int at) {
+  if (overlooked()) return;
+  const double work = problem_.work_time(robot, task);
+  measure_alone(task, work);
+  if (problem_.objective() == Objective::makespan) {  // where the ways take no time
+    const double begin = std::max(ready_, timeline_.stop(robot, at).leave);
+    if (begin + std::max(tail_, work + timeline_.stop(robot, at + 1).tail) - peak_ >= best_.score) return;
+  }
+  const int unit = problem_.unit(task);
+  const Offer there = offer(robot, task, at, work);
+  const double begin = timeline_.open(unit, std::max(ready_, there.arrive));
+  if (!timeline_.in_time(begin, latest_) || !timeline_.in_time(begin + work, there.latest)) return;
+  if (!problem_.fits(robot, there.usage + there.growth)) return;
+  InsertionScore score(problem_.objective(), peak_);
+  score.add(there, begin, work);
+  double late = 0.0;
+  if (problem_.objective() == Objective::lateness) late = lateness(task, begin + work) + delays(there, begin + work);
+  const double value = score.value(begin, tail_, late);
+  if (value >= best_.score) return;
+  best_.score = value;
+  best_.growth = there.growth;
+  best_.members.assign(1, {task, robot, at});
+}
+
+Offer Placement::offer(int robot, int task, int at, double work) const {
+  const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
+  const bool goes_on = next.unit >= 0 || problem_.must_end(robot);
+  const bool went_on = next.unit >= 0 || (last.unit >= 0 && problem_.must_end(robot));
+  Offer offer;
+  offer.robot = robot;
+  offer.at = at;
+  offer.work = work;
+  offer.in = problem_.travel_time(robot, last.place, task);
+  offer.arrive = last.leave + offer.in;
+  offer.out = goes_on ? problem_.travel_time(robot, task, next.place) : 0.0;
+  offer.direct = went_on ? problem_.travel_time(robot, last.place, next.place) : 0.0;
+  offer.latest = next.latest - offer.out;
+  offer.onward = next.unit >= 0 || problem_.makespan_includes_return() ? offer.out + next.tail : 0.0;
+  if (next.unit >= 0) offer.next = timeline_.begin_of(next.unit);
+  offer.usage = roster_.usage(robot);
+  offer.growth = problem_.travel_usage(robot, last.place, task) + problem_.work_usage(robot, task);
+  if (goes_on) offer.growth += problem_.travel_usage(robot, task, next.place);
+  if (went_on) offer.growth -= problem_.travel_usage(robot, last.place, next.place);
+  if (problem_.objective() == Objective::average) offer.late = later_arrivals(robot, task, at, offer.growth);
+  return offer;
+}
+
+// --- Figures ---------------------------------------------------------------------------------------------------------
+
+double Placement::lateness(int task, double end) const {
+  return problem_.priority(task) * std::max(0.0, end - problem_.due(task));
+}
+
+// What the lateness of the tasks after a place grows by in that route.
+double Placement::delays(const Offer& offer, double end) const {
+  const auto& route = timeline_.route(offer.robot);
+  double sum = 0.0, arrival = end + offer.out;
+  for (std::size_t at = offer.at + 1; at + 1 < route.size(); ++at) {
+    const Visit& visit = timeline_.visit(route[at]);
+    const double begin = timeline_.open(visit.unit, arrival), now = timeline_.begin_of(visit.unit);
+    if (begin <= now || begin == kNever) break;
+    const double leave = visit.leave + (begin - now);
+    sum += lateness(visit.place, leave) - lateness(visit.place, visit.leave);
+    const Visit& next = timeline_.visit(route[at + 1]);
+    arrival = leave + problem_.travel_time(offer.robot, visit.place, next.place);
+  }
+  return sum;
+}
+
+double Placement::later_arrivals(int robot, int task, int at, double growth) const {
+  const auto& route = timeline_.route(robot);
+  double usage = 0.0;
+  for (int k = 1; k <= at; ++k) {
+    usage = problem_.on_to(robot, usage, timeline_.visit(route[k - 1]).place, timeline_.visit(route[k]).place);
+  }
+  usage += problem_.travel_usage(robot, timeline_.visit(route[at]).place, task);
+  return usage + static_cast<double>(timeline_.tasks_in(robot) - at) * growth;
+}
+
+}  // namespace muster

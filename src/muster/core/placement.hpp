@@ -1,0 +1,75 @@
+// Where a unit of work costs least, and who does it.
+#pragma once
+
+#include <vector>
+
+#include "insertion_score.hpp"
+#include "neighbours.hpp"
+#include "roster.hpp"
+#include "team_choice.hpp"
+
+namespace muster {
+
+// One robot for one task is tried at every place that leaves the graph without a cycle and all in time. For a team, or
+// tasks that start together, the units are cut in two along their labels: each cut gives every robot one place, so that
+// no choice of members can make a cycle; at each cut the team that costs least is chosen.
+class Placement {
+ public:
+  explicit Placement(Roster& roster);
+
+  const Insertion* best(int unit, const Trial& trial);
+
+ private:
+  bool alone(int unit) const;
+  bool usable(int robot, int task) const { return !excluded_[robot] && problem_.allowed(robot, task); }
+  void look_at_relations(int unit);
+
+  // One robot, one task.
+  void try_alone(int task);
+  void try_near(int task);
+  void try_place(int robot, int task, int at);
+  void measure_alone(int task, double work);
+  std::pair<int, int> places(int robot) const;
+
+  // Teams.
+  void try_cuts(int unit);
+  void gather_cuts(int unit);
+  bool pass(std::size_t candidate, double cut);
+  void make_offers(int unit, std::size_t candidate);
+  void try_cut(int unit);
+  void try_key(int unit, int key);
+  double key_of(const Offer& offer, int key) const;
+  void judge(int unit);
+
+  Offer offer(int robot, int task, int at, double work) const;
+  bool overlooked() const { return trial_->blink > 0.0 && trial_->random->uniform() < trial_->blink; }
+  double lateness(int task, double end) const;
+  double delays(const Offer& offer, double end) const;
+  double later_arrivals(int robot, int task, int at, double growth) const;
+
+  Roster& roster_;
+  const Problem& problem_;
+  const Timeline& timeline_;
+  const Trial* trial_ = nullptr;
+  Insertion best_;
+  // Of the unit.
+  Labels labels_{0.0, 1.0};
+  double ready_ = 0.0, peak_ = 0.0;
+  double measured_work_ = -1.0, latest_ = kNever, tail_ = 0.0;  // of a task alone, for that work
+  // By robot: excluded by relations or the caller.
+  std::vector<char> excluded_;
+  bool excludes_ = false;
+  int team_size_ = -1;  // of a task that has to have the same robots
+  std::vector<std::pair<int, int>> ranges_;
+  // Of cuts.
+  TeamChoice choice_;
+  Rows teams_;
+  std::vector<double> cuts_, keys_, works_;
+  std::vector<int> candidates_, at_, free_;
+  std::vector<Offer> offers_;       // tasks of the unit x candidates
+  std::vector<const Offer*> team_;  // chosen, parallel to `members_`
+  std::vector<Member> members_;
+  std::vector<char> busy_;
+};
+
+}  // namespace muster

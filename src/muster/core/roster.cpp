@@ -1,0 +1,246 @@
+#include "roster.hpp"
+
+#include <algorithm>
+
+#include "placement.hpp"
+
+namespace muster {
+
+Roster::Roster(const Problem& problem)
+    : problem_(problem),
+      timeline_(problem),
+      weight_(problem.units(), 0.0),
+      usage_(problem.robots(), 0.0),
+      listed_(problem.units(), 0),
+      touched_(problem.robots(), 0) {
+  for (int unit = 0; unit < problem.units(); ++unit) {
+    for (const int task : problem.tasks_of_unit(unit)) weight_[unit] += problem.priority(task);
+    vanish(unit);
+  }
+  placement_ = std::make_unique<Placement>(*this);
+}
+
+Roster::~Roster() = default;
+
+bool Roster::begin(const Routes& routes) {
+  commit();
+  const bool possible = timeline_.begin(routes);
+  absent_.clear();
+  absent_weight_ = 0.0;
+  for (int unit = 0; unit < problem_.units(); ++unit) {
+    if (!present(unit)) vanish(unit);
+  }
+  for (int robot = 0; robot < problem_.robots(); ++robot) measure(robot);
+  return possible;
+}
+
+bool Roster::ready(int unit) const {
+  return std::ranges::all_of(problem_.tasks_of_unit(unit), [&](int task) {
+    return std::ranges::all_of(problem_.prerequisites(task),
+                               [&](int before) { return present(problem_.unit(before)); });
+  });
+}
+
+bool Roster::fixed(int unit) const {
+  return std::ranges::any_of(timeline_.visits_of(unit), [&](int number) {
+    const Visit& visit = timeline_.visit(number);
+    return visit.at <= problem_.fixed(visit.robot);
+  });
+}
+
+const Insertion* Roster::best_insertion(int unit, const Trial& trial) {
+  settle();
+  return placement_->best(unit, trial);
+}
+
+bool Roster::insert(const Insertion& insertion) {
+  for (const Member& member : insertion.members) touch(member.robot);
+  timeline_.insert(insertion.unit, insertion.members);
+  appear(insertion.unit);
+  moves_.emplace_back(insertion.unit, true);
+  return settle();
+}
+
+void Roster::remove(int unit) {
+  for (const int number : timeline_.visits_of(unit)) touch(timeline_.visit(number).robot);
+  timeline_.remove(unit);
+  vanish(unit);
+  moves_.emplace_back(unit, false);
+}
+
+void Roster::drop_orphans() {
+  if (!problem_.has_prerequisites() || absent_.empty()) return;
+  std::vector<int> gone = absent_;
+  for (std::size_t k = 0; k < gone.size(); ++k) {
+    for (const int task : problem_.tasks_of_unit(gone[k])) {
+      for (const int dependant : problem_.dependants(task)) {
+        const int unit = problem_.unit(dependant);
+        if (!present(unit)) continue;
+        remove(unit);
+        gone.push_back(unit);
+      }
+    }
+  }
+}
+
+bool Roster::settle() {
+  const bool possible = timeline_.settle();
+  for (const int robot : unmeasured_) measure(robot);
+  unmeasured_.clear();
+  return possible;
+}
+
+bool Roster::admissible() {
+  return std::ranges::all_of(saved_,
+                             [&](const Saved& saved) { return problem_.fits(saved.robot, usage_[saved.robot]); });
+}
+
+// --- Figures ---------------------------------------------------------------------------------------------------------
+
+void Roster::measure(int robot) {
+  const auto& route = timeline_.route(robot);
+  double usage = 0.0;
+  for (std::size_t at = 1; at + 1 < route.size(); ++at) {
+    const int from = timeline_.visit(route[at - 1]).place, task = timeline_.visit(route[at]).place;
+    usage += problem_.travel_usage(robot, from, task);
+    usage += problem_.usage_is_time() ? timeline_.work_of(task) : problem_.work_usage(robot, task);
+  }
+  if (route.size() > 2) usage += problem_.end_usage(robot, timeline_.visit(route[route.size() - 2]).place);
+  usage_[robot] = usage;
+}
+
+double Roster::peak() {
+  if (problem_.objective() == Objective::makespan) return timeline_.end();
+  return *std::ranges::max_element(usage_);
+}
+
+double Roster::lateness() const {
+  double sum = 0.0;
+  for (int task = 0; task < problem_.tasks(); ++task) {
+    if (!present(problem_.unit(task))) continue;
+    sum += problem_.priority(task) * std::max(0.0, timeline_.end_of(task) - problem_.due(task));
+  }
+  return sum;
+}
+
+// Of each task the largest usage on arrival in its team.
+double Roster::arrivals() const {
+  std::vector<double> arrival(problem_.tasks(), 0.0);
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    const auto& route = timeline_.route(robot);
+    double usage = 0.0;
+    for (std::size_t at = 1; at + 1 < route.size(); ++at) {
+      const int from = timeline_.visit(route[at - 1]).place, task = timeline_.visit(route[at]).place;
+      usage += problem_.travel_usage(robot, from, task);
+      arrival[task] = std::max(arrival[task], usage);
+      usage += problem_.usage_is_time() ? timeline_.work_of(task) : problem_.work_usage(robot, task);
+    }
+  }
+  double sum = 0.0;
+  for (const double each : arrival) sum += each;
+  return sum;
+}
+
+double Roster::total() const {
+  double total = 0.0;
+  for (const double usage : usage_) total += usage;
+  return total;
+}
+
+double Roster::objective() {
+  switch (problem_.objective()) {
+    case Objective::total:
+      return total();
+    case Objective::max:
+      return peak();
+    case Objective::total_max:
+      return total() + peak();
+    case Objective::average:
+      return arrivals();
+    case Objective::makespan:
+      return timeline_.end();
+    case Objective::lateness:
+      return lateness();
+  }
+  return total();
+}
+
+Value Roster::value() {
+  int done = problem_.tasks();
+  for (const int unit : absent_) done -= static_cast<int>(problem_.tasks_of_unit(unit).size());
+  const double objective = this->objective();
+  const bool mean = problem_.objective() == Objective::average && done > 0;
+  return {-absent_weight_, mean ? objective / done : objective};
+}
+
+// --- Undo ------------------------------------------------------------------------------------------------------------
+
+void Roster::touch(int robot) {
+  if (std::ranges::find(unmeasured_, robot) == unmeasured_.end()) unmeasured_.push_back(robot);
+  if (std::exchange(touched_[robot], 1)) return;
+  saved_.push_back({robot, usage_[robot]});
+}
+
+void Roster::appear(int unit) {
+  absent_[listed_[unit]] = absent_.back();
+  listed_[absent_.back()] = listed_[unit];
+  absent_.pop_back();
+  absent_weight_ = absent_.empty() ? 0.0 : absent_weight_ - weight_[unit];
+}
+
+void Roster::vanish(int unit) {
+  listed_[unit] = static_cast<int>(absent_.size());
+  absent_.push_back(unit);
+  absent_weight_ += weight_[unit];
+}
+
+void Roster::commit() {
+  timeline_.commit();
+  for (const Saved& saved : saved_) touched_[saved.robot] = 0;
+  saved_.clear();
+  moves_.clear();
+}
+
+void Roster::rollback() {
+  timeline_.rollback();
+  for (auto move = moves_.rbegin(); move != moves_.rend(); ++move) {
+    if (move->second) {
+      vanish(move->first);
+    } else {
+      appear(move->first);
+    }
+  }
+  for (const Saved& saved : saved_) {
+    usage_[saved.robot] = saved.usage;
+    touched_[saved.robot] = 0;
+  }
+  saved_.clear();
+  moves_.clear();
+  unmeasured_.clear();
+}
+
+// --- Answers ---------------------------------------------------------------------------------------------------------
+
+Routes Roster::routes() const {
+  Routes routes(problem_.robots());
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    for (int at = 1; at <= timeline_.tasks_in(robot); ++at) {
+      routes[robot].push_back(timeline_.stop(robot, at).place);
+    }
+  }
+  return routes;
+}
+
+std::vector<std::vector<StopTimes>> Roster::stops() const {
+  std::vector<std::vector<StopTimes>> stops(problem_.robots());
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    for (int at = 1; at <= timeline_.tasks_in(robot); ++at) {
+      const Visit &last = timeline_.stop(robot, at - 1), &visit = timeline_.stop(robot, at);
+      const double arrive = last.leave + problem_.travel_time(robot, last.place, visit.place);
+      stops[robot].push_back({visit.place, arrive, timeline_.begin_of(visit.unit), visit.leave});
+    }
+  }
+  return stops;
+}
+
+}  // namespace muster

@@ -1,0 +1,115 @@
+// Routes while an algorithm changes them, where tasks are bound to times, teams and relations.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "draft.hpp"
+#include "random.hpp"
+#include "timeline.hpp"
+
+namespace muster {
+
+// A unit of work with the robots that do it. `score` is what the objective grows by, ties broken by the routes' growth.
+struct Insertion {
+  int unit = -1;
+  double score = kNever;
+  double growth = 0.0;  // of usage, all members together
+  std::vector<Member> members;
+};
+
+// Where `best_insertion` looks.
+struct Trial {
+  bool append_only = false;                      // at the ends of routes alone
+  int most_places = 0;                           // beyond so many only places beside near tasks; 0: at every place
+  double blink = 0.0;                            // how often a place is overlooked
+  Random* random = nullptr;                      // for that
+  const class Neighbours* neighbours = nullptr;  // for `most_places`
+  const std::vector<char>* robots = nullptr;     // by robot, whether it may be a member; none: all
+};
+
+struct StopTimes {
+  int task;
+  double arrive, begin, end;
+};
+
+// Working routes of a timed problem on a Timeline, with the team of every task, usages and undo. Everything that
+// changes routes stands between `commit` or `rollback` and the next.
+class Roster {
+ public:
+  explicit Roster(const Problem& problem);
+  ~Roster();
+
+  // Takes over routes. False: no schedule exists for them.
+  bool begin(const Routes& routes);
+
+  const Problem& problem() const { return problem_; }
+  const Timeline& timeline() const { return timeline_; }
+  bool present(int unit) const { return timeline_.present(unit); }
+  // Whether all that a unit waits for is present.
+  bool ready(int unit) const;
+  // Whether a unit stays where it is.
+  bool fixed(int unit) const;
+  // The units that are in no route.
+  const std::vector<int>& absent() const { return absent_; }
+  double absent_weight() const { return absent_weight_; }
+  double weight(int unit) const { return weight_[unit]; }
+  double usage(int robot) const { return usage_[robot]; }
+
+  // The team and the places at which an absent unit costs least; null where there are none. All that it waits for must
+  // be present. The answer lasts until the next call.
+  const Insertion* best_insertion(int unit, const Trial& trial = {});
+  // False: no schedule exists; then only `rollback` helps.
+  bool insert(const Insertion& insertion);
+  void remove(int unit);
+  // Takes out, with everything that waits for it, what stands without its prerequisites.
+  void drop_orphans();
+  // Propagates removals, which `insert` and `best_insertion` do on their own.
+  bool settle();
+  // Whether the routes changed since the last commit are within the robots' capacities.
+  bool admissible();
+
+  // Of the present units.
+  double objective();
+  Value value();
+  // What the objective's greatest term comes to: usage of one robot, or the mission's end.
+  double peak();
+
+  void commit();
+  void rollback();
+
+  Routes routes() const;
+  std::vector<std::vector<StopTimes>> stops() const;
+
+ private:
+  friend class Placement;
+  struct Saved {
+    int robot;
+    double usage;
+  };
+
+  void touch(int robot);
+  void measure(int robot);
+  void appear(int unit);
+  void vanish(int unit);
+  double total() const;
+  double lateness() const;
+  double arrivals() const;
+
+  const Problem& problem_;
+  Timeline timeline_;
+  std::vector<double> weight_;  // by unit
+  std::vector<double> usage_;   // by robot
+  std::vector<int> absent_, listed_;
+  double absent_weight_ = 0.0;
+  // Undo: what happened to units, the last at the end.
+  std::vector<std::pair<int, bool>> moves_;
+  std::vector<Saved> saved_;
+  std::vector<char> touched_;
+  std::vector<int> unmeasured_;
+  std::unique_ptr<class Placement> placement_;
+};
+
+}  // namespace muster

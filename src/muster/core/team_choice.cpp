@@ -1,0 +1,228 @@
+#include "team_choice.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace muster {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Up to so many minimal covers of a task's needs each is tried; beyond it robots are added by cost until they do.
+constexpr int kMostCovers = 160;
+constexpr int kMostTried = 50'000;  // partial covers looked at while they are listed
+constexpr double kRounding = 1e-9;  // of sums of abilities
+
+void append(Rows& rows, std::span<const int> row) {
+  rows.values.insert(rows.values.end(), row.begin(), row.end());
+  rows.first.push_back(static_cast<int>(rows.values.size()));
+}
+
+}  // namespace
+
+TeamChoice::TeamChoice(const Problem& problem)
+    : problem_(problem), known_(problem.tasks(), 0), covers_(problem.tasks()) {
+  number_abilities();
+}
+
+bool TeamChoice::has_needs(int task) const {
+  if (problem_.abilities() == 0) return false;
+  return std::ranges::any_of(problem_.needs(task), [](double need) { return need > 0.0; });
+}
+
+// Robots are alike for covers if their abilities are, and they may do the same tasks.
+void TeamChoice::number_abilities() {
+  std::map<std::vector<double>, int> number;
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    std::vector<double> key{static_cast<double>(problem_.kind(robot))};
+    if (problem_.abilities() > 0) {
+      const auto abilities = problem_.ability(robot);
+      key.insert(key.end(), abilities.begin(), abilities.end());
+    }
+    const auto [found, is_new] = number.emplace(key, static_cast<int>(class_size_.size()));
+    if (is_new) {
+      class_size_.push_back(0);
+      class_robot_.push_back(robot);
+    }
+    ability_class_.push_back(found->second);
+    ++class_size_[found->second];
+  }
+  ranked_.resize(class_size_.size());
+}
+
+void TeamChoice::teams(int task, std::span<const int> robots, std::span<const double> keys, Rows& found) {
+  found.values.clear();
+  found.first.assign(1, 0);
+  ranks_.clear();
+  for (std::size_t k = 0; k < robots.size(); ++k) {
+    if (keys[k] < kInfinity) ranks_.emplace_back(keys[k], static_cast<int>(k));
+  }
+  if (has_parts(task)) {
+    by_parts(task, robots, found);
+  } else if (!has_needs(task)) {
+    if (!ranks_.empty()) append(found, std::array{std::ranges::min(ranks_).second});
+  } else if (covers(task).size() > 0) {
+    by_covers(task, robots, found);
+  } else {
+    by_greedy_cover(task, robots, found);
+  }
+}
+
+bool TeamChoice::complete(int task, std::span<const int> robots) {
+  const std::vector<double> keys(robots.size(), 0.0);
+  Rows found;
+  teams(task, robots, keys, found);
+  for (int k = 0; k < found.size(); ++k) {
+    if (found[k].size() == robots.size()) return true;
+  }
+  return false;
+}
+
+// The robots that can fill parts together are the independent sets of a matroid, so that the cheapest first is right.
+void TeamChoice::by_parts(int task, std::span<const int> robots, Rows& found) {
+  const auto parts = problem_.parts(task);
+  if (parts.size() == 1) return by_one_part(parts.front(), robots, found);
+  std::ranges::sort(ranks_);
+  seats_.clear();  // the part of each seat
+  for (std::size_t p = 0; p < parts.size(); ++p) seats_.insert(seats_.end(), parts[p].count, static_cast<int>(p));
+  seat_of_.assign(seats_.size(), -1);
+  taken_.clear();
+  for (const auto& [key, index] : ranks_) {
+    if (taken_.size() == seats_.size()) break;
+    seen_.assign(seats_.size(), 0);
+    if (give(task, robots, index)) taken_.push_back(index);
+  }
+  if (taken_.size() == seats_.size()) append(found, taken_);
+}
+
+void TeamChoice::by_one_part(const TeamPart& part, std::span<const int> robots, Rows& found) {
+  std::erase_if(ranks_, [&](const auto& rank) { return !part.allowed[problem_.kind(robots[rank.second])]; });
+  if (static_cast<int>(ranks_.size()) < part.count) return;
+  std::ranges::nth_element(ranks_, ranks_.begin() + (part.count - 1));
+  for (int k = 0; k < part.count; ++k) found.values.push_back(ranks_[k].second);
+  found.first.push_back(part.count);
+}
+
+// Finds a seat, by an augmenting path.
+bool TeamChoice::give(int task, std::span<const int> robots, int index) {
+  const auto parts = problem_.parts(task);
+  for (std::size_t seat = 0; seat < seats_.size(); ++seat) {
+    if (seen_[seat] || !parts[seats_[seat]].allowed[problem_.kind(robots[index])]) continue;
+    seen_[seat] = 1;
+    if (seat_of_[seat] < 0 || give(task, robots, seat_of_[seat])) {
+      seat_of_[seat] = index;
+      return true;
+    }
+  }
+  return false;
+}
+
+void TeamChoice::by_covers(int task, std::span<const int> robots, Rows& found) {
+  for (auto& ranked : ranked_) ranked.clear();
+  for (const auto& rank : ranks_) ranked_[ability_class_[robots[rank.second]]].push_back(rank);
+  for (auto& ranked : ranked_) std::ranges::sort(ranked);
+  const Rows& all = covers(task);
+  for (int k = 0; k < all.size(); ++k) {
+    taken_.clear();
+    int last = -1;
+    std::size_t rank = 0;
+    for (const int kind : all[k]) {
+      rank = kind == last ? rank + 1 : 0;
+      last = kind;
+      if (rank >= ranked_[kind].size()) break;
+      taken_.push_back(ranked_[kind][rank].second);
+    }
+    if (taken_.size() == all[k].size()) append(found, taken_);
+  }
+}
+
+// The cheapest that still bring what is missing, until nothing is; then the dearest that are needless go.
+void TeamChoice::by_greedy_cover(int task, std::span<const int> robots, Rows& found) {
+  const auto needs = problem_.needs(task);
+  std::vector<double> missing(needs.begin(), needs.end());
+  std::ranges::sort(ranks_);
+  taken_.clear();
+  for (const auto& [key, index] : ranks_) {
+    if (covered(missing)) break;
+    const auto abilities = problem_.ability(robots[index]);
+    bool helps = false;
+    for (std::size_t a = 0; a < missing.size(); ++a) helps |= missing[a] > kRounding && abilities[a] > 0.0;
+    if (!helps) continue;
+    for (std::size_t a = 0; a < missing.size(); ++a) missing[a] -= abilities[a];
+    taken_.push_back(index);
+  }
+  if (!covered(missing)) return;
+  for (std::size_t k = taken_.size(); k-- > 0;) {
+    const auto abilities = problem_.ability(robots[taken_[k]]);
+    bool needed = false;
+    for (std::size_t a = 0; a < missing.size(); ++a) needed |= missing[a] + abilities[a] > kRounding;
+    if (needed) continue;
+    for (std::size_t a = 0; a < missing.size(); ++a) missing[a] += abilities[a];
+    taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  append(found, taken_);
+}
+
+bool TeamChoice::covered(std::span<const double> missing) const {
+  return std::ranges::all_of(missing, [](double amount) { return amount <= kRounding; });
+}
+
+const Rows& TeamChoice::covers(int task) {
+  Rows& found = covers_[task];
+  if (std::exchange(known_[task], 1)) return found;
+  const auto needs = problem_.needs(task);
+  std::vector<double> missing(needs.begin(), needs.end());
+  std::vector<int> counts(class_size_.size(), 0);
+  budget_ = kMostTried;
+  cover(task, 0, missing, counts, found);
+  if (found.size() > kMostCovers || budget_ < 0) found = Rows{};
+  return found;
+}
+
+// All ways to cover what is missing with robots of the classes from `kind` on, none of them needless.
+void TeamChoice::cover(int task, int kind, std::vector<double>& missing, std::vector<int>& counts, Rows& found) {
+  if (found.size() > kMostCovers || --budget_ < 0) return;
+  if (covered(missing)) {
+    if (needless(task, counts)) return;
+    std::vector<int> row;
+    for (std::size_t k = 0; k < counts.size(); ++k) row.insert(row.end(), counts[k], static_cast<int>(k));
+    append(found, row);
+    return;
+  }
+  if (kind == static_cast<int>(counts.size())) return;
+  const std::vector<double> before = missing;
+  const auto abilities = problem_.ability(class_robot_[kind]);
+  const int most = problem_.allowed(class_robot_[kind], task) ? class_size_[kind] : 0;
+  for (int count = 0; count <= most; ++count) {
+    counts[kind] = count;
+    for (std::size_t a = 0; a < missing.size(); ++a) missing[a] = before[a] - count * abilities[a];
+    cover(task, kind + 1, missing, counts, found);
+    if (count > 0 && covered(missing)) break;
+  }
+  counts[kind] = 0;
+  missing = before;
+}
+
+bool TeamChoice::needless(int task, const std::vector<int>& counts) const {
+  const auto needs = problem_.needs(task);
+  for (std::size_t kind = 0; kind < counts.size(); ++kind) {
+    if (counts[kind] == 0) continue;
+    bool enough = true;
+    for (std::size_t a = 0; a < needs.size() && enough; ++a) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < counts.size(); ++k) {
+        sum += (counts[k] - (k == kind)) * problem_.ability(class_robot_[k])[a];
+      }
+      enough = sum >= needs[a] - kRounding;
+    }
+    if (enough) return true;
+  }
+  return false;
+}
+
+}  // namespace muster

@@ -1,0 +1,192 @@
+// The schedule of routes while they change: when each unit of work begins at the earliest and at the latest.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "problem.hpp"
+#include "routes.hpp"
+
+namespace muster {
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// One robot at one task. Each route begins with a visit of the robot's start and closes with one of its end.
+struct Visit {
+  int robot = -1;
+  int place = -1;  // of the problem: a task, a start or an end
+  int unit = -1;   // none: a start or an end
+  int at = 0;      // in the route, where the start is 0
+  double label = 0.0;
+  double leave = 0.0;      // when the robot can set out from here
+  double latest = kNever;  // when it must begin here, for all that comes after to be in time
+  double tail = 0.0;       // from the begin here to the end of all that waits for it
+};
+
+// A robot that does a task of a unit, at a place of its route: 0 is before all tasks.
+struct Member {
+  int task = -1;
+  int robot = -1;
+  int at = 0;
+};
+
+// An open interval of labels.
+struct Labels {
+  double low;
+  double high;
+  bool empty() const { return !(low < high); }
+};
+
+// The graph whose nodes are units of work (a task with its team, or tasks that start together) and whose arcs are legs
+// of routes and prerequisites with lags. Heads (earliest begins), latest begins and tails are kept as in insertion
+// methods for the job shop [mastrolilli2000]. Units carry labels that rise along every arc, so that a change is
+// propagated once through the part that it affects, in topological order [pearce2006]. A label strictly between those
+// of what comes before and after keeps it; labels are renewed in order of time at `commit`.
+//
+// Maximum lags make cycles of lower bounds: where a problem has any, begins are the least fixpoint, found anew.
+class Timeline {
+ public:
+  explicit Timeline(const Problem& problem);
+
+  // Takes over routes. False: they deadlock, or have no schedule.
+  bool begin(const Routes& routes);
+
+  bool present(int unit) const { return !nodes_[unit].visits.empty(); }
+  double begin_of(int unit) const { return nodes_[unit].begin; }
+  double end_of(int task) const { return nodes_[problem_.unit(task)].begin + work_[task]; }
+  double work_of(int task) const { return work_[task]; }
+  double latest_of(int unit) const { return nodes_[unit].latest; }
+  double tail_of(int unit) const { return nodes_[unit].tail; }
+  double label_of(int unit) const { return nodes_[unit].label; }
+  std::span<const int> visits_of(int unit) const { return nodes_[unit].visits; }
+  const Visit& visit(int number) const { return visits_[number]; }
+  // The visits of a route, start and end included.
+  const std::vector<int>& route(int robot) const { return routes_[robot]; }
+  int tasks_in(int robot) const { return static_cast<int>(routes_[robot].size()) - 2; }
+  const Visit& stop(int robot, int at) const { return visits_[routes_[robot][at]]; }
+
+  // What the prerequisites and dependants of a unit that is absent allow; those absent too pass on what they wait for.
+  Labels labels_for(int unit);
+  // What its present prerequisites allow: no earlier than this, windows aside.
+  double ready(int unit) const;
+  // Until when it must begin for its windows and present dependants, if its tasks take so long as `work` says.
+  double latest_for(int unit, std::span<const double> work) const;
+  // How long all that waits for a unit's end takes after the begin, routes aside.
+  double tail_after(int unit, std::span<const double> work) const;
+  // The first time from `earliest` on that the windows of all its tasks allow.
+  double open(int unit, double earliest) const;
+  bool in_time(double begin, double latest) const {
+    return begin <= latest + kRounding * (latest < 1.0 ? 1.0 : latest);
+  }
+
+  // Both leave times as they were until `settle`. A unit goes in at a label between those of its neighbours in every
+  // route, and within `labels_for`.
+  void insert(int unit, std::span<const Member> members);
+  void remove(int unit);
+  // Propagates what was changed. False: no schedule exists; then only `rollback` helps.
+  bool settle();
+
+  // When the last task ends, or the last robot is at its end where that counts.
+  double end() const;
+  double end_of_route(int robot) const;
+  // One after the other the units that the end waits for, the last first.
+  void critical(std::vector<int>& units) const;
+
+  void commit();
+  void rollback();
+
+ private:
+  struct Arc {
+    int task;
+    double after;
+    double within;
+  };
+  struct Node {
+    std::vector<int> visits;
+    double label = 0.0, begin = 0.0, latest = kNever, tail = 0.0;
+    int saved = 0;    // the step in which its times were saved
+    char queued = 0;  // bits: forward, backward
+  };
+  struct Times {
+    int unit;
+    double begin, latest, tail;
+  };
+  struct Change {
+    int unit;
+    bool inserted;
+    int first;  // of its visits in `taken_`, where it was removed
+    double label;
+  };
+  struct Entry {
+    double label;
+    int unit;
+  };
+  enum Side : char { kForward = 1, kBackward = 2 };
+  static constexpr double kRounding = 1e-11;
+
+  void build_arcs();
+  bool label_topologically(const Routes& routes);
+  std::vector<double*> all_labels();
+  void spread(const std::vector<double*>& labels);
+  void relabel();
+  void set_label(int unit, double label);
+  Labels between(std::span<const Member> members) const;
+  void seek_labels(int unit, bool back, Labels& labels);
+
+  int new_visit(const Member& member, int unit);
+  void put(int number, int at);
+  void take(int number);
+  void measure_work(int unit);
+  void restore(const Change& change);
+
+  double way(const Visit& from, const Visit& to) const {
+    if (to.unit < 0 && !problem_.must_end(to.robot)) return 0.0;
+    return problem_.travel_time(to.robot, from.place, to.place);
+  }
+  const Visit& before(const Visit& v) const { return visits_[routes_[v.robot][v.at - 1]]; }
+  const Visit& behind(const Visit& v) const { return visits_[routes_[v.robot][v.at + 1]]; }
+
+  void queue(int unit, Side side);
+  int pop(std::vector<Entry>& heap, Side side);
+  void queue_later(int unit);
+  void queue_earlier(int unit);
+  void queue_all();
+  void drop_queues();
+  bool forward();
+  void backward();
+  bool settle_cycles();
+  double earliest_begin(int unit) const;
+  double latest_begin(int unit);
+  double longest_tail(int unit) const;
+  bool keeps_bounds(int unit) const;
+  void set_begin(Node& node, double begin);
+  void set_latest(Node& node, double latest, double tail);
+  int holder_of(int unit) const;
+  void save(int unit);
+
+  const Problem& problem_;
+  bool has_windows_, has_limits_, has_within_, has_tails_;
+  bool looks_back_;
+  std::vector<std::vector<Arc>> before_, behind_;  // by task: prerequisites, dependants
+  std::vector<Visit> visits_;                      // starts, ends, then those of tasks
+  std::vector<int> free_;
+  std::vector<std::vector<int>> routes_;
+  std::vector<Node> nodes_;
+  std::vector<double> work_;  // by task, of its slowest member
+  std::vector<Entry> forward_, backward_;
+  int budget_ = 0;  // units that `settle_cycles` still looks at, before it holds that bounds rise for ever
+  std::vector<double> works_;
+  // Undo.
+  int step_ = 1;
+  std::vector<Change> changes_;
+  std::vector<int> taken_;
+  std::vector<Times> times_;
+  std::size_t unsorted_ = 0;  // units placed since labels were in order of time
+  // Of `seek_labels`.
+  int stamp_ = 0;
+  std::vector<int> stamp_of_, stack_;
+};
+
+}  // namespace muster

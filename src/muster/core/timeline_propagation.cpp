@@ -1,0 +1,258 @@
+// How a change of routes passes through the schedule.
+#include "timeline.hpp"
+
+#include <algorithm>
+
+namespace muster {
+
+void Timeline::queue(int unit, Side side) {
+  Node& node = nodes_[unit];
+  if ((node.queued & side) || (side == kBackward && !looks_back_)) return;
+  node.queued = static_cast<char>(node.queued | side);
+  auto& heap = side == kForward ? forward_ : backward_;
+  heap.push_back({side == kForward ? -node.label : node.label, unit});
+  std::ranges::push_heap(heap, {}, &Entry::label);
+}
+
+int Timeline::pop(std::vector<Entry>& heap, Side side) {
+  std::ranges::pop_heap(heap, {}, &Entry::label);
+  Node& node = nodes_[heap.back().unit];
+  const int unit = heap.back().unit;
+  heap.pop_back();
+  node.queued = static_cast<char>(node.queued & ~side);
+  return unit;
+}
+
+void Timeline::queue_all() {
+  for (std::size_t unit = 0; unit < nodes_.size(); ++unit) {
+    if (!present(static_cast<int>(unit))) continue;
+    queue(static_cast<int>(unit), kForward);
+    queue(static_cast<int>(unit), kBackward);
+  }
+}
+
+bool Timeline::settle() {
+  if (has_within_ && !(forward_.empty() && backward_.empty())) return settle_cycles();
+  if (!forward()) return false;
+  backward();
+  return true;
+}
+
+double Timeline::earliest_begin(int unit) const {
+  double begin = ready(unit);
+  for (const int number : nodes_[unit].visits) {
+    const Visit& visit = visits_[number];
+    const Visit& last = before(visit);
+    begin = std::max(begin, last.leave + problem_.travel_time(visit.robot, last.place, visit.place));
+  }
+  if (has_within_) {
+    for (const int task : problem_.tasks_of_unit(unit)) {
+      for (const Arc& arc : behind_[task]) {
+        const int other = problem_.unit(arc.task);
+        if (present(other)) begin = std::max(begin, begin_of(other) - arc.within - work_[task]);
+      }
+    }
+  }
+  return open(unit, begin);
+}
+
+double Timeline::latest_begin(int unit) {
+  works_.clear();
+  for (const int task : problem_.tasks_of_unit(unit)) works_.push_back(work_[task]);
+  double latest = latest_for(unit, works_);
+  for (const int number : nodes_[unit].visits) {
+    const Visit& visit = visits_[number];
+    const Visit& next = behind(visit);
+    const double bound = next.latest - way(visit, next) - work_[visit.place];
+    latest = std::min(latest, problem_.last_begin(visit.place, bound));
+  }
+  return latest;
+}
+
+double Timeline::longest_tail(int unit) const {
+  double tail = 0.0;
+  for (const int number : nodes_[unit].visits) {
+    const Visit& visit = visits_[number];
+    const Visit& next = behind(visit);
+    double on = next.tail;
+    if (next.unit >= 0 || problem_.makespan_includes_return()) on += way(visit, next);
+    tail = std::max(tail, work_[visit.place] + on);
+  }
+  for (const int task : problem_.tasks_of_unit(unit)) {
+    for (const Arc& arc : behind_[task]) {
+      const int other = problem_.unit(arc.task);
+      if (present(other)) tail = std::max(tail, work_[task] + arc.after + tail_of(other));
+    }
+  }
+  return tail;
+}
+
+void Timeline::set_begin(Node& node, double begin) {
+  node.begin = begin;
+  for (const int number : node.visits) visits_[number].leave = begin + work_[visits_[number].place];
+}
+
+void Timeline::set_latest(Node& node, double latest, double tail) {
+  node.latest = latest;
+  node.tail = tail;
+  for (const int number : node.visits) {
+    visits_[number].latest = latest;
+    visits_[number].tail = tail;
+  }
+}
+
+// Whether a unit that begins as it does keeps its own bounds.
+bool Timeline::keeps_bounds(int unit) const {
+  const Node& node = nodes_[unit];
+  if (node.begin == kNever) return false;
+  if (!has_limits_) return true;
+  for (const int number : node.visits) {
+    const Visit& visit = visits_[number];
+    if (!in_time(visit.leave, problem_.deadline(visit.place))) return false;
+    const Visit& next = behind(visit);
+    if (next.unit < 0 && !in_time(visit.leave + way(visit, next), next.latest)) return false;
+  }
+  return true;
+}
+
+void Timeline::queue_later(int unit) {
+  for (const int number : nodes_[unit].visits) {
+    if (const int next = behind(visits_[number]).unit; next >= 0) queue(next, kForward);
+  }
+  for (const int task : problem_.tasks_of_unit(unit)) {
+    for (const Arc& arc : behind_[task]) {
+      if (present(problem_.unit(arc.task))) queue(problem_.unit(arc.task), kForward);
+    }
+    if (!has_within_) continue;
+    for (const Arc& arc : before_[task]) {
+      if (arc.within < kNever && present(problem_.unit(arc.task))) queue(problem_.unit(arc.task), kForward);
+    }
+  }
+}
+
+void Timeline::queue_earlier(int unit) {
+  for (const int number : nodes_[unit].visits) {
+    if (const int last = before(visits_[number]).unit; last >= 0) queue(last, kBackward);
+  }
+  for (const int task : problem_.tasks_of_unit(unit)) {
+    for (const Arc& arc : before_[task]) {
+      if (present(problem_.unit(arc.task))) queue(problem_.unit(arc.task), kBackward);
+    }
+    if (!has_within_) continue;
+    for (const Arc& arc : behind_[task]) {
+      if (arc.within < kNever && present(problem_.unit(arc.task))) queue(problem_.unit(arc.task), kBackward);
+    }
+  }
+}
+
+bool Timeline::forward() {
+  bool possible = true;
+  while (!forward_.empty()) {
+    const int unit = pop(forward_, kForward);
+    Node& node = nodes_[unit];
+    if (node.visits.empty()) continue;
+    if (has_within_ && --budget_ < 0) return false;
+    const double begin = earliest_begin(unit);
+    const Visit& first = visits_[node.visits.front()];
+    const bool changed = begin != node.begin || first.leave != begin + work_[first.place];
+    if (changed) {
+      save(unit);
+      set_begin(node, begin);
+      queue_later(unit);
+    }
+    possible = possible && keeps_bounds(unit);
+    if (has_within_ && !possible) return false;
+  }
+  return possible;
+}
+
+void Timeline::backward() {
+  while (!backward_.empty()) {
+    const int unit = pop(backward_, kBackward);
+    Node& node = nodes_[unit];
+    if (node.visits.empty()) continue;
+    const double latest = has_limits_ ? latest_begin(unit) : kNever;
+    const double tail = has_tails_ ? longest_tail(unit) : 0.0;
+    const Visit& first = visits_[node.visits.front()];
+    if (latest == first.latest && tail == first.tail) continue;
+    save(unit);
+    set_latest(node, latest, tail);
+    queue_earlier(unit);
+  }
+}
+
+// Where maximum lags tie begins to each other in cycles, a fixpoint that is not the least may hold itself up. So begins
+// rise from nothing, and latest begins fall from the end of time.
+bool Timeline::settle_cycles() {
+  drop_queues();
+  const auto present_units =
+      static_cast<int>(std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); }));
+  budget_ = 1000 + 64 * present_units;
+  for (std::size_t unit = 0; unit < nodes_.size(); ++unit) {
+    if (nodes_[unit].visits.empty()) continue;
+    save(static_cast<int>(unit));
+    set_begin(nodes_[unit], 0.0);
+    set_latest(nodes_[unit], kNever, 0.0);
+  }
+  queue_all();
+  if (!forward()) return false;
+  backward();
+  return true;
+}
+
+void Timeline::drop_queues() {
+  for (auto* heap : {&forward_, &backward_}) {
+    for (const Entry& entry : *heap) nodes_[entry.unit].queued = 0;
+    heap->clear();
+  }
+}
+
+double Timeline::end_of_route(int robot) const {
+  const auto& route = routes_[robot];
+  if (route.size() == 2) return 0.0;
+  const Visit& last = visits_[route[route.size() - 2]];
+  return problem_.makespan_includes_return() ? last.leave + way(last, visits_[route.back()]) : last.leave;
+}
+
+double Timeline::end() const {
+  double end = 0.0;
+  for (int robot = 0; robot < problem_.robots(); ++robot) end = std::max(end, end_of_route(robot));
+  return end;
+}
+
+void Timeline::critical(std::vector<int>& units) const {
+  units.clear();
+  int last = -1;
+  double end = 0.0;
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    if (end_of_route(robot) <= end) continue;
+    end = end_of_route(robot);
+    last = visits_[routes_[robot][routes_[robot].size() - 2]].unit;
+  }
+  for (int unit = last; unit >= 0 && units.size() < nodes_.size(); unit = holder_of(unit)) units.push_back(unit);
+}
+
+// What a unit begins after: the unit before it in a route, or a prerequisite; none where it waits for neither.
+int Timeline::holder_of(int unit) const {
+  int holder = -1;
+  double bound = -kNever;
+  for (const int number : nodes_[unit].visits) {
+    const Visit& visit = visits_[number];
+    const Visit& last = before(visit);
+    const double arrival = last.leave + problem_.travel_time(visit.robot, last.place, visit.place);
+    if (arrival > bound) {
+      bound = arrival;
+      holder = last.unit;
+    }
+  }
+  for (const int task : problem_.tasks_of_unit(unit)) {
+    for (const Arc& arc : before_[task]) {
+      if (!present(problem_.unit(arc.task)) || end_of(arc.task) + arc.after <= bound) continue;
+      bound = end_of(arc.task) + arc.after;
+      holder = problem_.unit(arc.task);
+    }
+  }
+  return in_time(begin_of(unit), bound) ? holder : -1;
+}
+
+}  // namespace muster
