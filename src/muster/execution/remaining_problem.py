@@ -156,7 +156,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
             hopeless[task.id] = why
         else:
             before = tuple(name for name in task.prerequisites if needs_order and name not in rest.ended)
-            hopeful[task.id] = replace(task, prerequisites=before, only_robots=robots)
+            hopeful[task.id] = replace(task.waiting_for(before), only_robots=robots)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
     waiting = dict(hopeful)
     while ready := [name for name, task in waiting.items() if sure.issuperset(task.prerequisites)]:
