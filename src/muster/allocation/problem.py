@@ -396,6 +396,11 @@ class Problem:
             metres = np.linalg.norm(self._exits[0, places][:, None] - self._entries[0, to][None], axis=2)
         return np.asarray(metres / self.robots[i].speed_mps if self.in_time else metres)
 
+    def travel_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
+        """(len(places), len(to)) the time that robot i takes between places."""
+        legs = self.legs(i, places, to)
+        return legs if self.in_time else np.asarray(legs / self.robots[i].speed_mps)
+
     def work_usage(self, i: int) -> Floats:
         """(n,) usage of robot i for the work of each task."""
         return self.work_seconds(i) if self.in_time else self._work_metres(i)
