@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -136,6 +136,14 @@ class TimedRules:
     def is_for_team(self, j: int) -> bool:
         """Whether more than one robot may have to do a task."""
         return self.problem.holds("team") and self.problem.tasks[j].is_for_team
+
+    def needed(self, j: int) -> Mapping[str, float]:
+        """What the abilities of the robots that do a task must sum to; none: nothing."""
+        return (self.problem.tasks[j].needs or {}) if self.problem.holds("team") else {}
+
+    def has_parts(self, j: int) -> bool:
+        """Whether the robots that do a task are so many of each sort, more than one in all."""
+        return self.is_for_team(j) and not self.needed(j)
 
     def needs(self, j: int) -> list[tuple[float, Floats]]:
         """What the abilities of a team must sum to, with those of each robot."""

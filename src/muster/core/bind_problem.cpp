@@ -1,10 +1,12 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "bindings.hpp"
 #include "problem.hpp"
@@ -33,6 +35,36 @@ Objective objective_of(const std::string& name) {
   throw std::invalid_argument("no such objective: " + name);
 }
 
+Rows rows(const std::vector<std::vector<int>>& lists) {
+  Rows result;
+  for (const auto& list : lists) {
+    result.values.insert(result.values.end(), list.begin(), list.end());
+    result.first.push_back(static_cast<int>(result.values.size()));
+  }
+  return result;
+}
+
+using Windows = std::vector<std::vector<std::pair<double, double>>>;
+using Parts = std::vector<std::vector<std::pair<int, std::vector<bool>>>>;
+
+std::vector<std::vector<TimeWindow>> windows_of(const Windows& windows) {
+  std::vector<std::vector<TimeWindow>> result;
+  for (const auto& row : windows) {
+    auto& own = result.emplace_back();
+    for (const auto& [open, close] : row) own.push_back({open, close});
+  }
+  return result;
+}
+
+std::vector<std::vector<TeamPart>> parts_of(const Parts& parts) {
+  std::vector<std::vector<TeamPart>> result;
+  for (const auto& row : parts) {
+    auto& own = result.emplace_back();
+    for (const auto& [count, allowed] : row) own.push_back({count, {allowed.begin(), allowed.end()}});
+  }
+  return result;
+}
+
 }  // namespace
 
 void bind_problem(nb::module_& m) {
@@ -43,7 +75,10 @@ void bind_problem(nb::module_& m) {
              Numbers efficiency, Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost,
              Indices work_class, Numbers duration, Numbers priority, Indices kind, Flags allowed,
              const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Numbers table,
-             Indices travel_class) {
+             Indices travel_class, const Windows& windows, Numbers deadline, Numbers due, Numbers available_until,
+             Numbers after, Numbers within, Indices unit, const Parts& parts, Numbers abilities, Numbers needs,
+             const std::vector<std::vector<int>>& same_robot, const std::vector<std::vector<int>>& other_robot,
+             Numbers time, Indices time_class, bool makespan_includes_return) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 2 || entry.shape(1) != 3 || exit.ndim() != 2 || exit.shape(1) != 3 || !table_fits) {
@@ -64,28 +99,49 @@ void bind_problem(nb::module_& m) {
             data.priority = numbers(priority);
             data.kind.assign(kind.data(), kind.data() + kind.size());
             data.allowed = flags(allowed);
-            for (const auto& row : prerequisites) {
-              data.prerequisites.values.insert(data.prerequisites.values.end(), row.begin(), row.end());
-              data.prerequisites.first.push_back(static_cast<int>(data.prerequisites.values.size()));
-            }
+            data.prerequisites = rows(prerequisites);
             data.entry = numbers(entry);
             data.exit = numbers(exit);
             data.table = numbers(table);
             data.travel_class.assign(travel_class.data(), travel_class.data() + travel_class.size());
+            data.windows = windows_of(windows);
+            data.deadline = numbers(deadline);
+            data.due = numbers(due);
+            data.available_until = numbers(available_until);
+            data.after = numbers(after);
+            data.within = numbers(within);
+            data.unit.assign(unit.data(), unit.data() + unit.size());
+            data.parts = parts_of(parts);
+            data.abilities = numbers(abilities);
+            data.needs = numbers(needs);
+            data.same_robot = rows(same_robot);
+            data.other_robot = rows(other_robot);
+            data.time = numbers(time);
+            data.time_class.assign(time_class.data(), time_class.data() + time_class.size());
+            data.makespan_includes_return = makespan_includes_return;
             new (self) Problem(std::move(data));
           },
           nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "efficiency"_a, "available_from"_a,
           "must_end"_a, "fixed"_a, "actuation_cost"_a, "work_class"_a, "duration"_a, "priority"_a, "kind"_a,
-          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "table"_a, "travel_class"_a,
+          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "table"_a, "travel_class"_a, "windows"_a, "deadline"_a,
+          "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a, "abilities"_a, "needs"_a,
+          "same_robot"_a, "other_robot"_a, "time"_a, "time_class"_a, "makespan_includes_return"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `kind` "
           "is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, "
           "3) metres in the map "
           "frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each "
           "robot's "
-          "`travel_class`. Raises ValueError if shapes do not fit.")
+          "`travel_class`. What is empty of the rest no task or robot has: by task `windows`, `deadline`, `due`, "
+          "`unit` "
+          "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_robot`, `other_robot`; by "
+          "robot `available_until`; `after` and `within` by prerequisite; `abilities` (m, a) and `needs` (n, a); "
+          "`time` "
+          "is (time classes, n + 2m, n + 2m) seconds with each robot's `time_class`. Raises ValueError if shapes do "
+          "not fit.")
       .def_prop_ro("tasks", &Problem::tasks)
-      .def_prop_ro("robots", &Problem::robots);
+      .def_prop_ro("robots", &Problem::robots)
+      .def_prop_ro("is_timed", &Problem::is_timed, "Whether anything binds tasks to times, teams or relations.");
 }
 
 }  // namespace muster
