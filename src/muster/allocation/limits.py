@@ -127,15 +127,18 @@ class Limits:
         return {}
 
 
-def narrowed(problem: Problem, usage: Floats, ways: Callable[[Problem, int], tuple[Floats, Floats]]) -> Limits:
+def narrowed(
+    problem: Problem, usage: Floats, ways: Callable[[Problem, int], tuple[Floats, Floats]], *, timed: bool = False
+) -> Limits:
     """Narrow the bounds until nothing changes: each pair that is not possible may make others begin later.
 
-    `ways` gives for a robot the seconds until it can be at each task, and from there to the end of its route.
+    `timed` tells whether times are wanted even where none matter. `ways` gives for a robot the
+    seconds until it can be at each task, and from there to the end of its route.
     """
     none = np.empty((0, 0))
     nobody = np.zeros(len(problem.tasks))
     limits = Limits(problem, usage, problem.allowed, none, none, nobody, nobody, (None,) * len(problem.tasks))
-    if not problem.timed_rules.are_any:
+    if not (timed or problem.timed_rules.are_any):
         return replace(limits, usable=limits.possible())
     found = [ways(problem, i) for i in range(len(problem.robots))]
     limits = replace(limits, arrival=np.array([a for a, _ in found]), home=np.array([h for _, h in found]))

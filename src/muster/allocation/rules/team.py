@@ -50,11 +50,8 @@ class Team(Rule):
 
     def refusal(self, problem: Question, i: int, j: int) -> str | None:
         rules = problem.timed_rules
-        if not rules.is_for_team(j):
+        if not rules.is_for_team(j) or rules.needs(j):
             return None
-        if rules.needs(j):
-            useful = any(able[i] > 0 for _, able in rules.needs(j))
-            return None if useful else f"has none of the abilities needed: {needed(problem.tasks[j])}"
         if any(fits[i] for _, fits in rules.parts(j)):
             return None
         return f"fits no part of the team: {needed(problem.tasks[j])}"
@@ -144,6 +141,8 @@ def missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRo
     able = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
     if not rules.is_for_team(j) or not able[i] or in_some_team(problem, j, able)[i]:
         return None
+    if problem.mission.travel_rule == "matrix":
+        return None  # whose ways are known of the robots of the mission alone
     if task.needs is not None:
         return _as_able(problem, i, j, able, names)
     owner = matched(_places(problem, j, able))
