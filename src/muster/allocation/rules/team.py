@@ -12,6 +12,7 @@ import numpy as np
 from muster.allocation.bottleneck import fills, matched, on_some_matching
 from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
 from muster.mission.model import Robot, Task, TeamPart
+from muster.mission.near_matches import did_you_mean
 
 _MOST_NAMED, _MOST_ADDED = 4, 10
 
@@ -36,6 +37,12 @@ class MoreRobots(Change):
         return self.robots
 
 
+def _like_others(problem: Question, j: int) -> str:
+    """Of the abilities that a task needs and no robot has, whether one that a robot has is spelt much like it."""
+    known = sorted({name for robot in problem.robots for name in robot.abilities or ()})
+    return "".join(did_you_mean(name, known) for name in problem.tasks[j].needs or () if name not in known)
+
+
 class Team(Rule):
     """The robot is fit for a part of the team, and the others that may be in it are enough."""
 
@@ -54,7 +61,8 @@ class Team(Rule):
             return None
         if rules.needs(j):
             useful = any(able[i] > 0 for _, able in rules.needs(j))
-            return None if useful else f"has none of the abilities needed: {needed(problem.tasks[j])}"
+            hint = _like_others(problem, j)
+            return None if useful else f"has none of the abilities needed: {needed(problem.tasks[j])}{hint}"
         if any(fits[i] for _, fits in rules.parts(j)):
             return None
         return f"fits no part of the team: {needed(problem.tasks[j])}"
