@@ -171,7 +171,7 @@ class Record:
                 values[name] = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
             elif required(f):
                 faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
-        if len(faults) == before:
+        if len(faults) == before and not any(item is INVALID for item in values.values()):
             values |= self.of.settled(values)
             faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(values))
         return self._instance(values)

@@ -191,7 +191,7 @@ class Work(Checked):
 def _team_faults(values: Mapping[str, Any]) -> Iterable[Fault]:
     ways = [name for name in ("robots_needed", "team", "needs") if values.get(name)]
     if len(ways) > 1:
-        yield Fault((ways[1],), f"beside {ways[0]}", "exactly one of robots_needed, team, needs")
+        yield Fault((ways[1],), f"beside {ways[0]}", "at most one of robots_needed, team, needs")
 
 
 @record

@@ -301,7 +301,7 @@ class OneOrMany(Many):
 
     @property
     def expected(self) -> str:
-        return f"{self.kind.expected}, or {super().expected}"
+        return f"{self.kind.expected}, or a list of such"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, str | int) and not isinstance(value, bool):
