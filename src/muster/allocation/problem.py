@@ -18,6 +18,7 @@ from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
 from muster.allocation.task_geometry import TaskGeometry
+from muster.allocation.time_arrays import time_arrays
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -234,6 +235,8 @@ class Problem:
     @cached_property
     def _kind_keys(self) -> list[tuple[object, ...]]:
         columns = [kinds for rule in RULES if (kinds := rule.kinds(self)) is not None]
+        if any(task.team for task in self.tasks):  # whose parts ask for these
+            columns.append([(robot.type, robot.kind, frozenset(robot.skills)) for robot in self.robots])
         return list(zip(*columns, strict=True))
 
     def _allowed_row(self, i: int) -> Bools:
@@ -272,6 +275,7 @@ class Problem:
             exit=self._exits[0],
             table=measured.table,
             travel_class=measured.classes,
+            **time_arrays(self),
         )
 
     @cached_property

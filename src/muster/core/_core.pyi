@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 class Problem:
     """The compiled question: arrays that no algorithm changes."""
 
-    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], fixed: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], work_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)]) -> None:
+    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], efficiency: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], fixed: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], work_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], duration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], windows: Sequence[Sequence[tuple[float, float]]] = [], deadline: Sequence[float] = [], due: Sequence[float] = [], available_until: Sequence[float] = [], after: Sequence[float] = [], within: Sequence[float] = [], unit: Sequence[int] = [], parts: Sequence[Sequence[tuple[int, Sequence[bool]]]] = [], abilities: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)] | None = None, needs: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)] | None = None, same_robot: Sequence[Sequence[int]] = [], other_robot: Sequence[Sequence[int]] = [], time: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)] | None = None, time_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)] | None = None, makespan_includes_return: bool = False) -> None:
         """
-        Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; `actuation_cost` is (work classes, n) and `work_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Raises ValueError if shapes do not fit.
+        Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; `actuation_cost` is (work classes, n) and `work_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, 3) metres in the map frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. Times, teams and relations, each empty where no task or robot has any: `windows`, `deadline` and `due` by task, `available_until` by robot, lags `after` and `within` for all prerequisites in order, `unit` (tasks that start together share a number), `parts` of teams (how many, of which kinds), `abilities` (m, A) and `needs` (n, A), relations as rows that name each other, `time` (classes, n + 2m, n + 2m) seconds with each robot's `time_class`. Raises ValueError if shapes do not fit.
         """
 
     @property
@@ -20,6 +20,12 @@ class Problem:
 
     @property
     def robots(self) -> int: ...
+
+    @property
+    def is_timed(self) -> bool:
+        """
+        Whether anything binds tasks to times, teams or relations: windows, deadlines, shifts, lags, teams, units, or the objective `lateness`.
+        """
 
 class Insertion:
     """
@@ -58,6 +64,12 @@ class Inspection:
     @property
     def makespan(self) -> float | None:
         """Seconds; None if routes and prerequisites deadlock."""
+
+    @property
+    def stops(self) -> list[list[tuple[int, float, float, float]]] | None:
+        """
+        By robot: task, arrival, begin and end of each stop of the earliest schedule; None if there is none.
+        """
 
     def cheapest_insertion(self, robot: int, task: int) -> Insertion | None:
         """
@@ -276,6 +288,106 @@ class Search:
     @property
     def mean_way(self) -> float:
         """The usual way from one task to the next, in the unit of usage."""
+
+class UnitInsertion:
+    """A unit of work with the robots that do it, and what it costs."""
+
+    @property
+    def unit(self) -> int: ...
+
+    @property
+    def score(self) -> float:
+        """What the objective grows by, ties broken by the routes' growth."""
+
+    @property
+    def growth(self) -> float:
+        """Of usage, all members together."""
+
+    @property
+    def members(self) -> list[tuple[int, int, int]]:
+        """Task, robot and place in its route, of each."""
+
+class Roster:
+    """
+    Routes while an algorithm changes them, where tasks are bound to times, teams and relations.
+    """
+
+    def __init__(self, problem: Problem) -> None: ...
+
+    def begin(self, routes: Sequence[Sequence[int]]) -> bool:
+        """Take over routes; False if there is no schedule for them."""
+
+    def ready(self, unit: int) -> bool:
+        """Whether all that a unit waits for is in routes."""
+
+    def fixed(self, unit: int) -> bool:
+        """Whether a unit stays where it is."""
+
+    @property
+    def absent(self) -> list[int]:
+        """The units in no route."""
+
+    @property
+    def absent_weight(self) -> float: ...
+
+    def usage(self, robot: int) -> float: ...
+
+    def best_insertion(self, unit: int, *, append_only: bool = False, robots: Sequence[int] | None = None) -> UnitInsertion | None:
+        """
+        The team and the places at which a unit costs least, or None. All that it waits for must be in routes; `append_only` looks at the ends of routes alone, `robots` at these alone.
+        """
+
+    def insert(self, insertion: UnitInsertion) -> bool:
+        """False: no schedule exists; then only `rollback` helps."""
+
+    def remove(self, unit: int) -> bool:
+        """False: no schedule exists; then only `rollback` helps."""
+
+    def commit(self) -> None: ...
+
+    def rollback(self) -> None:
+        """Undo everything since the last `commit`."""
+
+    @property
+    def objective(self) -> float: ...
+
+    @property
+    def routes(self) -> list[list[int]]: ...
+
+    @property
+    def stops(self) -> list[list[tuple[int, float, float, float]]]:
+        """By robot: task, arrival, begin and end of each stop."""
+
+class ScheduleSearch:
+    """
+    Ruin and recreate under simulated annealing (SISR), where tasks are bound to times, teams and relations. One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem, start: Sequence[Sequence[int]], seed: int, *, removed: float, longest_string: int, blink: float, greatest_share: float, near: int) -> None:
+        """
+        Begins with the routes and what they leave room for. Raises ValueError if there is no schedule for them.
+        """
+
+    def anneal(self, steps: int, hot: float, cold: float) -> None:
+        """
+        So many steps, while the temperature falls evenly from hot to cold (in the unit of the objective).
+        """
+
+    def go_on_from(self, routes: Sequence[Sequence[int]]) -> None:
+        """Go on from these routes; the best stays."""
+
+    @property
+    def best(self) -> list[list[int]]: ...
+
+    @property
+    def best_weight_left_out(self) -> float: ...
+
+    @property
+    def best_objective(self) -> float: ...
+
+    @property
+    def mean_way(self) -> float:
+        """The usual way from one task to the next, in the unit of the objective."""
 
 class Team:
     """

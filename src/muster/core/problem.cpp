@@ -68,6 +68,7 @@ Problem::Problem(ProblemData data)
     classes_ = 1 + *std::ranges::max_element(data_.travel_class);
     require(data_.table.size() == classes_ * places * places, "the travel table has the wrong size");
   }
+  require_times();
   dependants_ = transposed(data_.prerequisites);
   find_robots_allowed();
   find_units();
@@ -80,8 +81,38 @@ Problem::Problem(ProblemData data)
   }
 }
 
+void Problem::require_times() const {
+  const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
+  const auto places = static_cast<std::size_t>(places_), lags = data_.prerequisites.values.size();
+  const auto each = [](std::size_t size, std::size_t expected) { return size == 0 || size == expected; };
+  require(each(data_.windows.size(), tasks) && each(data_.deadline.size(), tasks) && each(data_.due.size(), tasks) &&
+              each(data_.unit.size(), tasks) && each(data_.parts.size(), tasks) &&
+              each(data_.available_until.size(), robots),
+          "times of tasks or robots have the wrong size");
+  require(each(data_.after.size(), lags) && each(data_.within.size(), lags), "lags need a value for each prerequisite");
+  require(data_.needs.empty() ? data_.abilities.empty()
+                              : data_.needs.size() % tasks == 0 && data_.abilities.size() == robots * abilities(),
+          "abilities and needs have the wrong size");
+  require(std::ranges::all_of(data_.unit, [&](int u) { return 0 <= u && u < tasks_; }), "a unit has no such number");
+  const auto fits = [&](const Rows& rows) {
+    return each(rows.size(), tasks) &&
+           std::ranges::all_of(rows.values, [&](int task) { return 0 <= task && task < tasks_; });
+  };
+  require(fits(data_.same_robot) && fits(data_.other_robot), "relations need a row of tasks for each task");
+  const auto kinds = tasks ? data_.allowed.size() / tasks : 0;
+  for (const auto& row : data_.parts) {
+    require(std::ranges::all_of(row, [&](const TeamPart& p) { return p.count > 0 && p.allowed.size() == kinds; }),
+            "a part of a team has the wrong size");
+  }
+  if (data_.time.empty()) return;
+  require(data_.time_class.size() == robots && std::ranges::all_of(data_.time_class, [](int c) { return c >= 0; }) &&
+              data_.time.size() ==
+                  (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.time_class))) * places * places,
+          "the table of times has the wrong size");
+}
+
 void Problem::find_units() {
-  const int units = data_.unit.empty() ? tasks_ : 1 + *std::ranges::max_element(data_.unit);
+  const int units = data_.unit.empty() || tasks_ == 0 ? tasks_ : 1 + *std::ranges::max_element(data_.unit);
   std::vector<std::vector<int>> tasks(units);
   for (int task = 0; task < tasks_; ++task) tasks[unit(task)].push_back(task);
   for (const auto& row : tasks) {
