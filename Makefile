@@ -7,7 +7,7 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test docs-check docs-check-long figures campaign campaign-auction campaign-server campaign-api network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -36,6 +36,9 @@ figures: $(VENV)/developed
 campaign: $(VENV)/developed
 	$(BIN)/python -m tests.campaign $(CAMPAIGN_FLAGS)
 
+campaign-times: $(VENV)/developed
+	$(BIN)/python -m tests.timed_missions 5000 $(CAMPAIGN_FLAGS)
+
 campaign-auction: $(VENV)/developed
 	$(BIN)/python -m tests.negotiation.campaign $(CAMPAIGN_FLAGS)
 
@@ -58,6 +61,7 @@ help:
 	@echo "make docs-check-long  make what takes minutes, and store it in docs/measured (DOCS='NAME...')"
 	@echo "make figures    draw every figure of every study, and docs/figures.md (STUDIES='rvo ...'); minutes"
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
+	@echo "make campaign-times  5,000 small missions with windows, lags, teams and relations, against every plan of each"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
 	@echo "make campaign-api  many more requests, made from the description of mission control's API, than the tests make"

@@ -44,6 +44,12 @@ def test_it_prints_what_the_command_promises():
         "tasks",
         "done_twice",
         "found",
+        "waiting_by_cause_s",
+        "lateness_s",
+        "missed",
+        "deadlines_missed_s",
+        "within_exceeded_s",
+        "shifts_exceeded_s",
         "remarks",
     ]
     assert (data["done_twice"], data["found"], data["remarks"]) == ({}, [], [])
@@ -60,13 +66,23 @@ def test_it_prints_what_the_command_promises():
     assert data["waiting_s"] == pytest.approx(5, abs=0.03)
     assert data["objective"] == {"name": "total+max", "planned": None, "flown": pytest.approx(8 + 3 + 8)}
     assert data["tasks"] == [
-        {"task": "x", "robot": "a", "usage_planned": 8, "usage_flown": pytest.approx(8), "waiting_s": 0},
+        {
+            "task": "x",
+            "robot": "a",
+            "usage_planned": 8,
+            "usage_flown": pytest.approx(8),
+            "waiting_s": 0,
+            "team": [],
+            "lateness_s": 0,
+        },
         {
             "task": "y",
             "robot": "b",
             "usage_planned": 3,
             "usage_flown": pytest.approx(3),
             "waiting_s": pytest.approx(5, abs=0.03),
+            "team": [],
+            "lateness_s": 0,
         },
     ]
 

@@ -13,6 +13,7 @@ from muster.mission.model import (
     Camera,
     DelayedTask,
     Event,
+    Lag,
     Map,
     Mission,
     MovedTask,
@@ -20,6 +21,7 @@ from muster.mission.model import (
     Robot,
     Rules,
     Task,
+    TeamPart,
     TravelTable,
     Zone,
 )
@@ -83,6 +85,8 @@ all_rules = st.builds(
     travel=st.sampled_from([None, "euclidean"]),
     capacity_reserve=st.floats(0, 1, exclude_max=True),
     stability=st.none() | st.integers(0, 9),
+    timing=st.sampled_from(["profile", "constant"]),
+    makespan_includes_return=st.booleans(),
 )
 corners = st.lists(POINTS[2], min_size=3, max_size=5).map(tuple)
 zones = st.lists(
@@ -122,7 +126,10 @@ ROBOT_KEYS = {
             "efficiency": positive,
             "return_to_start": st.none() | st.booleans(),
             "end_position": MAYBE_POINTS[dimensions],
-            "available_from_s": not_negative,
+            "available_from_s": st.floats(0, 50),
+            "available_until_s": st.none() | st.floats(50, 1e300),
+            "abilities": st.none() | st.dictionaries(words, not_negative, min_size=1, max_size=2),
+            "climb_mps": maybe_positive,
             "heading_deg": numbers,
             "radius_m": not_negative,
             "kind": st.sampled_from(["ground", "air"]),
@@ -135,6 +142,36 @@ ROBOT_KEYS = {
     )
     for dimensions, point in POINTS.items()
 }
+ends = st.lists(st.integers(0, 99), min_size=2, max_size=6, unique=True).map(sorted)
+windows = st.one_of(
+    st.just(()),
+    st.tuples(not_negative, st.none()),
+    ends.map(lambda times: tuple(zip(times[::2], times[1::2], strict=False))),
+)
+"""None, one that is open, or some that are apart."""
+
+lags = st.builds(Lag, after_s=st.sampled_from([0.0, 2.5]), within_s=st.none() | st.floats(2.5, 1e9))
+teams = st.one_of(
+    st.just({}),
+    st.just({}),
+    st.builds(dict, robots_needed=st.integers(1, 4)),
+    st.builds(dict, needs=st.dictionaries(words, positive, min_size=1, max_size=2)),
+    st.builds(
+        dict,
+        team=st.lists(
+            st.builds(
+                TeamPart,
+                count=st.integers(1, 3),
+                type=st.none() | words,
+                kind=st.sampled_from([None, "ground", "air"]),
+                requires=skills,
+            ),
+            min_size=1,
+            max_size=2,
+        ),
+    ),
+)
+moments = st.sampled_from([None, None, "2027-03-01T08:00:00+01:00", "2027-03-01T08:00", "2027-03-01T23:59:59.25Z"])
 TASK_KEYS = {
     dimensions: st.fixed_dictionaries(
         {"position": point},
@@ -147,6 +184,9 @@ TASK_KEYS = {
             "exit": MAYBE_POINTS[dimensions],
             "action": ACTIONS[dimensions],
             "across_partition": st.sampled_from(["at-least-once", "at-most-once"]),
+            "window_s": windows,
+            "deadline_s": st.none() | not_negative,
+            "due_s": st.none() | not_negative,
         },
     )
     for dimensions, point in POINTS.items()
@@ -169,8 +209,9 @@ def missions(draw) -> Mission:
         Task(
             id=name,
             type=task_type(),
-            prerequisites=some_of(draw, tasks[:k]),
             only_robots=some_of(draw, robots) or None,
+            **depending(draw, tasks[:k]),
+            **draw(teams),
             **consistent(draw(TASK_KEYS[size])),
         )
         for k, name in enumerate(tasks)
@@ -178,6 +219,7 @@ def missions(draw) -> Mission:
     return Mission(
         name=draw(words),
         origin_wgs84=draw(origins) if draw(seldom) else None,
+        starts_at=draw(moments),
         rules=draw(all_rules),
         map=draw(maps) if draw(seldom) else None,
         suitability=suitability,
@@ -207,6 +249,17 @@ def some_of(draw, items) -> tuple[str, ...]:
     if not items or not draw(seldom):
         return ()
     return tuple(item for item in items if draw(flags))
+
+
+def depending(draw, earlier):
+    """Prerequisites with and without lags, and relations to others of the earlier tasks, all of which can be kept."""
+    before = some_of(draw, earlier)
+    related = some_of(draw, [name for name in earlier if name not in before])
+    relation = draw(st.sampled_from(["other_robot_than", "same_robot_as"]))
+    kept = {name: draw(lags) for name in before if draw(flags)}
+    return {"prerequisites": before, "lags": kept, "other_robot_than": related} | (
+        {"other_robot_than": (), relation: related[:1]} if draw(flags) else {}
+    )
 
 
 def consistent(values):

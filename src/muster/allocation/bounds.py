@@ -9,15 +9,17 @@ rounding, some 1e-12 relative.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from graphlib import TopologicalSorter
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from muster.allocation.earliest_times import EarliestTimes, in_time, kth_least, opened
 from muster.allocation.feasibility import least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.spanning import Ways, route_bounds
+from muster.allocation.team_copies import with_copies
 from muster.mission.errors import MusterError
 
 _MOST_KINDS = 10  # kinds of task, by the robots that can do them, that are looked at for crowding
@@ -36,7 +38,7 @@ WHY = {
     _LEAST_WAYS: "no robot arrives anywhere with less usage than by the shortest way (Dijkstra, Num. Math. 1, 1959)",
     _IN_TURN: "robots do one task after the other, at best the shortest first"
     " (Conway, Maxwell and Miller, Theory of Scheduling, 1967)",
-    _CRITICAL: "a task waits for its robot and its prerequisites, and they for theirs"
+    _CRITICAL: "a task waits for its robots, its prerequisites and its windows, and they for theirs"
     " (Kelley and Walker, Eastern Joint Computer Conference, 1959)",
     _NO_TASKS: "there is nothing to do",
     _NOBODY: "no plan does it",
@@ -87,6 +89,8 @@ def best_bound(problem: Problem) -> Bound:
         return _average(problem, usable)
     if problem.objective == "makespan":
         return _makespan(problem, usable)
+    if problem.objective == "lateness":
+        return _lateness(problem, usable)
     return _usage(problem, usable, least)
 
 
@@ -100,7 +104,12 @@ def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
     and what `_crowding` tells. (3) Total and greatest usage together are at least the sum of their bounds, for the same
     k. The bound is the least over k.
     """
-    alone = float(np.where(usable, least, math.inf).min(axis=0).max())
+    members = [problem.timed_rules.least_members(j) for j in range(len(problem.tasks))]
+    alone = float(kth_least(np.where(usable, least, math.inf), members).max())
+    copied = with_copies(problem, usable)
+    if copied is None:
+        return _by_tasks_alone(problem, np.where(usable, least, math.inf), members)
+    problem, usable = copied.problem, copied.usable
     crowded = _crowding(problem, usable) if problem.objective != "total" else 0.0
     capacity = np.sort(problem.capacity[usable.any(axis=1)])[::-1]
 
@@ -119,6 +128,13 @@ def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
     }
     best = max(greatest, key=lambda name: greatest[name])
     return Bound(float(values[k]), {"total": (_TREES,), "max": (best,)}.get(problem.objective, (_TREES, best)))
+
+
+def _by_tasks_alone(problem: Problem, least: Floats, members: Sequence[int]) -> Bound:
+    """Bound `total`, `max` and `total+max` by the task that takes most, for each robot that it needs at least."""
+    greatest = float(kth_least(least, members).max())
+    total = max(float(np.sort(column)[:k].sum()) for column, k in zip(least.T, members, strict=True))
+    return Bound({"total": total, "max": greatest, "total+max": total + greatest}[problem.objective], (_FARTHEST,))
 
 
 def _evened(totals: Floats, capacity: Floats) -> Floats:
@@ -154,18 +170,6 @@ def _crowding(problem: Problem, usable: Bools) -> float:
     return max(float(route_bounds(Ways.of(problem, usable, w), np.asarray).min()) for w in weights)
 
 
-def _open(problem: Problem) -> Problem:
-    """The problem whose routes may end anywhere."""
-    robots = tuple(replace(robot, return_to_start=False, end_position=None) for robot in problem.robots)
-    return replace(problem, robots=robots)
-
-
-def _in_time(problem: Problem) -> Problem:
-    """The problem whose usage is time; its capacities mean nothing."""
-    rules = replace(problem.mission.rules, usage="time")
-    return replace(problem, mission=replace(problem.mission, rules=rules))
-
-
 def _average(problem: Problem, usable: Bools) -> Bound:
     """Bound the mean usage on arrival.
 
@@ -174,14 +178,15 @@ def _average(problem: Problem, usable: Bools) -> Bound:
     j, and the work of the task before. The sum of arrivals is at least that of e_j times the number of tasks from j to
     the end of its route; no more than m tasks have the same number. So it is at least the sum of the e in descending
     order times 1 (m of them), 2 (m of them), and so on, by the rearrangement inequality: the rule of the shortest
-    processing time first on parallel machines [conway1967].
+    processing time first on parallel machines [conway1967]. A team arrives with the last of its k robots: in (1) no
+    earlier than the k-th least, in (2) no earlier than any one of them, whose route may go through more tasks.
     """
     n, m = usable.shape[1], int(usable.any(axis=1).sum())
-    opened = _open(problem)
+    open_ended = opened(problem)
     work = np.array([problem.work_usage(i) for i in range(len(problem.robots))])
-    arrivals = np.where(usable, least_usages(opened) - work, math.inf)
-    alone = float(arrivals.min(axis=0).mean())
-    steps = np.sort(Ways.of(opened, usable).entering(after_work=True))[::-1]
+    arrivals = np.where(usable, least_usages(open_ended) - work, math.inf)
+    alone = float(kth_least(arrivals, [problem.timed_rules.least_members(j) for j in range(len(problem.tasks))]).mean())
+    steps = np.sort(Ways.of(open_ended, usable).entering(after_work=True))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
     return max(Bound(alone, (_LEAST_WAYS,)), Bound(in_turn, (_IN_TURN,)), key=lambda b: b.value)
 
@@ -189,27 +194,35 @@ def _average(problem: Problem, usable: Bools) -> Bound:
 def _makespan(problem: Problem, usable: Bools) -> Bound:
     """Bound the time at which the last task ends.
 
-    Theorem. (1) Critical path: a task begins no earlier than its robot can be there, over all ways, and no earlier than
-    its prerequisites can have ended; it ends its work later. (2) The robots of k routes are on their way or at work for
-    no longer than from when they are available to the last end: k times that is at least the least total time of k open
-    routes plus the k least times of availability. The bound is the least over k, and at least (1).
+    Theorem. (1) Critical path: no task begins earlier than `EarliestTimes` tells, by its robots, its prerequisites and
+    its windows. (2) The robots of k routes are on their way or at work for no longer than from when they are available
+    to the last end: k times that is at least the least total time of k routes, the tasks of teams counted for each
+    member, plus the k least times of availability. The bound is the least over k, and at least (1). Routes are open,
+    unless the way to the robots' ends counts.
     """
-    timed = _open(_in_time(problem))
-    work = np.array([timed.work_usage(i) for i in range(len(problem.robots))])
+    timed, earliest = in_time(problem), EarliestTimes.of(problem, usable)
+    with_return = problem.mission.rules.makespan_includes_return
+    critical = float((earliest.homes if with_return else earliest.ends).max())
+    copied = with_copies(timed if with_return else opened(timed), usable)
+    if copied is None or math.isinf(critical):
+        return Bound(critical, (_CRITICAL,))
     available = np.array([robot.available_from_s for robot in problem.robots])
-    there = np.where(usable, available[:, None] + least_usages(timed) - work, math.inf)
-    ends = np.zeros(len(problem.tasks))
-    for j in TopologicalSorter(dict(enumerate(problem.prerequisites))).static_order():
-        ready = max((ends[k] for k in problem.prerequisites[j]), default=0.0)
-        ends[j] = (np.maximum(there[:, j], ready) + work[:, j]).min()
-    critical = float(ends.max())
     waits = np.cumsum(np.sort(available[usable.any(axis=1)]))
 
     def worth(totals: Floats) -> Floats:
         routes = len(totals)
         return np.asarray(np.maximum((totals + waits[:routes]) / np.arange(1, routes + 1), critical))
 
-    shared = float(worth(route_bounds(Ways.of(timed, usable), worth)).min())
+    shared = float(worth(route_bounds(Ways.of(copied.problem, copied.usable), worth)).min())
     if shared > critical:
         return Bound(shared, (_SHARE,))
     return Bound(critical, (_CRITICAL,))
+
+
+def _lateness(problem: Problem, usable: Bools) -> Bound:
+    """Bound the weighted sum of what tasks end after they are due: none ends earlier than `EarliestTimes` tells."""
+    ends = EarliestTimes.of(problem, usable).ends
+    if not np.isfinite(ends).all():
+        return Bound(math.inf, (_CRITICAL,))
+    priority = np.array([task.priority for task in problem.tasks])
+    return Bound(float((priority * np.maximum(0.0, ends - problem.timed_rules.due)).sum()), (_CRITICAL,))

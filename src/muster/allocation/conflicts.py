@@ -1,7 +1,7 @@
 """Conflicts: sets of tasks that can each be done, but not all in one plan, with a proof.
 
-That no admissible plan does a set of tasks is proven by lower bounds on usage (`usage_bounds`); that a set of tasks can
-be done is shown by a plan that was found and judged (`witness_plans`).
+That no admissible plan does a set of tasks is proven by lower bounds on usage and times (`usage_bounds`); that a set of
+tasks can be done is shown by a plan that was found and judged (`witness_plans`).
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from muster.allocation.conflict_texts import conflict_text, in_mission_order
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
-from muster.allocation.rules.rule import ROUNDING
-from muster.allocation.usage_bounds import FEW, UsageBounds
+from muster.allocation.subset_times import tied_pairs
+from muster.allocation.usage_bounds import UsageBounds
 from muster.allocation.witness_plans import Judge, attempt, can_do, closed, does_all
 from muster.mission.clock import Clock, SystemClock
-from muster.mission.model import Robot, Task
 
 _LEFT_OUT_TRIED = 5
 _BEFORE_PROOFS = 1  # seed of the last search before proofs are tried
@@ -92,7 +92,12 @@ def _proven(
 def _candidates(
     bounds: UsageBounds, tasks: Sequence[int], missing: Iterable[int]
 ) -> Iterator[tuple[list[int], list[int]]]:
-    """Tasks that may conflict and all robots that can do any: few robots' own, then few around each task left out."""
+    """Tasks that may conflict and all robots that can do any.
+
+    Those tied by who does them, few robots' own, then few around each task left out.
+    """
+    for pair in tied_pairs(bounds.problem, tasks):
+        yield from bounds.groups(closed(bounds.problem, pair))
     yield from bounds.groups(tasks)
     hardest = sorted(tasks, key=lambda j: -bounds.hardness[j])
     for j in sorted(missing, key=lambda j: -bounds.hardness[j])[:_LEFT_OUT_TRIED]:
@@ -101,7 +106,7 @@ def _candidates(
         for order in (rivals, hardest):
             few = {j}
             for k in order:
-                if len(closed(bounds.problem, {*few, k})) <= FEW:
+                if bounds.is_few(closed(bounds.problem, {*few, k})):
                     few.add(k)
             yield from bounds.groups(closed(bounds.problem, few))
 
@@ -120,28 +125,9 @@ def _minimal(bounds: UsageBounds, tasks: list[int], judge: Judge, left: Callable
     needed = closed(problem, core)
     robots = np.flatnonzero(bounds.possible[:, needed].any(axis=1)).tolist()
     return Conflict(
-        tasks=_in_mission_order(problem.mission.tasks, [problem.tasks[j].id for j in core]),
-        prerequisites=_in_mission_order(problem.mission.tasks, [problem.tasks[j].id for j in needed if j not in core]),
-        robots=_in_mission_order(problem.mission.robots, [problem.robots[i].id for i in robots]),
-        detail=_detail(bounds, robots, needed),
+        tasks=in_mission_order(problem.mission.tasks, [problem.tasks[j].id for j in core]),
+        prerequisites=in_mission_order(problem.mission.tasks, [problem.tasks[j].id for j in needed if j not in core]),
+        robots=in_mission_order(problem.mission.robots, [problem.robots[i].id for i in robots]),
+        detail=conflict_text(bounds, robots, needed),
         minimal=minimal,
     )
-
-
-def _in_mission_order(items: Sequence[Robot] | Sequence[Task], names: Sequence[str]) -> tuple[str, ...]:
-    chosen = set(names)
-    return tuple(item.id for item in items if item.id in chosen)
-
-
-def _detail(bounds: UsageBounds, robots: list[int], tasks: list[int]) -> str:
-    problem, unit = bounds.problem, bounds.problem.usage_unit
-    names = ", ".join(_in_mission_order(problem.mission.robots, [problem.robots[i].id for i in robots]))
-    capacity = float(problem.capacity[robots].sum())
-    least = bounds.least_together(robots, tasks)
-    if len(robots) == 1 and len(tasks) <= FEW:
-        least = float(bounds.subset_usages(robots[0], tasks)[-1])
-    if least > capacity * (1 + ROUNDING):
-        who = f"only {names} can do them, and would use" if len(robots) == 1 else f"together {names} would use"
-        digits = next((d for d in (2, 4, 6) if f"{least:.{d}f}" != f"{capacity:.{d}f}"), 9)
-        return f"{who} at least {least:.{digits}f} {unit}, of {capacity:.{digits}f} {unit}"
-    return f"however {names} share them out, one of the robots would need more than its capacity"

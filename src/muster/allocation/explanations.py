@@ -10,6 +10,7 @@ from muster import core
 from muster.allocation.feasibility import least_usage
 from muster.allocation.problem import Problem
 from muster.allocation.rules import InPlan
+from muster.allocation.timed_places import TimedPlaces, in_plan
 from muster.mission.auction_book import Award, Book
 from muster.mission.plan import Reason, Unassigned
 
@@ -21,7 +22,7 @@ def unassigned(
 
     From when `hurried` says so tasks come without reasons.
     """
-    plan = InPlan(problem, routes)
+    plan = in_plan(problem, routes)
     order = {task.id: k for k, task in enumerate(problem.mission.tasks)}
     missing = (j for j in range(len(problem.tasks)) if j not in plan.done)
     left_out = sorted(missing, key=lambda j: order[problem.tasks[j].id])
@@ -63,10 +64,20 @@ def _reason(problem: Problem, plan: InPlan, i: int, j: int) -> Reason:
         detail = rule.left_out(plan, i, j)
         if detail is not None:
             return Reason(problem.robots[i].id, rule.word, detail)
+    at, usage = _fitting(plan, i, j)
+    detail = f"fits as number {at + 1}, for {usage:.2f} {problem.usage_unit} in all"
+    return Reason(problem.robots[i].id, "not-chosen", detail)
+
+
+def _fitting(plan: InPlan, i: int, j: int) -> tuple[int, float]:
+    """Where a task fits into the route of a robot that no rule keeps from it, and the usage of the route with it."""
+    if isinstance(plan, TimedPlaces):
+        found = plan.outcome(i, j)
+        assert found.place is not None  # or a rule would have said why
+        return found.place.at, found.usage
     insertion = plan.insertion(i, j)
     assert insertion is not None  # or a rule would have said why
-    detail = f"fits as number {insertion.at + 1}, for {insertion.usage:.2f} {problem.usage_unit} in all"
-    return Reason(problem.robots[i].id, "not-chosen", detail)
+    return insertion.at, insertion.usage
 
 
 def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...]:
@@ -106,19 +117,15 @@ class Alternative:
 def alternatives(problem: Problem, routes: Sequence[Sequence[int]], j: int) -> tuple[Alternative, ...]:
     """For every robot, in mission order, what giving it task j instead would do, the rest of the plan as it is."""
     rest = [[k for k in route if k != j] for route in routes]
-    plan = InPlan(problem, rest)
-    return tuple(
-        _alternative(problem, plan, rest, problem.robot_index[robot.id], j) for robot in problem.mission.robots
-    )
+    plan = in_plan(problem, rest)
+    return tuple(_alternative(problem, plan, problem.robot_index[robot.id], j) for robot in problem.mission.robots)
 
 
-def _alternative(problem: Problem, plan: InPlan, rest: list[list[int]], i: int, j: int) -> Alternative:
+def _alternative(problem: Problem, plan: InPlan, i: int, j: int) -> Alternative:
     why = _reason(problem, plan, i, j)
-    insertion = plan.insertion(i, j) if why.reason == "not-chosen" else None
-    if insertion is None:
+    if why.reason != "not-chosen":
         return Alternative(why.robot, None, None, why)
-    routes = [list(route) for route in rest]
-    routes[i].insert(insertion.at, j)
-    objective = core.Inspection(problem.core, routes).objective
+    at, _ = _fitting(plan, i, j)
+    objective = core.Inspection(problem.core, plan.with_task(i, j, at)).objective
     finite = objective if objective is not None and math.isfinite(objective) else None
-    return Alternative(why.robot, insertion.at + 1, finite, None)
+    return Alternative(why.robot, at + 1, finite, None)

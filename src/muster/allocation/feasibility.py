@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import heapq
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
+from muster.allocation.limits import Limits, narrowed
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules import Outlook
 from muster.mission.plan import Reason, Unassigned
+
+Legs = Callable[[int, Any, Any], Floats]
 
 _MOST_WAYS = 5_000_000  # robots times tasks squared, up to which ways through short cuts are looked at
 
@@ -17,15 +22,16 @@ _MOST_WAYS = 5_000_000  # robots times tasks squared, up to which ways through s
 def impossible(problem: Problem) -> tuple[Unassigned, ...]:
     """Tasks that no robot can do in any admissible plan, in mission order, each with a reason for every robot.
 
-    These are the tasks that no robot may do, those out of every robot's reach by themselves, and those whose
-    prerequisites are impossible. There can be others, such as a chain of prerequisites too long for the team.
+    These are the tasks that no robot may do, those out of every robot's reach or too late for it by themselves, those
+    without a team, and those whose prerequisites, or tasks that begin with them, are impossible. There can be others,
+    such as a chain of prerequisites too long for the robots.
     """
-    least = np.array([least_usage(problem, i) for i in range(len(problem.robots))])
-    lost = dict.fromkeys(np.flatnonzero(~usable_pairs(problem, least).any(axis=0)).tolist(), "")
+    limits = limits_of(problem)
+    lost = dict.fromkeys(np.flatnonzero(~limits.usable.any(axis=0)).tolist(), "")
     waiting = list(lost)
     while waiting:
         before = waiting.pop()
-        for j in problem.dependants[before]:
+        for j in (*problem.dependants[before], *problem.timed_rules.beginning_with(before)):
             if j not in lost:
                 lost[j] = problem.tasks[before].id
                 waiting.append(j)
@@ -33,7 +39,7 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
     order = [problem.task_index[task.id] for task in problem.mission.tasks]
 
     def reasons(j: int) -> tuple[Reason, ...]:
-        return tuple(_reason(problem, i, j, Outlook(float(least[i, j]), lost[j])) for i in robots)
+        return tuple(_reason(problem, i, j, Outlook(limits, float(limits.usage[i, j]), lost[j])) for i in robots)
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in order if j in lost)
 
@@ -46,13 +52,18 @@ def _reason(problem: Problem, i: int, j: int, outlook: Outlook) -> Reason:
 
 
 def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
-    """(m, n) the pairs of robot and task that may be in an admissible plan, as far as single robots tell."""
-    least = least_usages(problem) if least is None else least
-    usable = problem.allowed
-    for rule in problem.rules:
-        possible = rule.possible(problem, least)
-        usable = usable if possible is None else usable & possible
-    return np.asarray(usable)
+    """(m, n) the pairs of robot and task that may be in an admissible plan, as far as lower bounds tell."""
+    return limits_beside(problem, least_usages(problem) if least is None else least).usable
+
+
+def limits_of(problem: Problem) -> Limits:
+    """Lower bounds of usage and times, and the pairs that they leave."""
+    return limits_beside(problem, np.array([least_usage(problem, i) for i in range(len(problem.robots))]))
+
+
+def limits_beside(problem: Problem, least: Floats) -> Limits:
+    """Lower bounds of times beside those of usage, and the pairs that they leave."""
+    return narrowed(problem, least, _least_times)
 
 
 def least_usages(problem: Problem) -> Floats:
@@ -61,32 +72,48 @@ def least_usages(problem: Problem) -> Floats:
     That is `least_usage`; where too many paths through short cuts would have to be compared, the work alone.
     """
     robots = range(len(problem.robots))
-    if len(problem.robots) * len(problem.shortcuts()) * len(problem.tasks) <= _MOST_WAYS:
+    if _few_ways(problem):
         return np.array([least_usage(problem, i) for i in robots])
     return np.array([problem.work_usage(i) for i in robots])
 
 
 def least_usage(problem: Problem, i: int) -> Floats:
-    """(n,) the least usage of any route of robot i that holds the task; inf where there is none.
+    """(n,) the least usage of any route of robot i that holds the task; inf where there is none."""
+    there, back = _least_ways(problem, i, problem.legs, problem.work_usage(i))
+    return np.asarray(there + problem.work_usage(i) + back)
 
-    Where travel keeps the triangle inequality that is the straight way there, the work, and the way to the robot's end.
-    It does not where a travel table says otherwise or a task is left elsewhere than entered: ways through such tasks
-    are looked at too.
+
+def _few_ways(problem: Problem) -> bool:
+    return len(problem.robots) * len(problem.shortcuts()) * len(problem.tasks) <= _MOST_WAYS
+
+
+def _least_times(problem: Problem, i: int) -> tuple[Floats, Floats]:
+    """(n,) seconds until robot i can be at each task, and (n,) from there to the end of its route; or less."""
+    if not _few_ways(problem):
+        nothing = np.zeros(len(problem.tasks))
+        return nothing + problem.robots[i].available_from_s, nothing
+    there, back = _least_ways(problem, i, problem.travel_seconds, problem.work_seconds(i))
+    return there + problem.robots[i].available_from_s, back
+
+
+def _least_ways(problem: Problem, i: int, legs: Legs, work: Floats) -> tuple[Floats, Floats]:
+    """(n,) the least ways of robot i from its start to each task, and from there to the end of its route.
+
+    Where travel keeps the triangle inequality those are the straight ways. It does not where a travel table says
+    otherwise or a task is left elsewhere than entered: ways through such tasks are looked at too.
     """
     tasks = np.arange(len(problem.tasks))
     through = [int(j) for j in problem.shortcuts() if problem.may(i, int(j))]
-    work = problem.work_usage(i)
-    there = problem.legs(i, [problem.start(i)], tasks)[0]
-    between = problem.legs(i, through, tasks)
+    there = legs(i, [problem.start(i)], tasks)[0]
+    between = legs(i, through, tasks)
     arrival = _shortest(there[through], between[:, through] + work[through, None])
     there = np.minimum(there, _via(arrival + work[through], between))
     if problem.robots[i].place_at_end(problem.mission.rules) is None:
-        return np.asarray(there + work)
-    back = problem.legs(i, tasks, [problem.end(i)])[:, 0]
-    between = problem.legs(i, tasks, through)
+        return there, np.zeros_like(there)
+    back = legs(i, tasks, [problem.end(i)])[:, 0]
+    between = legs(i, tasks, through)
     departure = _shortest(back[through], (between[through] + work[through]).T)
-    back = np.minimum(back, _via(departure + work[through], between.T))
-    return np.asarray(there + work + back)
+    return there, np.minimum(back, _via(departure + work[through], between.T))
 
 
 def _via(first: Floats, then: Floats) -> Floats:

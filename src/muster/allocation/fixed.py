@@ -35,7 +35,7 @@ def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
     it has used. A robot whose past has a leg without a path is taken to be at its start; no task waits for its past.
     """
     begun = {j for route in past for j in route}
-    free = tuple(replace(task, prerequisites=()) if j in begun else task for j, task in enumerate(problem.tasks))
+    free = tuple(task.waiting_for(()) if j in begun else task for j, task in enumerate(problem.tasks))
     kept = replace(problem, tasks=free, fixed=tuple(map(tuple, past)), known=problem.measured)
     usages = core.Inspection(kept.core, [list(route) for route in past]).usages
     capacity = problem.capacity
@@ -50,7 +50,7 @@ def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
     return replace(
         kept,
         robots=robots,
-        tasks=tuple(replace(t, prerequisites=tuple(p for p in t.prerequisites if p not in lost)) for t in free),
+        tasks=tuple(t.waiting_for(p for p in t.prerequisites if p not in lost) for t in free),
         fixed=tuple(() if math.isinf(usage) else tuple(route) for route, usage in zip(past, usages, strict=True)),
     )
 

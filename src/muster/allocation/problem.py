@@ -18,7 +18,8 @@ from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
 from muster.allocation.subproblem import cut_down
 from muster.allocation.task_geometry import TaskGeometry
-from muster.allocation.time_arrays import time_arrays
+from muster.allocation.timed_arrays import timed_arrays
+from muster.allocation.timed_rules import TimedRules
 from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -165,6 +166,11 @@ class Problem:
         return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
 
     @cached_property
+    def timed_rules(self) -> TimedRules:
+        """The rules of time, teams and relations that hold."""
+        return TimedRules(self)
+
+    @cached_property
     def dependants(self) -> list[list[int]]:
         """For each task the indices of the tasks that wait for it."""
         waiting: list[list[int]] = [[] for _ in self.tasks]
@@ -235,8 +241,7 @@ class Problem:
     @cached_property
     def _kind_keys(self) -> list[tuple[object, ...]]:
         columns = [kinds for rule in RULES if (kinds := rule.kinds(self)) is not None]
-        if any(task.team for task in self.tasks):  # whose parts ask for these
-            columns.append([(robot.type, robot.kind, frozenset(robot.skills)) for robot in self.robots])
+        columns.append([self.timed_rules.in_team(i) for i in range(len(self.robots))])
         return list(zip(*columns, strict=True))
 
     def _allowed_row(self, i: int) -> Bools:
@@ -275,7 +280,7 @@ class Problem:
             exit=self._exits[0],
             table=measured.table,
             travel_class=measured.classes,
-            **time_arrays(self),
+            **timed_arrays(self.timed_rules, self.kinds, self.mission),
         )
 
     @cached_property
@@ -390,6 +395,11 @@ class Problem:
         else:
             metres = np.linalg.norm(self._exits[0, places][:, None] - self._entries[0, to][None], axis=2)
         return np.asarray(metres / self.robots[i].speed_mps if self.in_time else metres)
+
+    def travel_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
+        """(len(places), len(to)) the time that robot i takes between places."""
+        legs = self.legs(i, places, to)
+        return legs if self.in_time else np.asarray(legs / self.robots[i].speed_mps)
 
     def work_usage(self, i: int) -> Floats:
         """(n,) usage of robot i for the work of each task."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from muster.allocation.allocator import Outcome, finished_plan, routes_of
+from muster import core
+from muster.allocation.allocator import Outcome, Routes, finished_plan, routes_of
 from muster.allocation.bounds import best_bound, sound_bound
 from muster.allocation.exact import require_ortools, solve_exactly
 from muster.allocation.problem import Problem
@@ -79,7 +80,8 @@ def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -
     start = routes_of(problem, plan)
     result = solve_exactly(problem, seconds, start, plan.seed or 0, interrupted=lambda: stop.interrupted)
     weight, objective = problem.value(result.routes)
-    if (-weight, objective) < (-(plan.weight_completed or 0.0), plan.objective_value or 0.0):
+    found, known = (-weight, objective), (-(plan.weight_completed or 0.0), plan.objective_value or 0.0)
+    if found < known or (found == known and _is_cheaper(problem, result.routes, plan)):
         stop.improved(weight, objective)
         outcome = Outcome(result.routes)
         plan = finished_plan(problem, stop, outcome, allocator=f"{plan.allocator}, exact", seed=plan.seed or 0)
@@ -90,3 +92,9 @@ def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -
     else:
         why = f"whether more tasks can be done is not known after {seconds:g} s of {_SOLVER}"
     return Proof(replace(plan, lower_bound=result.lower_bound), why)
+
+
+def _is_cheaper(problem: Problem, routes: Routes, plan: Plan) -> bool:
+    """Whether routes have the lower total cost, which is what breaks ties of lateness."""
+    cost = sum(core.Inspection(problem.core, routes).usages)
+    return problem.objective == "lateness" and plan.total_cost is not None and cost < plan.total_cost

@@ -8,15 +8,15 @@ from dataclasses import replace
 
 from muster import core
 from muster.allocation.allocator import Routes
+from muster.allocation.changed_problem import changed, pair_changes, with_capacity
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.remedy import Before, Remedy
-from muster.allocation.rules import Change
 from muster.allocation.rules.capacity import CapacityChange
 from muster.allocation.rules.rule import ROUNDING
+from muster.allocation.timed_remedies import timed_remedy
 from muster.allocation.usage_bounds import FEW, UsageBounds
 from muster.allocation.witness_plans import Judge, attempt, bare_plan, closed
-from muster.mission.model import Robot, Task
 
 _NARROWINGS = 6  # of what is known of the least capacity: each halves what is not known
 _MOST_SEARCHED = 6  # robots, those that need least with the rest of the plan as it is, for which plans are searched
@@ -25,6 +25,9 @@ _NEAR_ENOUGH = 1e-3  # relative
 
 def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Remedy, ...]:
     """For every robot, in mission order, the remedy with which it can do task j."""
+    if problem.timed_rules.are_any:
+        order = [problem.robot_index[robot.id] for robot in problem.mission.robots]
+        return tuple(timed_remedy(problem, routes, i, j, judge) for i in order)
     first = dict(_needs_as_is(problem, routes, j))
     able = [i for i, remedy in first.items() if not remedy.unable]
     searched = set(sorted(able, key=lambda i: first[i].size)[:_MOST_SEARCHED])
@@ -44,6 +47,9 @@ def smallest_as_is(problem: Problem, routes: Routes, j: int, judge: Judge) -> Re
 
     Where prerequisites are left out they would have to be done first: such a change is never said to be enough.
     """
+    if problem.timed_rules.are_any:
+        robots = range(len(problem.robots))
+        return smallest([timed_remedy(problem, routes, i, j, judge, searched=False) for i in robots])
     first = dict(_needs_as_is(problem, routes, j))
     order = sorted((i for i, remedy in first.items() if not remedy.unable), key=lambda i: first[i].size)
     if order and first[order[0]].before:
@@ -80,7 +86,7 @@ def _needs_as_is(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int
         enough = room if room is None or now is None else max(room, now)
         capacity = CapacityChange(now=now, as_is=room, enough=enough)
         unable = problem.action_refusal(i, j) or ""
-        changes = _changes(problem, robot, problem.tasks[j])
+        changes = pair_changes(problem, robot, problem.tasks[j])
         yield i, Remedy(robot=robot.id, changes=changes, before=before, unable=unable, capacity=capacity)
 
 
@@ -98,30 +104,6 @@ def _put(rest: Routes, i: int, j: int, at: int) -> Routes:
 def _work_capacity(problem: Problem, usage: float) -> float:
     """The work capacity of which this much is usable."""
     return usage / (1.0 - problem.mission.rules.capacity_reserve)
-
-
-def _changes(problem: Problem, robot: Robot, task: Task) -> dict[str, Change]:
-    """By the words of rules the changes with which the robot may do the task."""
-    found = {rule.word: rule.change(problem, robot, task) for rule in problem.rules if rule.key is not None}
-    return {word: change for word, change in found.items() if change is not None}
-
-
-def changed(problem: Problem, remedy: Remedy, i: int, j: int) -> Problem:
-    """The problem with the changes of the remedy, and its capacity."""
-    robot, task, suitability = problem.robots[i], problem.tasks[j], problem.mission.suitability
-    enough = remedy.capacity.enough
-    capacity = robot.work_capacity if remedy.capacity.now is None or enough is None else enough
-    abler, freer = replace(robot, work_capacity=capacity), task
-    for change in remedy.changes.values():
-        abler, freer = change.robot(abler), change.task(freer, robot)
-        suitability = None if suitability is None else change.suitability(suitability)
-    mission = replace(
-        problem.mission,
-        robots=tuple(abler if one.id == robot.id else one for one in problem.mission.robots),
-        tasks=tuple(freer if one.id == task.id else one for one in problem.mission.tasks),
-        suitability=suitability,
-    )
-    return Problem.compile(mission, problem.objective, problem.ignored)
 
 
 def _without(routes: Routes, j: int) -> Routes:
@@ -166,7 +148,7 @@ def _searched_for(problem: Problem, routes: Routes, i: int, j: int, remedy: Reme
         remedy = replace(remedy, before=tuple(Before(name.task, name.task not in never) for name in remedy.before))
     only = replace(base.tasks[j], only_robots=(remedy.robot,))
     sole = replace(base, tasks=tuple(only if k == j else task for k, task in enumerate(base.tasks)))
-    bounds = UsageBounds(_with_capacity(sole, i, None))
+    bounds = UsageBounds(with_capacity(sole, i, None))
     if not bounds.possible[i, j]:
         return _not_found(replace(remedy, unreachable=True, impossible=True))
     if as_is is not None and (now is None or as_is <= now * (1 + ROUNDING)):
@@ -213,7 +195,7 @@ def _narrowed(sole: Problem, rest: Routes, needed: list[int], i: int, j: int, re
 
 def _with_task(sole: Problem, rest: Routes, i: int, j: int) -> Routes | None:
     """The routes with task j in that of robot i, if they are admissible with unlimited capacity of the robot."""
-    problem = _with_capacity(sole, i, None)
+    problem = with_capacity(sole, i, None)
     place = _cheapest_place(core.Inspection(problem.core, rest), i, j)
     routes = None if place is None else _put(rest, i, j, place[0])
     return routes if routes is not None and _admissible(problem, routes) else None
@@ -224,16 +206,10 @@ def _rearranged(sole: Problem, rest: Routes | None, needed: list[int], i: int, c
 
     The search begins with the rest of the plan, if that is given and admissible.
     """
-    problem = _with_capacity(sole, i, capacity)
+    problem = with_capacity(sole, i, capacity)
     start = rest if rest is not None and _admissible(problem, rest) else None
     routes = attempt(problem, needed, start=start)
     return routes if not set(needed).difference(*routes) else None
-
-
-def _with_capacity(problem: Problem, i: int, capacity: float | None) -> Problem:
-    robots = list(problem.robots)
-    robots[i] = replace(robots[i], work_capacity=capacity)
-    return replace(problem, robots=tuple(robots))
 
 
 def _admissible(problem: Problem, routes: Routes) -> bool:
@@ -246,7 +222,9 @@ def least_beside(bounds: UsageBounds, i: int, j: int, tasks: Sequence[int]) -> f
     problem = bounds.problem
     others = [k for k in range(len(problem.robots)) if k != i]
     few, reached = list(tasks), [0]
-    if len(few) <= FEW:
+    if problem.timed_rules.are_any:
+        few = [j]  # others may do all else, as far as usage tells
+    elif len(few) <= FEW:
         reached = bounds.shares(others, few)
     else:
         own = [k for k in tasks if k != j and not bounds.possible[others, k].any()]

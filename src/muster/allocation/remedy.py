@@ -52,10 +52,10 @@ class Remedy:
         )
 
     @property
-    def size(self) -> tuple[int, float]:
-        """What changes are compared by: the number of kinds, then by how much the capacity grows."""
+    def size(self) -> tuple[int, float, float]:
+        """What changes are compared by: the number of kinds, the time they give, then the growth of the capacity."""
         grown = (self.capacity.enough or 0.0) - (self.capacity.now or 0.0) if self.capacity.grows else 0.0
-        return len(self.kinds), grown
+        return len(self.kinds), sum(change.seconds for change in self.changes.values()), grown
 
     def as_dict(self) -> dict[str, Any]:
         """The remedy as plain data, with a key for each rule that robots can be changed for."""

@@ -1,8 +1,9 @@
-"""Lower bounds on the usage of robots that do certain tasks; a bound above the capacities proves that they cannot.
+"""Lower bounds on the usage and times of robots that do certain tasks; one above a limit proves that they cannot.
 
-For few tasks they are each robot's least usage for every subset ([held-karp1962]) and all ways to share the tasks out;
-for many a spanning forest from the starts of the robots that can do them. Neither sees that robots may wait for each
-other in a circle: where that alone forbids a plan, nothing is proven.
+For few tasks they are each robot's least usage and earliest end for every subset ([held-karp1962]) and all ways to
+share the tasks out, as many times as they have members; for many a spanning forest from the starts of the robots that
+can do them. Neither sees that robots may wait for each other in a circle, or for each other's teams: where that alone
+forbids a plan, nothing is proven.
 """
 
 from __future__ import annotations
@@ -14,10 +15,12 @@ from functools import cached_property
 
 import numpy as np
 
-from muster.allocation.feasibility import least_usages, usable_pairs
+from muster.allocation.feasibility import least_usages, limits_beside
+from muster.allocation.limits import Limits
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.spanning import spanning_tree
+from muster.allocation.subset_times import followers, keep_relations, least_ways, subset_ends, ways_of
 from muster.allocation.witness_plans import closed
 
 FEW = 10  # tasks, up to which all subsets are looked at
@@ -39,7 +42,12 @@ class UsageBounds:
     @cached_property
     def possible(self) -> Bools:
         """(m, n) whether a robot can do a task, as far as single robots tell."""
-        return usable_pairs(self.problem, self.least)
+        return self.limits.usable
+
+    @cached_property
+    def limits(self) -> Limits:
+        """Lower bounds of usage and times."""
+        return limits_beside(self.problem, self.least)
 
     @cached_property
     def hardness(self) -> Floats:
@@ -63,23 +71,46 @@ class UsageBounds:
 
     def exceed(self, robots: list[int], tasks: list[int]) -> bool:
         """Whether it is proven that robots cannot do all the tasks, which no other robot does."""
-        if len(tasks) <= FEW:
-            return (1 << len(tasks)) - 1 not in self.shares(robots, tasks)
+        if self.is_few(tasks):
+            return self.every_place(tasks) not in self.shares(robots, tasks)
         capacity = float(self.problem.capacity[robots].sum())
         return math.isfinite(capacity) and self.least_together(robots, tasks) > capacity * (1 + ROUNDING)
 
+    def is_few(self, tasks: Sequence[int]) -> bool:
+        """Whether all ways to share tasks out can be looked at."""
+        return sum(map(self.problem.timed_rules.least_members, tasks)) <= FEW
+
+    def every_place(self, tasks: Sequence[int]) -> int:
+        """All places of tasks, as bits: of each as many as it has members at least."""
+        return (1 << sum(map(self.problem.timed_rules.least_members, tasks))) - 1
+
     def shares(self, robots: Iterable[int], tasks: Sequence[int]) -> list[int]:
-        """The largest sets of few tasks, as bits, that robots may be able to do between them."""
-        everything, reached, known = (1 << len(tasks)) - 1, [0], dict[bytes, list[int]]()
+        """The largest sets of places of few tasks, as bits, that robots may be able to fill between them."""
+        everything, reached, known = self.every_place(tasks), [0], dict[bytes, list[int]]()
+        places = _places(self.problem, tasks)
         for i in robots:
             if everything in reached:
                 break
-            ways, capacity = self._ways_of(i, tasks), self.problem.capacity[i] * (1 + ROUNDING)
-            key = b"".join((ways.tobytes(), self.problem.work_usage(i)[list(tasks)].tobytes(), capacity.tobytes()))
+            key = self._share_key(i, tasks)
             if key not in known:
-                known[key] = _largest(np.flatnonzero(self.subset_usages(i, tasks) <= capacity).tolist())
-            reached = _largest(before | share for before in reached for share in known[key])
+                known[key] = _largest(np.flatnonzero(self.may_do(i, tasks)).tolist())
+            reached = _largest(_filled(places, before, share) for before in reached for share in known[key])
         return reached
+
+    def _share_key(self, i: int, tasks: Sequence[int]) -> bytes:
+        """Robots with the same key can do the same sets of tasks."""
+        if self.limits.is_timed:
+            return str(i).encode()
+        ways, capacity = self._ways_of(i, tasks), self.problem.capacity[i]
+        return b"".join((ways.tobytes(), self.problem.work_usage(i)[list(tasks)].tobytes(), capacity.tobytes()))
+
+    def may_do(self, i: int, tasks: Sequence[int]) -> Bools:
+        """(2**k,) whether robot i may be able to do each set of k tasks: by usage, by time, by relations."""
+        usages = self.subset_usages(i, tasks)
+        able = usages <= self.problem.capacity[i] * (1 + ROUNDING)
+        if self.limits.is_timed:
+            able &= np.isfinite(subset_ends(self.limits, i, tasks)) & keep_relations(self.problem, tasks)
+        return np.asarray(able)
 
     def subset_usages(self, i: int, tasks: Sequence[int]) -> Floats:
         """(2**k,) least usage of robot i for each set of k tasks, bit by bit; inf where it may not do one of them.
@@ -88,7 +119,7 @@ class UsageBounds:
         """
         count, ways = len(tasks), self._ways_of(i, tasks)
         work = self.problem.work_usage(i)[list(tasks)]
-        after = _followers(self.problem, tasks)
+        after = followers(self.problem, tasks)
         usage = np.full((1 << count, count), math.inf)  # by tasks done and the last of them
         for k in range(count):
             usage[1 << k, k] = ways[0, k + 1] + work[k]
@@ -103,13 +134,7 @@ class UsageBounds:
 
     def _ways_of(self, i: int, tasks: Sequence[int]) -> Floats:
         """(k + 2, k + 2) least travel of robot i between its start, k tasks and its end."""
-        problem = self.problem
-        places = [problem.start(i), *tasks, problem.end(i)]
-        ways = _least_ways(problem, i, places)
-        ways[:, [k for k, j in enumerate(tasks, 1) if not problem.allowed[i, j]]] = math.inf
-        if problem.robots[i].place_at_end(problem.mission.rules) is None:
-            ways[:, -1] = 0.0
-        return ways
+        return ways_of(self.problem, i, tasks, self.problem.legs, self.problem.work_usage(i))
 
     def least_together(self, robots: Sequence[int], tasks: Sequence[int]) -> float:
         """What robots use at least, together, to do tasks that no other robot does.
@@ -137,7 +162,7 @@ class UsageBounds:
             kind = speed, table, problem.allowed[i, through].tobytes(), problem.work_usage(i)[through].tobytes()
             if kind not in known:
                 known.add(kind)
-                near = np.minimum(near, _least_ways(problem, i, range(count)))
+                near = np.minimum(near, least_ways(problem, i, range(count), problem.legs, problem.work_usage(i)))
         return np.asarray(np.minimum(near, near.T))
 
     @cached_property
@@ -147,24 +172,27 @@ class UsageBounds:
         if not len(problem.shortcuts()):
             return np.array([problem.legs(i, [problem.start(i)], range(count))[0] for i in range(len(problem.robots))])
         places = [[problem.start(i), *range(count)] for i in range(len(problem.robots))]
-        return np.array([_least_ways(problem, i, listed)[0, 1:] for i, listed in enumerate(places)])
+        ways = (least_ways(problem, i, near, problem.legs, problem.work_usage(i)) for i, near in enumerate(places))
+        return np.array([way[0, 1:] for way in ways])
 
 
-def _least_ways(problem: Problem, i: int, places: Sequence[int]) -> Floats:
-    """(p, p) least travel of robot i between places, ways through other tasks included with the work there."""
-    through = [int(j) for j in problem.shortcuts() if problem.allowed[i, j]]
-    nodes = [*places, *through]
-    ways = problem.legs(i, nodes, nodes)
-    work = problem.work_usage(i)
-    for at, j in enumerate(through, len(places)):
-        ways = np.minimum(ways, ways[:, at, None] + work[j] + ways[None, at])
-    return ways[: len(places), : len(places)].copy()
+def _places(problem: Problem, tasks: Sequence[int]) -> list[int]:
+    """For each task its places, as bits."""
+    places, first = [], 0
+    for j in tasks:
+        count = problem.timed_rules.least_members(j)
+        places.append(((1 << count) - 1) << first)
+        first += count
+    return places
 
 
-def _followers(problem: Problem, tasks: Sequence[int]) -> list[int]:
-    """For each of few tasks those that must come after it, as bits."""
-    before = [set(closed(problem, [j])) for j in tasks]
-    return [sum(1 << k for k in range(len(tasks)) if tasks[k] != j and j in before[k]) for j in tasks]
+def _filled(places: Sequence[int], before: int, share: int) -> int:
+    """The places that are filled once one more robot does a set of tasks: of each the first free one."""
+    for k, of_task in enumerate(places):
+        if share >> k & 1 and of_task & ~before:
+            free = of_task & ~before
+            before |= free & -free
+    return before
 
 
 def _largest(sets: Iterable[int]) -> list[int]:

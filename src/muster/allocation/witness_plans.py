@@ -21,11 +21,12 @@ _OTHERS_WEIGHT = 1e-6  # of a task that only shortens ways
 
 
 def closed(problem: Problem, tasks: Iterable[int]) -> list[int]:
-    """Tasks with all that must come before them, in order."""
-    needed = set(tasks)
+    """Tasks with all that must come before them or begin with them, in order."""
+    needed, rules = set(tasks), problem.timed_rules
     waiting = list(needed)
     while waiting:
-        new = set(problem.prerequisites[waiting.pop()]) - needed
+        j = waiting.pop()
+        new = {*problem.prerequisites[j], *rules.beginning_with(j)} - needed
         needed |= new
         waiting += new
     return sorted(needed)

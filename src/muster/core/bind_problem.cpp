@@ -1,11 +1,9 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -37,36 +35,34 @@ Objective objective_of(const std::string& name) {
   throw std::invalid_argument("no such objective: " + name);
 }
 
-using Lists = std::vector<std::vector<int>>;
-using Times = std::vector<double>;
+Rows rows(const std::vector<std::vector<int>>& lists) {
+  Rows result;
+  for (const auto& list : lists) {
+    result.values.insert(result.values.end(), list.begin(), list.end());
+    result.first.push_back(static_cast<int>(result.values.size()));
+  }
+  return result;
+}
+
 using Windows = std::vector<std::vector<std::pair<double, double>>>;
 using Parts = std::vector<std::vector<std::pair<int, std::vector<bool>>>>;
 
-Rows rows_of(const Lists& lists) {
-  Rows rows;
-  for (const auto& row : lists) {
-    rows.values.insert(rows.values.end(), row.begin(), row.end());
-    rows.first.push_back(static_cast<int>(rows.values.size()));
-  }
-  return rows;
-}
-
-std::vector<std::vector<TimeWindow>> windows_of(const Windows& lists) {
-  std::vector<std::vector<TimeWindow>> windows;
-  for (const auto& row : lists) {
-    auto& own = windows.emplace_back();
+std::vector<std::vector<TimeWindow>> windows_of(const Windows& windows) {
+  std::vector<std::vector<TimeWindow>> result;
+  for (const auto& row : windows) {
+    auto& own = result.emplace_back();
     for (const auto& [open, close] : row) own.push_back({open, close});
   }
-  return windows;
+  return result;
 }
 
-std::vector<std::vector<TeamPart>> parts_of(const Parts& lists) {
-  std::vector<std::vector<TeamPart>> parts;
-  for (const auto& row : lists) {
-    auto& own = parts.emplace_back();
+std::vector<std::vector<TeamPart>> parts_of(const Parts& parts) {
+  std::vector<std::vector<TeamPart>> result;
+  for (const auto& row : parts) {
+    auto& own = result.emplace_back();
     for (const auto& [count, allowed] : row) own.push_back({count, {allowed.begin(), allowed.end()}});
   }
-  return parts;
+  return result;
 }
 
 }  // namespace
@@ -78,11 +74,11 @@ void bind_problem(nb::module_& m) {
           [](Problem* self, const std::string& objective, bool usage_is_time, Numbers capacity, Numbers speed,
              Numbers efficiency, Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost,
              Indices work_class, Numbers duration, Numbers priority, Indices kind, Flags allowed,
-             const Lists& prerequisites, Numbers entry, Numbers exit, Numbers table, Indices travel_class,
-             const Windows& windows, Times deadline, Times due, Times available_until, Times after, Times within,
-             std::vector<int> unit, const Parts& parts, std::optional<Numbers> abilities, std::optional<Numbers> needs,
-             const Lists& same_robot, const Lists& other_robot, std::optional<Numbers> time,
-             std::optional<Indices> time_class, bool makespan_includes_return) {
+             const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Numbers table,
+             Indices travel_class, const Windows& windows, Numbers deadline, Numbers due, Numbers available_until,
+             Numbers after, Numbers within, Indices unit, const Parts& parts, Numbers abilities, Numbers needs,
+             const std::vector<std::vector<int>>& same_robot, const std::vector<std::vector<int>>& other_robot,
+             Numbers time, Indices time_class, bool makespan_includes_return) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 2 || entry.shape(1) != 3 || exit.ndim() != 2 || exit.shape(1) != 3 || !table_fits) {
@@ -103,53 +99,49 @@ void bind_problem(nb::module_& m) {
             data.priority = numbers(priority);
             data.kind.assign(kind.data(), kind.data() + kind.size());
             data.allowed = flags(allowed);
-            data.prerequisites = rows_of(prerequisites);
+            data.prerequisites = rows(prerequisites);
             data.entry = numbers(entry);
             data.exit = numbers(exit);
             data.table = numbers(table);
             data.travel_class.assign(travel_class.data(), travel_class.data() + travel_class.size());
             data.windows = windows_of(windows);
-            data.deadline = std::move(deadline);
-            data.due = std::move(due);
-            data.available_until = std::move(available_until);
-            data.after = std::move(after);
-            data.within = std::move(within);
-            data.unit = std::move(unit);
+            data.deadline = numbers(deadline);
+            data.due = numbers(due);
+            data.available_until = numbers(available_until);
+            data.after = numbers(after);
+            data.within = numbers(within);
+            data.unit.assign(unit.data(), unit.data() + unit.size());
             data.parts = parts_of(parts);
-            if (abilities) data.abilities = numbers(*abilities);
-            if (needs) data.needs = numbers(*needs);
-            data.same_robot = rows_of(same_robot);
-            data.other_robot = rows_of(other_robot);
-            if (time) data.time = numbers(*time);
-            if (time_class) data.time_class.assign(time_class->data(), time_class->data() + time_class->size());
+            data.abilities = numbers(abilities);
+            data.needs = numbers(needs);
+            data.same_robot = rows(same_robot);
+            data.other_robot = rows(other_robot);
+            data.time = numbers(time);
+            data.time_class.assign(time_class.data(), time_class.data() + time_class.size());
             data.makespan_includes_return = makespan_includes_return;
             new (self) Problem(std::move(data));
           },
           nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "efficiency"_a, "available_from"_a,
           "must_end"_a, "fixed"_a, "actuation_cost"_a, "work_class"_a, "duration"_a, "priority"_a, "kind"_a,
-          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "table"_a, "travel_class"_a, "windows"_a = Windows(),
-          "deadline"_a = Times(), "due"_a = Times(), "available_until"_a = Times(), "after"_a = Times(),
-          "within"_a = Times(), "unit"_a = std::vector<int>(), "parts"_a = Parts(), "abilities"_a = nb::none(),
-          "needs"_a = nb::none(), "same_robot"_a = Lists(), "other_robot"_a = Lists(), "time"_a = nb::none(),
-          "time_class"_a = nb::none(), "makespan_includes_return"_a = false,
+          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "table"_a, "travel_class"_a, "windows"_a, "deadline"_a,
+          "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a, "abilities"_a, "needs"_a,
+          "same_robot"_a, "other_robot"_a, "time"_a, "time_class"_a, "makespan_includes_return"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `kind` "
           "is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, "
           "3) metres in the map "
           "frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each "
           "robot's "
-          "`travel_class`. Times, teams and relations, each empty where no task or robot has any: `windows`, "
-          "`deadline` "
-          "and `due` by task, `available_until` by robot, lags `after` and `within` for all prerequisites in order, "
-          "`unit` (tasks that start together share a number), `parts` of teams (how many, of which kinds), `abilities` "
-          "(m, A) and `needs` (n, A), relations as rows that name each other, `time` (classes, n + 2m, n + 2m) seconds "
-          "with each robot's `time_class`. Raises ValueError if shapes do not fit.")
+          "`travel_class`. What is empty of the rest no task or robot has: by task `windows`, `deadline`, `due`, "
+          "`unit` "
+          "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_robot`, `other_robot`; by "
+          "robot `available_until`; `after` and `within` by prerequisite; `abilities` (m, a) and `needs` (n, a); "
+          "`time` "
+          "is (time classes, n + 2m, n + 2m) seconds with each robot's `time_class`. Raises ValueError if shapes do "
+          "not fit.")
       .def_prop_ro("tasks", &Problem::tasks)
       .def_prop_ro("robots", &Problem::robots)
-      .def_prop_ro(
-          "is_timed", &Problem::is_timed,
-          "Whether anything binds tasks to times, teams or relations: windows, deadlines, shifts, lags, teams, "
-          "units, or the objective `lateness`.");
+      .def_prop_ro("is_timed", &Problem::is_timed, "Whether anything binds tasks to times, teams or relations.");
 }
 
 }  // namespace muster

@@ -137,6 +137,12 @@ std::optional<double> Evaluator::makespan(const Draft& draft) {
     ends_[task] = begin + problem_.work_time(robot, task);
     latest = std::max(latest, ends_[task]);
   }
+  if (!problem_.makespan_includes_return()) return latest;
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    if (!problem_.must_end(robot) || draft.length(robot) == 0) continue;
+    const int last = draft.route(robot).back();
+    latest = std::max(latest, ends_[last] + problem_.travel_time(robot, last, problem_.end(robot)));
+  }
   return latest;
 }
 

@@ -68,7 +68,7 @@ Problem::Problem(ProblemData data)
     classes_ = 1 + *std::ranges::max_element(data_.travel_class);
     require(data_.table.size() == classes_ * places * places, "the travel table has the wrong size");
   }
-  require_times();
+  check_times();
   dependants_ = transposed(data_.prerequisites);
   find_robots_allowed();
   find_units();
@@ -81,38 +81,39 @@ Problem::Problem(ProblemData data)
   }
 }
 
-void Problem::require_times() const {
+void Problem::check_times() const {
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
-  const auto places = static_cast<std::size_t>(places_), lags = data_.prerequisites.values.size();
-  const auto each = [](std::size_t size, std::size_t expected) { return size == 0 || size == expected; };
-  require(each(data_.windows.size(), tasks) && each(data_.deadline.size(), tasks) && each(data_.due.size(), tasks) &&
-              each(data_.unit.size(), tasks) && each(data_.parts.size(), tasks) &&
-              each(data_.available_until.size(), robots),
-          "times of tasks or robots have the wrong size");
-  require(each(data_.after.size(), lags) && each(data_.within.size(), lags), "lags need a value for each prerequisite");
-  require(data_.needs.empty() ? data_.abilities.empty()
-                              : data_.needs.size() % tasks == 0 && data_.abilities.size() == robots * abilities(),
-          "abilities and needs have the wrong size");
-  require(std::ranges::all_of(data_.unit, [&](int u) { return 0 <= u && u < tasks_; }), "a unit has no such number");
-  const auto fits = [&](const Rows& rows) {
-    return each(rows.size(), tasks) &&
-           std::ranges::all_of(rows.values, [&](int task) { return 0 <= task && task < tasks_; });
-  };
-  require(fits(data_.same_robot) && fits(data_.other_robot), "relations need a row of tasks for each task");
-  const auto kinds = tasks ? data_.allowed.size() / tasks : 0;
+  const auto fits = [](std::size_t size, std::size_t expected) { return size == 0 || size == expected; };
+  require(fits(data_.windows.size(), tasks) && fits(data_.deadline.size(), tasks) && fits(data_.due.size(), tasks) &&
+              fits(data_.unit.size(), tasks) && fits(data_.parts.size(), tasks),
+          "times of tasks need a value for each task");
+  require(fits(data_.available_until.size(), robots), "shifts need a value for each robot");
+  const std::size_t edges = data_.prerequisites.values.size();
+  require(fits(data_.after.size(), edges) && fits(data_.within.size(), edges),
+          "lags need a value for each prerequisite");
+  const std::size_t abilities = tasks ? data_.needs.size() / tasks : 0;
+  require(data_.needs.size() == abilities * tasks && data_.abilities.size() == abilities * robots,
+          "abilities have the wrong size");
+  for (const Rows* relation : {&data_.same_robot, &data_.other_robot}) {
+    require(fits(relation->values.empty() ? 0 : static_cast<std::size_t>(relation->size()), tasks) &&
+                std::ranges::all_of(relation->values, [&](int j) { return 0 <= j && j < tasks_; }),
+            "relations need a row for each task");
+  }
+  const std::size_t kinds = tasks ? data_.allowed.size() / tasks : 0;
   for (const auto& row : data_.parts) {
-    require(std::ranges::all_of(row, [&](const TeamPart& p) { return p.count > 0 && p.allowed.size() == kinds; }),
-            "a part of a team has the wrong size");
+    require(std::ranges::all_of(row, [&](const TeamPart& part) { return part.allowed.size() == kinds; }),
+            "a part of a team needs a flag for each kind");
   }
   if (data_.time.empty()) return;
-  require(data_.time_class.size() == robots && std::ranges::all_of(data_.time_class, [](int c) { return c >= 0; }) &&
-              data_.time.size() ==
-                  (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.time_class))) * places * places,
-          "the table of times has the wrong size");
+  require(data_.time_class.size() == robots && std::ranges::all_of(data_.time_class, [](int c) { return c >= 0; }),
+          "time classes need a value for each robot");
+  const auto classes = 1 + static_cast<std::size_t>(*std::ranges::max_element(data_.time_class));
+  const auto places = static_cast<std::size_t>(places_);
+  require(data_.time.size() == classes * places * places, "the table of times has the wrong size");
 }
 
 void Problem::find_units() {
-  const int units = data_.unit.empty() || tasks_ == 0 ? tasks_ : 1 + *std::ranges::max_element(data_.unit);
+  const int units = data_.unit.empty() ? tasks_ : 1 + *std::ranges::max_element(data_.unit);
   std::vector<std::vector<int>> tasks(units);
   for (int task = 0; task < tasks_; ++task) tasks[unit(task)].push_back(task);
   for (const auto& row : tasks) {
@@ -122,7 +123,7 @@ void Problem::find_units() {
   timed_ = has_time_limits() || !data_.after.empty() || !data_.within.empty() || !data_.unit.empty() ||
            !data_.parts.empty() || !data_.needs.empty() || !data_.same_robot.values.empty() ||
            !data_.other_robot.values.empty() || data_.objective == Objective::lateness ||
-           data_.makespan_includes_return;
+           (data_.makespan_includes_return && data_.objective == Objective::makespan);
 }
 
 void Problem::find_robots_allowed() {

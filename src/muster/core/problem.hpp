@@ -222,7 +222,7 @@ class Problem {
  private:
   void find_robots_allowed();
   void find_units();
-  void require_times() const;
+  void check_times() const;
   double straight(int from, int to) const {
     const double* a = &data_.exit[3 * static_cast<std::size_t>(from)];
     const double* b = &data_.entry[3 * static_cast<std::size_t>(to)];

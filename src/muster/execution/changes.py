@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger
+from muster.execution.task_ledger import Ledger, robot_as_it_holds
 from muster.execution.task_motion import place
+from muster.execution.team_work import break_off
 from muster.execution.travel import Travel
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, Mission, Robot, Task
@@ -86,10 +87,16 @@ class Changes:
         if state.out == FAILED or (state.out and why != FAILED):
             return
         state.out, state.out_s = why, now
-        if state.route:
+        broken: tuple[str, ...] = ()
+        if state.activity is Activity.WORKING:
+            broken = break_off(self.crew, self.ledger, state.route[0], now)
+        elif state.route and state.route[0] not in self.ledger.starts_s:
             self.ledger.give_up(state.route[0])
         state.stop(now)
         yield Change(why, {"robot": state.robot.id} | ({"reason": detail} if detail else {}))
+        for task in broken:
+            if len(self.ledger.unit(task)) > 1 or self.ledger.tasks[task].is_for_team:
+                yield Change("work_broken_off", {"task": task, "robot": state.robot.id})
 
     def readmit(self, state: RobotState, now: float) -> Iterator[Change]:
         """Let a robot take part again, from where it is."""
@@ -109,14 +116,14 @@ class Changes:
 
     def _join(self, robot: Robot, now: float) -> Change:
         self.require_newcomer(robot)
-        self.crew[robot.id] = new_robot_state(self.mission, robot, self.ports, now)
+        self.crew[robot.id] = new_robot_state(self.mission, robot, self.ports, now, self.ledger.ignored)
         return Change("robot_joins", {"robot": plain(robot)})
 
     def _add(self, task: Task) -> Change:
         if task.id in self.ledger.tasks:
             raise ParameterError(f"new_task: {shown(task.id)}; expected an id that no task has")
         self._require_fit("new_task", tasks=(task,))
-        self.ledger.tasks[task.id] = task
+        self.ledger.add(task)
         return Change("new_task", {"task": plain(task)})
 
     def _require_fit(self, what: str, *, robots: tuple[Robot, ...] = (), tasks: tuple[Task, ...] = ()) -> None:
@@ -136,6 +143,7 @@ class Changes:
         self.ledger.withdraw(task, now)
         for state in self.crew.values():
             state.route = [name for name in state.route if name != task]
+        self.ledger.expire(task, "cancelled")
         yield Change("cancel_task", {"task": task})
 
     def _move(self, task: str, to: tuple[float, ...], now: float) -> Iterator[Change]:
@@ -146,7 +154,7 @@ class Changes:
         at = self._at(task)
         if task in self.ledger.ends_s or task in self.ledger.cancelled:
             return
-        if at is not None and at.activity is Activity.WORKING:
+        if any(state.activity is Activity.WORKING for state in at):
             return
         self._leave(task, now)
         self.ledger.move(task, to)
@@ -160,13 +168,16 @@ class Changes:
             yield Change("delay_task", {"task": task, "by_s": by_s})
 
     def _leave(self, task: str, now: float) -> None:
-        """Stop the robot that is at a task or on the way to it."""
-        state = self._at(task)
-        if state is not None and state.activity not in (Activity.IDLE, Activity.RETURNING):
-            state.stop(now)
+        """Stop the robots that are at a task or on the way to it."""
+        at = self._at(task)
+        if any(state.activity is Activity.WORKING for state in at):
+            break_off(self.crew, self.ledger, task, now)
+        for state in at:
+            if state.activity not in (Activity.IDLE, Activity.RETURNING):
+                state.stop(now)
 
-    def _at(self, task: str) -> RobotState | None:
-        return next((state for state in self.crew.values() if state.route[:1] == [task]), None)
+    def _at(self, task: str) -> list[RobotState]:
+        return [state for state in self.crew.values() if state.route[:1] == [task]]
 
     def _robot_state(self, robot: str) -> RobotState:
         if robot not in self.crew:
@@ -179,7 +190,9 @@ class Changes:
         return task
 
 
-def new_robot_state(mission: Mission, robot: Robot, ports: Mapping[str, RobotPort], now: float) -> RobotState:
+def new_robot_state(
+    mission: Mission, robot: Robot, ports: Mapping[str, RobotPort], now: float, ignored: Collection[str] = ()
+) -> RobotState:
     """A robot that begins to take part.
 
     Raises
@@ -192,7 +205,12 @@ def new_robot_state(mission: Mission, robot: Robot, ports: Mapping[str, RobotPor
     home = robot.place_at_end(mission.rules)
     in_time = mission.rules.usage == "time"
     return RobotState(
-        robot, ports[robot.id], None if home is None else place(home), in_time, last_heard_s=now, since_s=now
+        robot_as_it_holds(robot, ignored),
+        ports[robot.id],
+        None if home is None else place(home),
+        in_time,
+        last_heard_s=now,
+        since_s=now,
     )
 
 

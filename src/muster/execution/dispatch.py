@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from muster.execution.beginning import Beginning, next_begin
 from muster.execution.changes import Change
 from muster.execution.monitor import exceeds
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger
+from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, Work, path_length, work_of
+from muster.execution.team_work import break_off
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 
@@ -22,8 +25,10 @@ class Dispatch:
 
     Parameters
     ----------
-    ledger
-        of the tasks.
+    ledger, crew
+        of the tasks; of the robots.
+    beginning
+        says whether work may begin.
     capacity
         how much a robot can use; None: any amount.
     plan_motion, way
@@ -38,6 +43,8 @@ class Dispatch:
     def __init__(
         self,
         ledger: Ledger,
+        crew: Mapping[str, RobotState],
+        beginning: Beginning,
         capacity: Callable[[RobotState], float | None],
         plan_motion: MotionPlanner,
         way: Way,
@@ -45,6 +52,8 @@ class Dispatch:
         leave: Callable[[str], bool] | None = None,
     ) -> None:
         self._ledger = ledger
+        self._crew = crew
+        self._beginning = beginning
         self._capacity = capacity
         self._plan_motion = plan_motion
         self._way = way
@@ -66,8 +75,7 @@ class Dispatch:
     def send_on(self, state: RobotState, now: float) -> Iterator[Change]:
         """Send a robot on that is available, or may begin; yields a change that requires a new plan if it cannot."""
         if state.activity is Activity.WAITING:
-            if self._ledger.may_begin(state.route[0]) and (self._leave is None or self._leave(state.route[0])):
-                self._work(state, now)
+            yield from self._begin_or_wait(state, state.route[0], now)
         elif state.available and state.route and now >= state.robot.available_from_s:
             yield from self._to_task(state, state.route[0], now)
         elif self.goes_home(state) and state.home is not None:
@@ -104,18 +112,25 @@ class Dispatch:
             return
         kept = state.route[:1] == list(tasks[:1])
         if state.activity in (Activity.DRIVING, Activity.WAITING) and not kept:
-            self._ledger.give_up(state.route[0])
-            state.stop(now)
+            self._leave_task(state, state.route[0], now)
         state.route = list(tasks)
         state.warned_of = state.warned_of if kept else ""
 
     def refuse(self, state: RobotState, task: str, reason: str, now: float) -> Iterator[Change]:
         """A robot cannot do a task of its route: it is never given it again."""
         self._ledger.refuse(task, state.robot.id, reason)
-        self._ledger.give_up(task)
+        if state.activity is Activity.WORKING:
+            break_off(self._crew, self._ledger, task, now)
+        else:
+            self._leave_task(state, task, now)
+        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason})
+
+    def _leave_task(self, state: RobotState, task: str, now: float) -> None:
+        """A robot that is not at work leaves a task; robots of its team that wait there stay."""
+        if task not in self._ledger.starts_s:
+            self._ledger.give_up(task)
         if state.activity is not Activity.IDLE:
             state.stop(now)
-        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason})
 
     def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:
         """The way from where a robot is; by way of the last place known to be free, if it stands where it cannot."""
@@ -145,7 +160,13 @@ class Dispatch:
             )
             return
         state.work, state.work_s, state.delay_s, state.home_usage = work, lasts, delay, home
-        state.to_task, state.works = len(there), self._leave is None and self._ledger.may_begin(task)
+        late = self._too_late(state, task, now + _drive_s(state, there))
+        if late:
+            state.work = None
+            yield from self.refuse(state, task, late, now)
+            return
+        may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task)
+        state.to_task, state.works = len(there), self._leave is None and may_begin
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)
         state.send(now, Activity.DRIVING, [*there, *(_delayed(work, delay) if state.works else ())])
@@ -154,29 +175,77 @@ class Dispatch:
     def _arrive(self, state: RobotState, now: float) -> None:
         task = state.route[0]
         self._ledger.arrive(task, state.used, now)
-        state.stuck_before = False
+        state.arrived_s, state.arrived_used, state.stuck_before = now, state.used, False
         self._emit("arrives", {"robot": state.robot.id, "task": task})
         if state.works:
-            self._begin(state, task, now)
+            self._begin(task, [state], now)
             state.begin_activity(now, Activity.WORKING)
         else:
             state.begin_activity(now, Activity.WAITING)
 
-    def _work(self, state: RobotState, now: float) -> None:
-        task = state.route[0]
-        if state.work is not None:
-            state.delay_s, before = self._ledger.delays_s.get(task, 0.0), state.delay_s
+    def _begin_or_wait(self, state: RobotState, task: str, now: float) -> Iterator[Change]:
+        """Begin a task, and those that begin with it, with all their robots; or say for what a robot waits."""
+        wait = self._beginning.wait(task, now)
+        if wait is not None:
+            self._say_wait(state, task, wait.cause, wait.words)
+            return
+        unit = self._ledger.unit(task)
+        if self._leave is not None and not all(self._leave(name) for name in unit):
+            return
+        teams = {name: self._beginning.present(name) for name in unit}
+        late = [(one, name, self._too_late(one, name, now)) for name, team in teams.items() for one in team]
+        for one, name, reason in late:
+            if reason:
+                yield from self.refuse(one, name, reason, now)
+        if not any(reason for _, _, reason in late):
+            for name, team in teams.items():
+                self._work(name, team, now)
+
+    def _say_wait(self, state: RobotState, task: str, cause: str, words: str) -> None:
+        said, state.wait_cause, state.wait_words = state.wait_words, cause, words
+        if cause != "prerequisite" and words != said:
+            self._emit("waits", {"robot": state.robot.id, "task": task, "cause": cause, "words": words})
+
+    def _too_late(self, state: RobotState, task: str, begin_s: float) -> str:
+        """Why a robot that is at a task at a time cannot do it, by window, deadline or shift; else empty."""
+        what = self._ledger.tasks[task]
+        begin_s, arrive_s = next_begin([what], begin_s), begin_s
+        if begin_s == math.inf:
+            return f"window: would arrive at {arrive_s:,.1f} s, after it has closed"
+        ends_s, deadline = begin_s + state.work_s, what.deadline_s
+        if deadline is not None and ends_s > deadline + TIME_ROUNDING_S:
+            return f"deadline: would end at {ends_s:,.1f} s, after {deadline:,g} s"
+        until, home_s = state.robot.available_until_s, _home_s(state)
+        if until is not None and ends_s + home_s > until + TIME_ROUNDING_S:
+            return f"shift: would be back at {ends_s + home_s:,.1f} s, after {until:,g} s"
+        return ""
+
+    def _work(self, task: str, team: Sequence[RobotState], now: float) -> None:
+        delay = self._ledger.delays_s.get(task, 0.0)
+        for state in team:
+            state.delay_s, before = delay, state.delay_s
             state.work_s += state.delay_s - before
             state.works = True
-            self._begin(state, task, now)
-            state.send(now, Activity.WORKING, _delayed(state.work, state.delay_s))
+        self._begin(task, team, now)
+        slowest = max(state.work_s for state in team)
+        for state in team:
+            if state.work is not None:
+                state.send(now, Activity.WORKING, _delayed(state.work, state.delay_s + slowest - state.work_s))
+                state.work_s = slowest
 
-    def _begin(self, state: RobotState, task: str, now: float) -> None:
+    def _begin(self, task: str, team: Sequence[RobotState], now: float) -> None:
+        robots = tuple(state.robot.id for state in team)
+        self._ledger.arrive(task, max(one.arrived_used for one in team), max(one.arrived_s for one in team))
         self._ledger.begin(task, now)
-        self._emit("starts", {"task": task, "robot": state.robot.id})
+        self._ledger.teams[task] = robots
+        if len(team) > 1:
+            self._ledger.team_waits_s[task] = sum(now - state.arrived_s for state in team)
+        for state in team:
+            state.wait_cause = state.wait_words = ""
+        self._emit("starts", {"task": task, **_names(robots)})
 
     def _end_work(self, state: RobotState, now: float) -> None:
-        """The work has ended, unless it was delayed meanwhile: then the robot stays for that."""
+        """The work has ended, unless it was delayed meanwhile, or others of the team are still at it."""
         task = state.route[0]
         longer = self._ledger.delays_s.get(task, 0.0) - state.delay_s
         if longer > 0 and state.work is not None:
@@ -186,14 +255,26 @@ class Dispatch:
             state.send(now, Activity.WORKING, [replace(state.work.waypoints[-1], hold_s=longer)])
             state.begun_s = begun
             return
-        state.charge_work()
-        self._ledger.end(task, state.robot.id, now)
-        self._ledger.usage[task] = state.usage_to_task, state.used - state.used_before
-        state.used_before = state.used
-        state.route.pop(0)
-        state.done.append(task)
-        state.begin_activity(now, Activity.IDLE)
-        self._emit("ends", {"task": task, "robot": state.robot.id})
+        team = self._team_at_work(state, task)
+        if all(one.arrived and one.delay_s >= self._ledger.delays_s.get(task, 0.0) for one in team):
+            self._end_for_all(task, team, now)
+
+    def _team_at_work(self, state: RobotState, task: str) -> list[RobotState]:
+        return [self._crew[name] for name in self._ledger.teams.get(task, (state.robot.id,))]
+
+    def _end_for_all(self, task: str, team: Sequence[RobotState], now: float) -> None:
+        robots = tuple(state.robot.id for state in team)
+        for state in team:
+            state.charge_work()
+        self._ledger.end(task, robots[0], now)
+        flown = sum(state.used - state.used_before for state in team)
+        self._ledger.usage[task] = sum(state.usage_to_task for state in team), flown
+        for state in team:
+            state.used_before = state.used
+            state.route.pop(0)
+            state.done.append(task)
+            state.begin_activity(now, Activity.IDLE)
+        self._emit("ends", {"task": task, **_names(robots)})
 
     def _planned_usage(self, state: RobotState, task: str) -> float:
         """What a task costs by the plan in force, from the task before it or from where that plan was made."""
@@ -210,6 +291,20 @@ class Dispatch:
             return None
         metres = path_length(work.exit, [Waypoint(point) for point in way])
         return metres / state.robot.speed_mps if state.in_time else metres
+
+
+def _names(robots: Sequence[str]) -> dict[str, Any]:
+    """Who does a task, as events name them: the first robot, and the team where there are more."""
+    return {"robot": robots[0]} | ({"team": list(robots)} if len(robots) > 1 else {})
+
+
+def _drive_s(state: RobotState, there: Sequence[Waypoint]) -> float:
+    return path_length(state.position, there) / state.robot.speed_mps
+
+
+def _home_s(state: RobotState) -> float:
+    """Seconds from the exit of the current task to where the route ends."""
+    return state.home_usage if state.in_time else state.home_usage / state.robot.speed_mps
 
 
 def _delayed(work: Work, by_s: float) -> list[Waypoint]:

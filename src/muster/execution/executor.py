@@ -11,10 +11,13 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
+from muster.execution.beginning import Beginning
 from muster.execution.changes import OUT, SILENT, Change, Changes, may_bring_work, new_robot_state
 from muster.execution.completed_work import CompletedWork
 from muster.execution.dispatch import Dispatch
+from muster.execution.forecast import Forecast
 from muster.execution.monitor import Limits
+from muster.execution.punctuality import Punctuality
 from muster.execution.reallocation import Reallocation, Revision, reasons_in_one_line, usage_ahead
 from muster.execution.record import ExecutionEvent, NoObserver, Observer
 from muster.execution.remaining_problem import RemainingMission
@@ -22,7 +25,7 @@ from muster.execution.report import Account
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
 from muster.execution.supervision import Supervisor
-from muster.execution.task_ledger import Ledger
+from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
 from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
@@ -93,9 +96,9 @@ class Executor:
         peers: Peers | None = None,
     ) -> None:
         self.mission = mission
-        self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored)
+        self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored, plan.ignored)
         own = [robot for robot in mission.robots if peers is None or robot.id in ports]
-        self.crew = {robot.id: new_robot_state(mission, robot, ports, now) for robot in own}
+        self.crew = {robot.id: new_robot_state(mission, robot, ports, now, plan.ignored) for robot in own}
         self.ended_s: float | None = None
         self.events: list[ExecutionEvent] = []
         self.revisions: list[Revision] = []
@@ -106,7 +109,12 @@ class Executor:
         self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
         self._alone = peers is None
         may_begin = None if peers is None else peers.may_begin
-        self._dispatch = Dispatch(self.ledger, self._capacity, plan_motion, way, self.emit, may_begin)
+        self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
+        self._beginning = Beginning(self.ledger, self.crew, self._forecast.hold_until_s, self._alone)
+        self._punctuality = Punctuality(self.ledger, self.crew, self._beginning)
+        self._dispatch = Dispatch(
+            self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, may_begin
+        )
         self._supervisor = Supervisor(
             self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self.emit, now
         )
@@ -122,6 +130,7 @@ class Executor:
         if past is not None:
             self._recall(past)
         self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
+        self._punctuality.expect(self._forecast, now)
         self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
         self._observer.on_plan(now, plan)
 
@@ -145,7 +154,7 @@ class Executor:
     def due_s(self) -> float:
         """When the clock alone brings something next: an event of the mission, a robot available; inf if nothing."""
         available = [state.robot.available_from_s for state in self._present if state.route]
-        times = [*(event.at_s for event in self._script[:1]), *available]
+        times = [*(event.at_s for event in self._script[:1]), *available, *self._punctuality.times(self.now_s)]
         return min((time for time in times if time > self.now_s), default=math.inf)
 
     def report(self, event: Event, reason: str = "") -> None:
@@ -203,13 +212,15 @@ class Executor:
 
         To be called once at the beginning and after each step of the world, or whenever telemetry may have come.
         """
-        first = len(self.events)
+        first, before_s = len(self.events), self.now_s
         self.set_clock(now)
+        self._punctuality.count_waits(now - before_s)
         self._hear()
         for state in self._present:
             self._dispatch.advance(state, now)
         self._follow_script()
         self._ask(self._supervisor.look(now))
+        self._ask(self._punctuality.look(now))
         self._go_on()
         self._notice_standstill()
         self._end_if_over()
@@ -251,7 +262,7 @@ class Executor:
 
     def _notice_standstill(self) -> None:
         """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
-        if not self._alone:
+        if not self._alone or self._punctuality.waits_for_clock(self.now_s):
             return
         waiting = [state.route[0] for state in self._present if state.activity is Activity.WAITING]
         still = all(
@@ -260,8 +271,10 @@ class Executor:
         )
         if waiting and still and self._stood_still_at != len(self.ledger.ends_s):
             self._stood_still_at = len(self.ledger.ends_s)
+            wait = self._beginning.wait(waiting[0], self.now_s)
+            words = "" if wait is None else wait.words
             missing = self.ledger.missing(waiting[0])
-            self._ask([Change("standstill", {"task": waiting[0], "waits_for": missing})])
+            self._ask([Change("standstill", {"task": waiting[0], "waits_for": missing, "words": words})])
             self._go_on()
 
     def _go_on(self) -> None:
@@ -294,6 +307,7 @@ class Executor:
         fresh = revision.left_out.keys() - self._left_out.keys() - set(revision.dropped)
         left_out = {task: why for task, why in revision.left_out.items() if task in fresh}
         self._dispatch.ahead, self._left_out = revision.ahead, dict(revision.left_out)
+        self._punctuality.expect(self._forecast, self.now_s)
         self.revisions.append(revision)
         self.emit("replanned", {"causes": causes, **revision.difference(), "left_out": left_out})
         self._observer.on_plan(self.now_s, self.plan)
@@ -323,7 +337,26 @@ class Executor:
             mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
             reallocations=len(self.revisions),
             charges={name: state.charge for name, state in self.crew.items() if state.charge is not None},
+            shifts_exceeded_s=self._shifts_exceeded(),
+            back_s=tuple(self._back_s()) if self.mission.rules.makespan_includes_return else (),
         )
+
+    def _shifts_exceeded(self) -> dict[str, float]:
+        """By how much robots were under way after their shifts."""
+        back = {
+            state.robot.id: state.begun_s if state.activity is Activity.IDLE else self.now_s for state in self._worked
+        }
+        until = {state.robot.id: state.robot.available_until_s for state in self._worked}
+        over = {name: back[name] - limit for name, limit in until.items() if limit is not None}
+        return {name: seconds for name, seconds in over.items() if seconds > TIME_ROUNDING_S}
+
+    def _back_s(self) -> Iterable[float]:
+        return (state.begun_s for state in self._worked if state.activity is Activity.IDLE)
+
+    @property
+    def _worked(self) -> list[RobotState]:
+        """Robots that take part and have done something, or are at it."""
+        return [state for state in self._present if state.done or state.activity is not Activity.IDLE]
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""

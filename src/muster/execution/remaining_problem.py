@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from muster.allocation.charges import Charge
 from muster.allocation.fixed import with_fixed_routes
 from muster.allocation.problem import Problem
+from muster.execution.relations import Binding
+from muster.execution.teams import units_of
 from muster.execution.travel import Spot, Travel
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
@@ -77,7 +79,11 @@ class RemainingMission:
         for a task the robots that cannot do it, and why.
     routes
         for each robot of the crew the tasks that it was to do, in order, without work under way; `former` for each
-        task the robot that was to do it, also one that is out.
+        task the robot that was to do it, also one that is out, or the names of its team.
+    bindings
+        for a task the robots that relations to tasks that have begun leave to it.
+    expired
+        tasks that can never begin any more, and why.
     """
 
     mission: Mission
@@ -90,6 +96,8 @@ class RemainingMission:
     refusals: Mapping[str, Mapping[str, str]]
     routes: Mapping[str, Sequence[str]]
     former: Mapping[str, str]
+    bindings: Mapping[str, Binding] = field(default_factory=dict)
+    expired: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -147,16 +155,17 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     """The tasks that can be planned, as they are now; and why the others cannot."""
     hopeless: dict[str, str] = {}
     hopeful: dict[str, Task] = {}
-    needs_order = "prerequisite" not in rest.ignored
     for task in rest.tasks:
         robots, why = _robots_for(rest, task)
-        if not travel.knows(task.id):
+        if task.id in rest.expired:
+            hopeless[task.id] = rest.expired[task.id]
+        elif not travel.knows(task.id):
             hopeless[task.id] = "unreachable: the travel tables have no row for it"
         elif robots is not None and not robots:
             hopeless[task.id] = why
         else:
-            before = tuple(name for name in task.prerequisites if needs_order and name not in rest.ended)
-            hopeful[task.id] = replace(task, prerequisites=before, only_robots=robots)
+            hopeful[task.id] = replace(task.waiting_for(_open_prerequisites(rest, task)), only_robots=robots)
+    _drop_units_without_hope(rest, hopeful, hopeless)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
     waiting = dict(hopeful)
     while ready := [name for name, task in waiting.items() if sure.issuperset(task.prerequisites)]:
@@ -166,18 +175,51 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     for name, task in waiting.items():
         before_it = ", ".join(other for other in task.prerequisites if other not in sure)
         hopeless[name] = f"prerequisite: {before_it} comes before it and is not going to be done"
-    return [task for name, task in hopeful.items() if name in sure], hopeless
+    hopeful = {name: task for name, task in hopeful.items() if name in sure}
+    _drop_units_without_hope(rest, hopeful, hopeless)
+    return [_related_to(task, hopeful) for task in hopeful.values()], hopeless
+
+
+def _open_prerequisites(rest: RemainingMission, task: Task) -> tuple[str, ...]:
+    if "prerequisite" in rest.ignored:
+        return ()
+    return tuple(name for name in task.prerequisites if name not in rest.ended)
+
+
+def _drop_units_without_hope(rest: RemainingMission, hopeful: dict[str, Task], hopeless: dict[str, str]) -> None:
+    """Of tasks that begin together none is planned if one cannot be."""
+    for unit in set(units_of(rest.tasks).values()):
+        lost = [name for name in unit if name not in hopeful]
+        for name in unit if lost else ():
+            if hopeful.pop(name, None) is not None:
+                hopeless[name] = f"relation: begins with {lost[0]}, which is not going to be done"
+
+
+def _related_to(task: Task, there: Collection[str]) -> Task:
+    """A task with those relations that concern tasks of the problem."""
+    if not (task.same_robot_as or task.other_robot_than or task.starts_with):
+        return task
+    return replace(
+        task,
+        same_robot_as=tuple(name for name in task.same_robot_as if name in there),
+        other_robot_than=tuple(name for name in task.other_robot_than if name in there),
+        starts_with=tuple(name for name in task.starts_with if name in there),
+    )
 
 
 def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | None, str]:
     """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
     refused = rest.refusals.get(task.id, {})
+    binding = rest.bindings.get(task.id, Binding())
     lock = None if "lock" in rest.ignored else task.only_robots
-    if lock is None and not refused:
+    if lock is None and not refused and binding == Binding():
         return None, ""
     crew = [snapshot.robot.id for snapshot in rest.crew]
     meant = crew if lock is None else [name for name in lock if name in crew]
-    robots = tuple(name for name in meant if name not in refused)
+    allowed = [name for name in meant if binding.allows(name)]
+    robots = tuple(name for name in allowed if name not in refused)
+    if meant and not allowed:
+        return robots, f"{binding.reason}; none of them takes part"
     if lock is not None and not meant:
         return robots, f"lock: only {', '.join(lock)} may do it, and takes no part any more"
     return robots, in_one_line(refused.items())

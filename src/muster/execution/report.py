@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from muster.execution.task_ledger import Ledger
 from muster.mission.data_frames import data_frame
 from muster.mission.html_tables import html_line, html_table
-from muster.mission.objectives import objective_values
+from muster.mission.objectives import lateness, objective_values
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -31,6 +31,10 @@ class Account:
         as in `Report`.
     charges
         by robot the share of its battery that it last reported, of those that do.
+    shifts_exceeded_s
+        by robot how long it was under way after its shift, of those that were.
+    back_s
+        when robots were back, where that counts for the makespan.
     """
 
     objective: str
@@ -43,6 +47,8 @@ class Account:
     reallocations: int
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     charges: Mapping[str, float] = field(default_factory=dict)
+    shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
+    back_s: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -62,7 +68,8 @@ class RobotReport:
 class TaskReport:
     """Usage for one task done and the way to it: by the plan when its robot left for it, and measured.
 
-    `waiting_s` is for how long its robot waited there, for prerequisites.
+    `waiting_s` is for how long its robot waited there. Of a task done by a team `robot` is the first of the `team`, and
+    usages and waiting are those of all. `lateness_s` is by how much it ended after its due time.
     """
 
     task: str
@@ -70,6 +77,8 @@ class TaskReport:
     usage_planned: float
     usage_flown: float
     waiting_s: float
+    team: tuple[str, ...] = ()
+    lateness_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -111,6 +120,16 @@ class FoundReport:
     task: str | None
 
 
+@dataclass(frozen=True)
+class MissedReport:
+    """A task that was not begun in time, noticed at `at_s`; `next_s` is when it still could begin, None: never."""
+
+    task: str
+    at_s: float
+    reason: str
+    next_s: float | None
+
+
 @dataclass(frozen=True, kw_only=True)
 class Report:
     """Figures of a mission that was carried out.
@@ -126,7 +145,19 @@ class Report:
         how often two robots touched, and the least distance between their centres, None for one robot; both None where
         nobody measured it.
     waiting_s
-        seconds that robots waited at tasks, in all.
+        seconds that robots waited at tasks done, in all.
+    waiting_by_cause_s
+        seconds that robots waited at tasks, done or not, by cause, where a task has a rule about time or teams:
+        `prerequisite`, `window`, `lag`, `team`, `start` (of a task that begins with it), `dependant` (so that another
+        task can begin soon enough after it).
+    lateness_s
+        by how much tasks done ended after their due times, in all.
+    missed
+        tasks that were not begun in time.
+    deadlines_missed_s, within_exceeded_s
+        by task done how long after its deadline it ended, and by how much too long after a prerequisite it began.
+    shifts_exceeded_s
+        by robot how long after its shift it was under way.
     reallocations
         how often the rest was planned again.
     objective
@@ -155,12 +186,22 @@ class Report:
     tasks: tuple[TaskReport, ...]
     done_twice: dict[str, tuple[str, ...]] = field(default_factory=dict)
     found: tuple[FoundReport, ...] = ()
+    waiting_by_cause_s: dict[str, float] = field(default_factory=dict)
+    lateness_s: float = 0.0
+    missed: tuple[MissedReport, ...] = ()
+    deadlines_missed_s: dict[str, float] = field(default_factory=dict)
+    within_exceeded_s: dict[str, float] = field(default_factory=dict)
+    shifts_exceeded_s: dict[str, float] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """What `muster simulate --format json` prints."""
         lost = [{"task": task, "reason": reason} for task, reason in self.tasks_lost]
-        rows = {name: [asdict(row) for row in getattr(self, name)] for name in ("robots", "tasks", "found")}
+        rows: dict[str, list[dict[str, Any]]] = {
+            name: [asdict(row) for row in getattr(self, name)] for name in ("robots", "tasks", "found", "missed")
+        }
+        for row in rows["tasks"]:
+            row["team"] = list(row["team"])
         names = {"tasks_done": list(self.tasks_done), "remarks": list(self.remarks)}
         return asdict(self) | names | {"tasks_lost": lost, **rows}
 
@@ -168,7 +209,10 @@ class Report:
         return f"<Report: {self._summary}>"
 
     def _repr_html_(self) -> str:
-        tasks = [(t.task, t.robot, self.starts_s[t.task], self.ends_s[t.task], t.waiting_s) for t in self.tasks]
+        tasks = [
+            (t.task, ", ".join(t.team) or t.robot, self.starts_s[t.task], self.ends_s[t.task], t.waiting_s)
+            for t in self.tasks
+        ]
         columns = ("task", "robot", "starts (s)", "ends (s)", "waits (s)")
         lost = html_table("Tasks lost", ("task", "reason"), self.tasks_lost) if self.tasks_lost else ""
         return html_line(self._summary) + html_table("Tasks done", columns, tasks) + lost
@@ -212,9 +256,13 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         starts_s={task: ledger.starts_s[task] for task in done},
         ends_s={task: ledger.ends_s[task] for task in done},
         objective=_objective(account),
-        tasks=tuple(
-            TaskReport(task, ledger.done_by[task], *ledger.usage[task], ledger.waited_s(task)) for task in done
-        ),
+        tasks=tuple(_task(ledger, task) for task in done),
+        waiting_by_cause_s=_waiting_by_cause(ledger),
+        lateness_s=sum(ledger.late_s(task) for task in done),
+        missed=tuple(MissedReport(one.task, one.at_s, one.reason, one.next_s) for one in ledger.missed),
+        deadlines_missed_s={task: ledger.overdue_s(task) for task in done if ledger.overdue_s(task) > 0},
+        within_exceeded_s={task: ledger.begun_too_late_s(task) for task in done if ledger.begun_too_late_s(task) > 0},
+        shifts_exceeded_s=dict(account.shifts_exceeded_s),
         done_twice=dict(account.done_twice),
     )
 
@@ -226,8 +274,28 @@ def broken_off(report: Report, account: Account, reason: str) -> Report:
     return replace(report, tasks_lost=report.tasks_lost + under_way)
 
 
+def _task(ledger: Ledger, task: str) -> TaskReport:
+    return TaskReport(
+        task,
+        ledger.done_by[task],
+        *ledger.usage[task],
+        ledger.waited_s(task),
+        team=ledger.members(task) if ledger.tasks[task].is_for_team else (),
+        lateness_s=ledger.late_s(task),
+    )
+
+
+def _waiting_by_cause(ledger: Ledger) -> dict[str, float]:
+    causes: dict[str, float] = {}
+    for by_cause in ledger.waits_s.values():
+        for cause, seconds in by_cause.items():
+            causes[cause] = causes.get(cause, 0.0) + seconds
+    return dict(sorted(causes.items()))
+
+
 def _objective(account: Account) -> ObjectiveReport:
     ledger = account.ledger
     arrivals = [ledger.arrival_usage[task] for task in ledger.ends_s]
-    flown = objective_values(account.used.values(), arrivals, ledger.ends_s.values())
+    late = lateness((ledger.tasks[task].priority, end, ledger.tasks[task].due_s) for task, end in ledger.ends_s.items())
+    flown = objective_values(account.used.values(), arrivals, [*ledger.ends_s.values(), *account.back_s], late)
     return ObjectiveReport(account.objective, account.objective_planned, flown[account.objective])

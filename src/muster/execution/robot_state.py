@@ -20,7 +20,7 @@ class Activity(Enum):
 
     IDLE = "idle"  # available
     DRIVING = "driving"  # to the first task of its route; an order may hold the work too
-    WAITING = "waiting"  # at the task, for prerequisites
+    WAITING = "waiting"  # at the task, for prerequisites, its time window, its team ...
     WORKING = "working"
     RETURNING = "returning"  # to where its route ends
 
@@ -63,6 +63,10 @@ class RobotState:
     delay_s: float = 0.0  # that the current work was ordered with
     at_home: bool = True
     begun_s: float = 0.0  # the activity
+    arrived_s: float = 0.0  # at the current task, and its usage then
+    arrived_used: float = 0.0
+    wait_cause: str = ""  # of `beginning.Wait`, while it waits
+    wait_words: str = ""
     work_s: float = 0.0  # how long the current work takes, delays included
     charged: float = 0.0  # usage of works that ended, as far as it was not travelled
     used_before: float = 0.0  # usage at the end of the last task
@@ -144,6 +148,7 @@ class RobotState:
         self._waypoints = ()
         self._order = self.port.cancel()
         self.work = None
+        self.wait_cause = self.wait_words = ""
         self.begin_activity(now, Activity.IDLE)
 
     def stand(self, now: float) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from muster.allocation.charges import Charge
+from muster.execution.relations import binding_of, narrowed
 from muster.execution.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger
+from muster.execution.task_ledger import Ledger, task_as_it_holds
 from muster.execution.travel import Spot
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -25,15 +26,17 @@ def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[str, ...]]:
     ParameterError
         for robots and tasks that there are not, or that stand twice.
     """
-    robots, tasks = {robot.id for robot in mission.robots}, {task.id for task in mission.tasks}
+    robots = {robot.id for robot in mission.robots}
+    tasks = {task.id: task_as_it_holds(task, plan.ignored).is_for_team for task in mission.tasks}
+    seen: set[str] = set()
     routes: dict[str, tuple[str, ...]] = {}
     for route in plan.routes:
         if route.robot not in robots or route.robot in routes:
             raise ParameterError(f"plan: robot {shown(route.robot)}; expected each robot of the mission at most once")
         for name in route.tasks:
-            if name not in tasks:
+            if name not in tasks or (name in seen and not tasks[name]) or route.tasks.count(name) > 1:
                 raise ParameterError(f"plan: task {shown(name)}; expected each task of the mission at most once")
-            tasks.remove(name)
+            seen.add(name)
         routes[route.robot] = route.tasks
     return routes
 
@@ -43,19 +46,33 @@ def remaining_mission_of(
 ) -> RemainingMission:
     """What is left of the mission."""
     present = [state for state in crew.values() if not state.out]
-    under_way = {state.route[0]: state for state in present if state.activity is Activity.WORKING}
+    under_way = {state.route[0] for state in present if state.activity is Activity.WORKING}
+    left = [task for task in ledger.open if task.id not in under_way]
+    bindings = {task.id: binding_of(task.id, ledger, under_way) for task in left}
     return RemainingMission(
         mission=mission,
         ignored=plan.ignored,
         now_s=now,
         crew=[_snapshot(state, now) for state in present],
-        tasks=[task for task in ledger.open if task.id not in under_way],
+        tasks=[narrowed(task, ledger) for task in left],
         ended=ledger.ends_s.keys(),
         delays_s=ledger.delays_s,
         refusals=ledger.refusals,
         routes={state.robot.id: [name for name in state.route if name not in under_way] for state in present},
-        former={name: state.robot.id for state in crew.values() for name in state.route if name not in under_way},
+        former={name: ", ".join(robots) for name, robots in _former(crew, under_way).items()},
+        bindings=bindings,
+        expired=ledger.expired,
     )
+
+
+def _former(crew: Mapping[str, RobotState], under_way: Collection[str]) -> dict[str, list[str]]:
+    """For each task of a route the robots that were to do it."""
+    former: dict[str, list[str]] = {}
+    for state in crew.values():
+        for name in state.route:
+            if name not in under_way:
+                former.setdefault(name, []).append(state.robot.id)
+    return former
 
 
 def _snapshot(state: RobotState, now: float) -> RobotSnapshot:

@@ -31,6 +31,10 @@ class RobotStatus:
         at which it is, or to which it drives.
     waits_for
         the prerequisites for which it waits there.
+    waits
+        why it waits there, in words: `waits for window: opens at 600 s`, `waits for team: r_2`; empty if it does not.
+    team
+        the robots that do the task together with it, itself included, where they are several.
     route
         tasks that it is still to do, the current one first.
     used, usage_left
@@ -45,6 +49,8 @@ class RobotStatus:
     out: str
     task: str | None
     waits_for: tuple[str, ...]
+    waits: str
+    team: tuple[str, ...]
     route: tuple[str, ...]
     used: float
     usage_left: float | None
@@ -63,11 +69,12 @@ class Status:
 def status_of(executor: Executor) -> Status:
     """How the mission that is carried out stands."""
     limited = "capacity" not in executor.planned.ignored
-    robots = {name: _robot(state, executor.ledger, limited=limited) for name, state in executor.crew.items()}
+    crew = executor.crew
+    robots = {name: _robot(state, crew, executor.ledger, limited=limited) for name, state in crew.items()}
     return Status(robots, {task: _state(task, executor) for task in executor.ledger.tasks})
 
 
-def _robot(state: RobotState, ledger: Ledger, *, limited: bool) -> RobotStatus:
+def _robot(state: RobotState, crew: Mapping[str, RobotState], ledger: Ledger, *, limited: bool) -> RobotStatus:
     at_task = state.activity in _AT_TASK and bool(state.route)
     capacity = state.capacity if limited else None
     return RobotStatus(
@@ -75,12 +82,25 @@ def _robot(state: RobotState, ledger: Ledger, *, limited: bool) -> RobotStatus:
         out=OUT.get(state.out, state.out),
         task=state.route[0] if at_task else None,
         waits_for=tuple(ledger.missing(state.route[0])) if state.activity is Activity.WAITING else (),
+        waits=_wait(state, ledger) if state.activity is Activity.WAITING else "",
+        team=_team(state, crew) if at_task else (),
         route=tuple(state.route),
         used=state.used,
         usage_left=None if capacity is None else max(0.0, capacity - state.used),
         charge=state.charge,
         available=state.available,
     )
+
+
+def _wait(state: RobotState, ledger: Ledger) -> str:
+    missing = ledger.missing(state.route[0])
+    return state.wait_words or (f"waits for {', '.join(missing)}" if missing else "")
+
+
+def _team(state: RobotState, crew: Mapping[str, RobotState]) -> tuple[str, ...]:
+    task = state.route[0]
+    team = tuple(other.robot.id for other in crew.values() if not other.out and task in other.route)
+    return team if len(team) > 1 else ()
 
 
 def _state(task: str, executor: Executor) -> TaskState:

@@ -2,10 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
-from muster.mission.model import Point, Task
+from muster.execution.teams import units_of
+from muster.mission.model import Point, Robot, Task
+
+TIME_ROUNDING_S = 1e-6
+"""By which a time may be past a limit: clocks add up steps."""
+
+
+@dataclass(frozen=True)
+class MissedTask:
+    """A task that was not begun in time: noticed when, and why; `next_s` is when it may begin all the same, or None."""
+
+    task: str
+    at_s: float
+    reason: str
+    next_s: float | None
 
 
 @dataclass
@@ -18,10 +34,13 @@ class Ledger:
         every task that there is or was, in order of appearance.
     needs_order
         whether prerequisites hold.
+    ignored
+        rules that do not hold: tasks are kept without them.
     """
 
     tasks: dict[str, Task]
     needs_order: bool
+    ignored: Collection[str] = ()
     delays_s: dict[str, float] = field(default_factory=dict)
     arrivals_s: dict[str, float] = field(default_factory=dict)
     arrival_usage: dict[str, float] = field(default_factory=dict)  # of the robot, when it came to the task
@@ -32,10 +51,59 @@ class Ledger:
     cancelled: dict[str, float] = field(default_factory=dict)
     refusals: dict[str, dict[str, str]] = field(default_factory=dict)  # task, robot: why that robot cannot do it
     blocked_by: dict[str, str] = field(default_factory=dict)  # task: the broken robot that stands there
+    teams: dict[str, tuple[str, ...]] = field(default_factory=dict)  # the robots of each task begun
+    team_waits_s: dict[str, float] = field(default_factory=dict)  # their waiting for it, in all
+    waits_s: dict[str, dict[str, float]] = field(default_factory=dict)  # task, cause: seconds that robots waited
+    missed: list[MissedTask] = field(default_factory=list)
+    expired: dict[str, str] = field(default_factory=dict)  # tasks that can never begin any more, and why
+    _units: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, tasks: Iterable[Task], needs_order: bool) -> Ledger:
-        return cls({task.id: task for task in tasks}, needs_order)
+    def of(cls, tasks: Iterable[Task], needs_order: bool, ignored: Collection[str] = ()) -> Ledger:
+        ledger = cls({}, needs_order, ignored)
+        for task in tasks:
+            ledger.add(task)
+        return ledger
+
+    def add(self, task: Task) -> None:
+        """A task that there is from now on."""
+        self.tasks[task.id] = task_as_it_holds(task, self.ignored)
+        self._units = {}
+
+    def unit(self, task: str) -> tuple[str, ...]:
+        """The tasks that begin together with a task, itself included."""
+        if not self._units:
+            self._units = units_of(self.tasks.values())
+        return self._units[task]
+
+    def lag_limits(self, task: str) -> dict[str, tuple[float, float]]:
+        """For each prerequisite with a lag that has ended the earliest and latest time at which work may begin."""
+        lags = self.tasks[task].lags
+        ended = [(before, self.ends_s[before], lags[before]) for before in lags if before in self.ends_s]
+        return {
+            before: (end + lag.after_s, math.inf if lag.within_s is None else end + lag.within_s)
+            for before, end, lag in ended
+        }
+
+    def within_dependants(self, unit: Collection[str]) -> list[str]:
+        """Tasks not done that must begin within some time after one of these."""
+        return [
+            task.id
+            for task in self.open
+            if any(task.lags[name].within_s is not None for name in unit if name in task.lags)
+        ]
+
+    def has_within(self, task: str) -> bool:
+        """Whether a task must begin soon after this one."""
+        return bool(self.within_dependants(self.unit(task)))
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether any task has a rule about time or teams."""
+        return any(
+            task.window_s or task.deadline_s is not None or task.lags or task.is_for_team or task.starts_with
+            for task in self.tasks.values()
+        )
 
     @property
     def open(self) -> list[Task]:
@@ -66,16 +134,20 @@ class Ledger:
         return sum(map(self.waited_s, self.starts_s))
 
     def waited_s(self, task: str) -> float:
-        """Seconds that a robot waited at a task that was begun."""
-        return self.starts_s[task] - self.arrivals_s[task]
+        """Seconds that a robot waited at a task that was begun; all robots of a team together."""
+        return self.team_waits_s[task] if task in self.team_waits_s else self.starts_s[task] - self.arrivals_s[task]
 
     def may_begin(self, task: str) -> bool:
         """Whether all prerequisites have ended."""
-        return not self.needs_order or all(name in self.ends_s for name in self.tasks[task].prerequisites)
+        return not self.missing(task)
+
+    def prerequisites(self, task: str) -> tuple[str, ...]:
+        """The prerequisites that hold."""
+        return self.tasks[task].prerequisites if self.needs_order else ()
 
     def missing(self, task: str) -> list[str]:
         """Prerequisites that have not ended."""
-        return [name for name in self.tasks[task].prerequisites if self.needs_order and name not in self.ends_s]
+        return [name for name in self.prerequisites(task) if name not in self.ends_s]
 
     def arrive(self, task: str, used: float, now: float) -> None:
         self.arrivals_s[task], self.arrival_usage[task] = now, used
@@ -83,9 +155,38 @@ class Ledger:
     def begin(self, task: str, now: float) -> None:
         self.starts_s[task] = now
 
+    def expire(self, task: str, reason: str) -> None:
+        """Neither a task nor those that begin with it can begin any more."""
+        for name in self.unit(task):
+            if name not in self.ends_s and name not in self.cancelled:
+                self.expired.setdefault(name, reason if name == task else f"relation: begins with {task}; {reason}")
+
+    def waits(self, task: str, cause: str, seconds: float) -> None:
+        """A robot has waited at a task."""
+        by_cause = self.waits_s.setdefault(task, {})
+        by_cause[cause] = by_cause.get(cause, 0.0) + seconds
+
+    def late_s(self, task: str) -> float:
+        """By how much a task done ended after its due time."""
+        return _over(self.ends_s[task], self.tasks[task].due_s)
+
+    def overdue_s(self, task: str) -> float:
+        """By how much a task done ended after its deadline."""
+        return _over(self.ends_s[task], self.tasks[task].deadline_s)
+
+    def begun_too_late_s(self, task: str) -> float:
+        """By how much a task done began too long after a prerequisite."""
+        return max((_over(self.starts_s[task], latest) for _, latest in self.lag_limits(task).values()), default=0.0)
+
+    def members(self, task: str) -> tuple[str, ...]:
+        """The robots that do a task that has begun, or did it."""
+        return self.teams.get(task, (self.done_by[task],) if task in self.done_by else ())
+
     def give_up(self, task: str) -> None:
         """The robot that was at it is no more."""
         if task not in self.ends_s:
+            self.teams.pop(task, None)
+            self.team_waits_s.pop(task, None)
             self.arrivals_s.pop(task, None)
             self.arrival_usage.pop(task, None)
             self.starts_s.pop(task, None)
@@ -113,6 +214,33 @@ class Ledger:
     def withdraw(self, task: str, now: float) -> None:
         self.cancelled[task] = now
         self.give_up(task)
+
+
+def _over(time_s: float, limit_s: float | None) -> float:
+    """By how much a time is past a limit, more than by rounding."""
+    over = 0.0 if limit_s is None else time_s - limit_s
+    return over if over > TIME_ROUNDING_S else 0.0
+
+
+def task_as_it_holds(task: Task, ignored: Collection[str]) -> Task:
+    """A task without the rules about time and teams that do not hold."""
+    without: dict[str, Any] = {}
+    if "window" in ignored:
+        without |= {"window_s": ()}
+    if "deadline" in ignored:
+        without |= {"deadline_s": None}
+    if "team" in ignored:
+        without |= {"robots_needed": None, "team": (), "needs": None}
+    if "relation" in ignored:
+        without |= {"same_robot_as": (), "other_robot_than": (), "starts_with": ()}
+    if "prerequisite" in ignored:
+        without |= {"lags": {}}
+    return replace(task, **without) if without else task
+
+
+def robot_as_it_holds(robot: Robot, ignored: Collection[str]) -> Robot:
+    """A robot without its shift, if shifts do not hold."""
+    return replace(robot, available_until_s=None) if "shift" in ignored else robot
 
 
 def moved(task: Task, to: Point) -> Task:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 from muster.mission.mission_data import MissionData
+from muster.mission.mission_parts import all_robots, all_work, robots_that_join, rules_of_tags, unknown_id
 from muster.mission.near_matches import did_you_mean
-from muster.mission.robots import Robot
 from muster.mission.site import Point
-from muster.mission.tasks import Found, Task, Work
+from muster.mission.task_order import order_faults
+from muster.mission.task_relations import relation_faults
+from muster.mission.tasks import Task
 from muster.mission.value_types import Fault, Path, shown
 
 _FLAT_M = 0.01
@@ -18,9 +20,8 @@ _FLAT_M = 0.01
 def inconsistencies(mission: MissionData) -> Iterator[Fault]:
     """Every fault that lies between the parts of a mission."""
     yield from _repeated_ids(mission)
-    yield from _prerequisites(mission)
-    yield from _relations(mission)
-    yield from _cycles(mission)
+    yield from order_faults(mission)
+    yield from relation_faults(mission)
     yield from _locks(mission)
     yield from _suitability(mission)
     yield from _dimensions(mission)
@@ -40,97 +41,13 @@ def _repeated_ids(mission: MissionData) -> Iterator[Fault]:
             first.setdefault(name, k)
 
 
-def _unknown(at: Path, name: str, known: Sequence[str], what: str) -> Fault:
-    return Fault(at, shown(name), f"the id of a {what}{did_you_mean(name, known)}", relies_on=f"{what}s")
-
-
-def _new_tasks(mission: MissionData) -> list[tuple[Path, Task]]:
-    return [(("events", k, "new_task"), e.new_task) for k, e in enumerate(mission.events) if e.new_task]
-
-
-def _robots_that_join(mission: MissionData) -> list[tuple[Path, Robot]]:
-    return [(("events", k, "robot_joins"), e.robot_joins) for k, e in enumerate(mission.events) if e.robot_joins]
-
-
-def _all_work(mission: MissionData) -> list[tuple[Path, Work]]:
-    """Tasks, those that come later, and what becomes of tags."""
-    becomes = [(("found", k, "becomes"), found.becomes) for k, found in _rules(mission)]
-    return [*((("tasks", k), task) for k, task in enumerate(mission.tasks)), *_new_tasks(mission), *becomes]
-
-
-def _all_robots(mission: MissionData) -> list[tuple[Path, Robot]]:
-    return [*((("robots", k), robot) for k, robot in enumerate(mission.robots)), *_robots_that_join(mission)]
-
-
-def _prerequisites(mission: MissionData) -> Iterator[Fault]:
-    ids = [t.id for t in mission.tasks]
-    with_new = [*ids, *(t.id for _, t in _new_tasks(mission))]
-    own, all_of_them = set(ids), set(with_new)
-    for path, task in _all_work(mission):
-        known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
-        seen: set[str] = set()
-        for p, name in enumerate(task.prerequisites):
-            at: Path = (*path, "prerequisites", p)
-            if name not in among:
-                yield _unknown(at, name, known, "task")
-            elif name in seen:
-                yield Fault(at, shown(name), "each prerequisite once")
-            seen.add(name)
-
-
-def _relations(mission: MissionData) -> Iterator[Fault]:
-    ids = [t.id for t in mission.tasks]
-    with_new = [*ids, *(t.id for _, t in _new_tasks(mission))]
-    for path, task in _all_work(mission):
-        known = ids if path[0] == "tasks" else with_new
-        for key in ("same_robot_as", "other_robot_than", "starts_with"):
-            for k, name in enumerate(getattr(task, key)):
-                if name not in known:
-                    yield _unknown((*path, key, k), name, known, "task")
-                elif name == getattr(task, "id", None):
-                    yield Fault((*path, key, k), shown(name), "another task")
-
-
-def _cycles(mission: MissionData) -> Iterator[Fault]:
-    """One cycle of each knot of prerequisites, named in the order in which the tasks wait.
-
-    Not all: there can be more than anyone could read, and the others go when one task of theirs is set right, or are
-    found when it was.
-    """
-    index = {t.id: k for k, t in reversed(list(enumerate(mission.tasks)))}
-    before = [[index[name] for name in task.prerequisites if name in index] for task in mission.tasks]
-    state = [0] * len(before)  # 0: not visited, 1: on the way, 2: done
-    named: set[int] = set()
-    for start in range(len(before)):
-        way, steps = [start], [iter(before[start])] if state[start] == 0 else []
-        while steps:
-            state[way[-1]] = 1
-            following = next(steps[-1], None)
-            if following is None:
-                state[way.pop()] = 2
-                steps.pop()
-            elif state[following] == 1:
-                knot = way[way.index(following) :]
-                if named.isdisjoint(knot):
-                    yield _cycle(mission.tasks, knot)
-                named.update(knot)
-            elif state[following] == 0:
-                way.append(following)
-                steps.append(iter(before[following]))
-
-
-def _cycle(tasks: Sequence[Task], knot: list[int]) -> Fault:
-    names = " -> ".join(tasks[k].id for k in [*knot, knot[0]])
-    return Fault(("tasks", knot[0], "prerequisites"), f"cycle {names}", "prerequisites without a cycle")
-
-
 def _locks(mission: MissionData) -> Iterator[Fault]:
     ids = [r.id for r in mission.robots]
-    joining = [robot.id for _, robot in _robots_that_join(mission)]
-    for path, task in _all_work(mission):
+    joining = [robot.id for _, robot in robots_that_join(mission)]
+    for path, task in all_work(mission):
         for r, name in enumerate(task.only_robots or ()):
             if name not in ids and name not in joining:
-                yield _unknown((*path, "only_robots", r), name, ids, "robot")
+                yield unknown_id((*path, "only_robots", r), name, ids, "robot")
 
 
 def _suitability(mission: MissionData) -> Iterator[Fault]:
@@ -139,8 +56,8 @@ def _suitability(mission: MissionData) -> Iterator[Fault]:
     rows = list(mission.suitability)
     columns = {kind for row in mission.suitability.values() for kind in row}
     groups = (
-        ([(path, robot.type) for path, robot in _all_robots(mission)], rows, "a row"),
-        ([(path, task.type) for path, task in _all_work(mission)], sorted(columns), "a column"),
+        ([(path, robot.type) for path, robot in all_robots(mission)], rows, "a row"),
+        ([(path, task.type) for path, task in all_work(mission)], sorted(columns), "a column"),
     )
     for types, known, what in groups:
         expected = f"a type that has {what} in suitability ({', '.join(known)})"
@@ -167,7 +84,7 @@ def positions(mission: MissionData) -> Iterator[tuple[Path, Point]]:
         if event.move_task is not None:
             yield ("events", k, "move_task", "position"), event.move_task.position
     yield from _marks(mission)
-    for k, found in _rules(mission):
+    for k, found in rules_of_tags(mission):
         if found.becomes.action is not None:
             for key, point in found.becomes.action.places.items():
                 yield ("found", k, "becomes", "action", key), point
@@ -271,7 +188,7 @@ def _events(mission: MissionData) -> Iterator[Fault]:
         )
         for path, name, known, what in named:
             if name is not None and name not in known:
-                yield _unknown(("events", k, *path), name, known, what)
+                yield unknown_id(("events", k, *path), name, known, what)
         for group, name, known in (
             ("robot_joins", event.robot_joins.id if event.robot_joins else None, robots),
             ("new_task", event.new_task.id if event.new_task else None, tasks),
@@ -280,15 +197,10 @@ def _events(mission: MissionData) -> Iterator[Fault]:
                 yield Fault(("events", k, group, "id"), shown(name), "an id of its own")
 
 
-def _rules(mission: MissionData) -> list[tuple[int, Found]]:
-    """What becomes of tags, by number; one without a task is on the list of faults already."""
-    return [(k, found) for k, found in enumerate(mission.found) if found.becomes is not None]
-
-
 def _found(mission: MissionData) -> Iterator[Fault]:
-    cameras = any(robot.camera is not None for _, robot in _all_robots(mission))
+    cameras = any(robot.camera is not None for _, robot in all_robots(mission))
     for_all: int | None = None
-    for k, found in _rules(mission):
+    for k, found in rules_of_tags(mission):
         at: Path = ("found", k)
         if not cameras:
             yield Fault(at, "no robot has a camera", "camera of at least one robot, where tags are to be found")

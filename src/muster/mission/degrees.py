@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from muster.mission.place_types import LatLon, Place
+from muster.mission.raw_records import listed, of_events, robots_in, tasks_in
 from muster.mission.records import Record
 from muster.mission.site import Origin
 from muster.mission.tasks import Action
@@ -82,31 +83,18 @@ def _own_places(record: Mapping[str, Any]) -> list[str]:
 
 def _records(data: object) -> Iterator[tuple[Path, dict[str, Any]]]:
     """Everything in a mission that has places: robots, tasks and their actions, those of events, and tags."""
-    for at, record in _items(data, "robots"):
-        yield at, record
-    for at, record in _items(data, "tasks"):
+    yield from robots_in(data)
+    for at, record in tasks_in(data):
         yield from _of_task(at, record)
-    for at, event in _items(data, "events"):
-        for key in ("robot_joins", "new_task", "move_task"):
-            if isinstance(event.get(key), dict):
-                yield from _of_task((*at, key), event[key])
-    yield from _items(data, "tags")
-    yield from _items(data, "landmarks")
-    for at, found in _items(data, "found"):
-        if isinstance(found.get("becomes"), dict):
-            yield from _of_task((*at, "becomes"), found["becomes"])
+    yield from of_events(data, "move_task")
+    yield from listed(data, "tags")
+    yield from listed(data, "landmarks")
 
 
 def _of_task(at: Path, record: dict[str, Any]) -> Iterator[tuple[Path, dict[str, Any]]]:
     yield at, record
     if isinstance(record.get("action"), dict):
         yield (*at, "action"), record["action"]
-
-
-def _items(data: object, group: str) -> Iterator[tuple[Path, dict[str, Any]]]:
-    items = data.get(group) if isinstance(data, dict) else None
-    if isinstance(items, list):
-        yield from (((group, k), item) for k, item in enumerate(items) if isinstance(item, dict))
 
 
 def _read(place: InDegrees, faults: list[Fault]) -> Any:

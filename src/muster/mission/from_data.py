@@ -6,7 +6,7 @@ prerequisite three tasks later.
 
 from __future__ import annotations
 
-from muster.mission.clock_times import clock_to_seconds, in_clock_times
+from muster.mission.clock_times import clock_times_to_seconds
 from muster.mission.consistency import inconsistencies
 from muster.mission.degrees import degrees_to_metres, in_degrees
 from muster.mission.errors import MissionError
@@ -23,8 +23,8 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
     Parameters
     ----------
     data
-        a mapping with the keys of `Mission`; within it places in degrees are replaced by metres, and clock times by
-        seconds.
+        a mapping with the keys of `Mission`; within it places in degrees are replaced by metres,
+        and clock times by seconds.
     source
         where the values came from; files named in the data are found from the folder of its file.
     faults
@@ -38,9 +38,8 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
         if places are in degrees and pymap3d is not installed.
     """
     places = degrees_to_metres(data, faults)
-    clocks = clock_to_seconds(data, faults)
+    clock_times_to_seconds(data, faults)
     mission: Mission = Record(Mission, "a mission").read(data, (), faults)
-    faults[:] = [in_clock_times(fault, clocks) for fault in faults]
     object.__setattr__(mission, "source", source)
     if mission.travel_rule == "matrix" and mission.travel:
         object.__setattr__(mission, "travel_tables", read_travel_tables(mission.travel, source, faults))
@@ -49,7 +48,7 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
     around = {start for path in wrong for start in _prefixes(path)}
     faults.extend(
         fault
-        for fault in (in_clock_times(in_degrees(found, places), clocks) for found in inconsistencies(mission))
+        for fault in (in_degrees(found, places) for found in inconsistencies(mission))
         if fault.path not in around and wrong.isdisjoint(_prefixes(fault.path)) and not _in_doubt(fault, wrong)
     )
     if faults:

@@ -9,19 +9,11 @@ from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
 IGNORABLE = (
-    "prerequisite",
-    "suitability",
-    "skill",
-    "lock",
-    "capacity",
-    "window",
-    "deadline",
-    "shift",
-    "team",
-    "relation",
+    *("prerequisite", "suitability", "skill", "lock", "capacity"),
+    *("window", "deadline", "shift", "team", "relation"),
 )
-_PLURALS = {"prerequisites": "prerequisite", "skills": "skill", "windows": "window", "deadlines": "deadline"}
-"""Words of earlier files and commands, read as before."""
+_PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in ("suitability", "lock", "capacity")}
+"""Words of earlier files and commands, read as before; and the like of the others."""
 
 
 def ignorable_rule(word: object) -> str | None:

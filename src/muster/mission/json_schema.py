@@ -13,6 +13,7 @@ from dataclasses import Field
 from typing import Any
 
 from muster.mission.action_keys import ACTION_KEYS, ActionKeys
+from muster.mission.cooperation import Prerequisite, PrerequisiteOrId
 from muster.mission.model import SCHEMA, Action, Mission
 from muster.mission.records import Record, required, specified
 from muster.mission.value_types import JsonSchema, Kind, Many
@@ -45,21 +46,30 @@ def _records(kind: Kind) -> Iterator[Record]:
         yield kind
     elif isinstance(kind, Many):
         yield from _records(kind.kind)
+    elif isinstance(kind, PrerequisiteOrId):
+        yield Record(Prerequisite, "a prerequisite")
 
 
 def _definition(of: type[Any]) -> JsonSchema:
     own = specified(of)
     properties = {f.name: _schema(f) | _described(f) for f in own}
     need = [f.name for f in own if required(f) and "instead" not in f.metadata]
-    either: list[JsonSchema] = []
+    rules: list[JsonSchema] = []
     for f in own:
         if "instead" in f.metadata:
             key, kind, doc = f.metadata["instead"]
             properties[key] = kind.schema() | {"description": doc}
-            either += [{"required": [f.name]}, {"required": [key]}]
-    choice: JsonSchema = {"oneOf": either} if either else {}
+            rules.append(_one_of(f, key))
+    choice: JsonSchema = rules[0] if len(rules) == 1 else {"allOf": rules} if rules else {}
     extra: JsonSchema = of.schema_extra()
     return _object(properties, need) | choice | extra
+
+
+def _one_of(f: Field[Any], key: str) -> JsonSchema:
+    """Exactly one of a required field and the key in its place; at most one, where the field is not required."""
+    if required(f):
+        return {"oneOf": [{"required": [f.name]}, {"required": [key]}]}
+    return {"not": {"required": [f.name, key]}}
 
 
 def _action() -> JsonSchema:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from muster.mission.consistency import inconsistencies
+from muster.mission.cooperation import Lag, TeamPart
 from muster.mission.data_frames import frame_of_records
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
@@ -19,7 +20,7 @@ from muster.mission.records import findings, record
 from muster.mission.robots import Camera, Robot
 from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Landmark, Map, Origin, Point, Tag, TravelTable, Zone
-from muster.mission.tasks import Action, Found, Lag, Task, TeamPart, Work
+from muster.mission.tasks import Action, Found, Task, Work
 from muster.mission.text_files import write_text
 from muster.mission.yaml_writer import with_files_from, yaml_text
 

@@ -23,24 +23,15 @@ if TYPE_CHECKING:
 
 PLAN_SCHEMA = "muster-plan/1"
 REASONS = (
-    "skill",
-    "suitability",
-    "lock",
-    "capacity",
-    "prerequisite",
-    "window",
-    "deadline",
-    "shift",
-    "team",
-    "relation",
-    "unreachable",
-    "not-chosen",
+    *("skill", "suitability", "lock", "capacity", "prerequisite"),
+    *("window", "deadline", "shift", "team", "relation"),
+    *("unreachable", "not-chosen"),
 )
 
 
 @dataclass(frozen=True)
 class RouteStop:
-    """One entry of a route: when the robot arrives, when work begins, and when it ends, seconds."""
+    """When a robot is at one task of its route: seconds from the start of the mission."""
 
     task: str
     arrive_s: float
@@ -50,15 +41,21 @@ class RouteStop:
 
 @dataclass(frozen=True)
 class Route:
-    """One robot's ordered tasks; `usage` in the unit of the plan, None in a plan from elsewhere.
+    """One robot's ordered tasks.
 
-    `stops` holds the times of the earliest schedule, one for each task; empty in a plan that does not state them.
+    A plan from elsewhere may have no `usage`, in the unit of the plan, and no `stops`; else these are the tasks again,
+    with the times of the earliest schedule.
     """
 
     robot: str
     tasks: tuple[str, ...]
     usage: float | None = None
     stops: tuple[RouteStop, ...] = ()
+
+    def as_dict(self) -> dict[str, Any]:
+        """The route as plan files hold it."""
+        data: dict[str, Any] = {"robot": self.robot, "tasks": list(self.tasks), "usage": self.usage}
+        return data | ({"stops": [asdict(stop) for stop in self.stops]} if self.stops else {})
 
 
 @dataclass(frozen=True)
@@ -128,6 +125,8 @@ class Plan:
         for name, value in asdict(replace(self, book=None)).items():
             if name == "objective":
                 data["objective"] = {"name": self.objective, "value": self.objective_value}
+            elif name == "routes":
+                data[name] = [route.as_dict() for route in self.routes]
             elif name not in ("objective_value", "book"):
                 data[name] = value
         if self.book is not None:
@@ -158,13 +157,18 @@ class Plan:
         return text + (html_table("Left out", ("task", "reasons"), left_out) if left_out else "")
 
     def to_frame(self) -> DataFrame:
-        """A DataFrame with a row for each stop: robot, place in its route from 1, task; needs the extra `frames`."""
+        """A DataFrame with a row for each stop, in the order of the routes; needs the extra `frames`.
+
+        Its columns are robot, place in its route from 1, task, and where the plan has times arrive_s, begin_s, end_s.
+        """
+        timed = [route.stops or [None] * len(route.tasks) for route in self.routes]
         rows = (
-            {"robot": route.robot, "place": place, "task": task}
-            for route in self.routes
-            for place, task in enumerate(route.tasks, 1)
+            {"robot": route.robot, "place": place, "task": task} | ({} if stop is None else asdict(stop))
+            for route, stops in zip(self.routes, timed, strict=True)
+            for place, (task, stop) in enumerate(zip(route.tasks, stops, strict=True), 1)
         )
-        return data_frame(rows, ("robot", "place", "task"))
+        has_times = any(route.stops for route in self.routes)
+        return data_frame(rows, ("robot", "place", "task", *(_TIMES if has_times else ())))
 
 
 def gap(value: float, bound: float) -> float:
@@ -336,21 +340,32 @@ class _Reading:
                 self._missing(f"routes[{k}].tasks", "a list of ids")
             tasks = self._names(route.get("tasks", []), f"routes[{k}].tasks")
             usage = self._number(route, "usage", f"routes[{k}].")
-            routes.append(Route(str(route["robot"]), tasks, usage, self._stops(route, tasks, f"routes[{k}].stops")))
+            routes.append(Route(str(route["robot"]), tasks, usage, self._stops(route.get("stops"), tasks, k)))
         return tuple(routes)
 
-    def _stops(self, route: Mapping[str, Any], tasks: tuple[str, ...], at: str) -> tuple[RouteStop, ...]:
-        stops = route.get("stops") or []
-        if not isinstance(stops, list) or (stops and len(stops) != len(tasks)):
-            self._refuse(at, stops, "a list with a stop for each of its tasks")
+    def _stops(self, data: object, tasks: Sequence[str], k: int) -> tuple[RouteStop, ...]:
+        """The stops of a route: none, or one for each of its tasks in their order."""
+        if data is None or data == []:
             return ()
-        times = ("arrive_s", "begin_s", "end_s")
-        for k, (stop, task) in enumerate(zip(stops, tasks, strict=False)):
-            right = isinstance(stop, dict) and str(stop.get("task")) == task
-            if not (right and all(_finite(stop.get(name)) for name in times)):
-                self._refuse(f"{at}[{k}]", stop, f"task {task} with {', '.join(times)}")
-                return ()
-        return tuple(RouteStop(str(stop["task"]), *(float(stop[name]) for name in times)) for stop in stops)
+        if not isinstance(data, list) or len(data) != len(tasks):
+            self._refuse(f"routes[{k}].stops", data, f"a list of {len(tasks)}, one for each of its tasks")
+            return ()
+        before = len(self._found)
+        for n, (stop, task) in enumerate(zip(data, tasks, strict=True)):
+            self._check_stop(stop, task, f"routes[{k}].stops[{n}]")
+        if len(self._found) > before:
+            return ()
+        return tuple(RouteStop(str(stop["task"]), *(float(stop[name]) for name in _TIMES)) for stop in data)
+
+    def _check_stop(self, stop: object, task: str, at: str) -> None:
+        if not isinstance(stop, dict) or not _is_id(stop.get("task")):
+            self._refuse(at, stop, f"a mapping with task, {', '.join(_TIMES)}")
+            return
+        if str(stop["task"]) != task:
+            self._refuse(f"{at}.task", stop["task"], f"{shown(task)}, as in its tasks")
+        for name in _TIMES:
+            if not _finite(stop.get(name)):
+                self._refuse(f"{at}.{name}", stop.get(name), "a finite number, in seconds")
 
     def _unassigned(self, data: Mapping[str, Any]) -> tuple[Unassigned, ...]:
         left_out = []
@@ -416,6 +431,8 @@ def _is_count(value: object) -> bool:
 def _is_id(value: object) -> bool:
     return isinstance(value, str | int) and not isinstance(value, bool)
 
+
+_TIMES = ("arrive_s", "begin_s", "end_s")
 
 _AWARD: Mapping[str, tuple[Callable[[object], bool], str]] = {
     "round": (_is_count, "a whole number of at least 0"),

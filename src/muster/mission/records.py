@@ -16,7 +16,19 @@ from muster.mission.field_help import fields_text
 from muster.mission.keywords import require_known
 from muster.mission.near_matches import did_you_mean
 from muster.mission.source import IN_PYTHON, Source
-from muster.mission.value_types import INVALID, RESERVED_NAMES, Fault, JsonSchema, Key, Kind, Path, refuse, shown
+from muster.mission.value_types import (
+    INVALID,
+    OTHER_NAMES,
+    RESERVED_NAMES,
+    Fault,
+    JsonSchema,
+    Key,
+    Kind,
+    Path,
+    Table,
+    refuse,
+    shown,
+)
 
 C = TypeVar("C")
 
@@ -36,10 +48,14 @@ def spec(
     unit
         of the value, for the help of the class, where the name of the field does not say it.
     instead
-        a key of files, its kind and description, that may stand for the field; `Record` never gets to read it.
+        a key of files, its kind and description, that may stand for the field: places in degrees, clock times. They are
+        replaced before; `Record` never gets to read the key.
     """
     metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit} | ({"instead": instead} if instead else {})
-    return field(metadata=metadata) if default is MISSING else field(default=default, metadata=metadata)
+    hashed = False if isinstance(kind, Table) else None  # a mapping has no hash
+    if default is MISSING:
+        return field(metadata=metadata, hash=hashed)
+    return field(default=default, metadata=metadata, hash=hashed)
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(spec, field))
@@ -86,9 +102,20 @@ class Checked:
                 continue
             object.__setattr__(self, f.name, f.metadata["kind"].read(value, (f.name,), faults))
         if not faults:
+            for name, value in self.settled(self.__dict__).items():
+                object.__setattr__(self, name, value)
             faults.extend(self.cross_check(self.__dict__))
         if faults:
             raise MissionError(findings(faults, IN_PYTHON))
+
+    @classmethod
+    def settled(cls, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The fields that hold something else than the keys of the same name: their values, from those of the keys."""
+        return {}
+
+    def file_values(self) -> Mapping[str, Any]:
+        """The inverse of `settled`: the values of keys that are not those of the fields of the same name."""
+        return {}
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
@@ -99,17 +126,6 @@ class Checked:
     def schema_extra(cls) -> JsonSchema:
         """What its JSON Schema holds besides its fields."""
         return {}
-
-    @classmethod
-    def split_file_form(
-        cls, data: Mapping[Any, Any], at: Path, faults: list[Fault]
-    ) -> tuple[Mapping[Any, Any], dict[str, Any]]:
-        """Fields that files hold within the value of another key: the data without them, and their values."""
-        return data, {}
-
-    def file_form(self, data: dict[str, Any]) -> dict[str, Any]:
-        """The plain data of the fields as a file holds them: what `split_file_form` reads."""
-        return data
 
     @classmethod
     def further_keys(cls, data: Mapping[Any, Any]) -> Mapping[str, Key]:
@@ -143,19 +159,20 @@ class Record:
             refuse(self, value, at, faults)
             return self._instance({})
         before = len(faults)
-        value, split = self.of.split_file_form(value, at, faults)
         known = {f.name: f for f in specified(self.of)}
         further = {key: one.kind for key, one in self.of.further_keys(value).items()}
         names = (*known, *further)
-        faults.extend(_unknown_key(str(key), item, at, names) for key, item in value.items() if key not in names)
-        values = _read_further(further, value, at, faults) | split
+        hints = (*names, *(f.metadata["instead"][0] for f in known.values() if "instead" in f.metadata))
+        faults.extend(_unknown_key(str(key), item, at, hints) for key, item in value.items() if key not in names)
+        values = _read_further(further, value, at, faults)
         for name, f in known.items():
             item = value.get(name, INVALID)
             if name in value and not (item is None and f.default is None):
                 values[name] = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
             elif required(f):
                 faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
-        if len(faults) == before:
+        if len(faults) == before and not any(item is INVALID for item in values.values()):
+            values |= self.of.settled(values)
             faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(values))
         return self._instance(values)
 
@@ -189,6 +206,8 @@ def _unknown_key(key: str, value: object, at: Path, known: Iterable[str]) -> Fau
         return Fault((*at, key), shown(value), "no such key: the name is kept for a later version")
     if key == "<<":
         return Fault((*at, key), "unknown key", "the keys themselves: merge keys are no part of YAML 1.2")
+    if key in OTHER_NAMES:
+        return Fault((*at, key), "unknown key", OTHER_NAMES[key])
     hint = did_you_mean(key, known) or f"; known keys: {', '.join(known)}"
     return Fault((*at, key), "unknown key", f"a known key{hint}")
 

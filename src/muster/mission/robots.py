@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from muster.mission.clock_times import SHIFT
 from muster.mission.near_matches import did_you_mean
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.rules import Rules
 from muster.mission.site import IN_DEGREES, Point
-from muster.mission.time_types import ClockWindows
 from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Table, Text, Whole, shown
 
 
@@ -42,21 +42,18 @@ class Robot(Checked):
         "how well it can do that, for bids; of skills that are not named 1",
         default=None,
     )
+    abilities: Mapping[str, float] | None = spec(
+        Table(Number(minimum=0), "a mapping from abilities to amounts"),
+        "what it can add to a team, for tasks with needs",
+        default=None,
+    )
     speed_mps: float = spec(Number(above=0), "speed of travel", default=1.0)
     efficiency: float = spec(Number(above=0), "work of duration d takes d / efficiency (aging factor)", default=1.0)
     return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)
     end_position: Point | None = spec(Place(), "where its route ends; stronger than return_to_start", default=None)
     available_from_s: float = spec(Number(minimum=0), "earliest time it can leave", default=0.0)
     available_until_s: float | None = spec(
-        Number(minimum=0),
-        "when its route must have ended, the way to its end included",
-        default=None,
-        instead=("shift", ClockWindows(single=True), "available_from_s and available_until_s as clock times"),
-    )
-    abilities: Mapping[str, float] | None = spec(
-        Table(Number(minimum=0), "a mapping from abilities to amounts"),
-        "how much it gives to tasks that need abilities",
-        default=None,
+        Number(minimum=0), "when its route, the way to its end included, must have ended", default=None, instead=SHIFT
     )
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)
@@ -76,10 +73,9 @@ class Robot(Checked):
         for name in values.get("skill_quality") or ():
             if name not in skills:
                 yield Fault(("skill_quality", name), shown(name), f"one of its skills{did_you_mean(name, skills)}")
-
-        first, last = values.get("available_from_s", 0.0), values.get("available_until_s")
-        if last is not None and last < first:
-            yield Fault(("available_until_s",), shown(last), f"at least available_from_s, {first:g}")
+        begins, ends = values.get("available_from_s", 0.0), values.get("available_until_s")
+        if ends is not None and ends < begins:
+            yield Fault(("available_until_s",), shown(ends), f"a number of at least available_from_s ({begins:g})")
 
     def place_at_end(self, rules: Rules) -> Point | None:
         """Where the robot's route must end, or None where it may end anywhere."""

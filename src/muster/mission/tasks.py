@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import field, replace
+from typing import Any, Self
 
 from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.clock_times import DEADLINE, DUE, WINDOW
+from muster.mission.cooperation import Lag, Prerequisite, PrerequisiteOrId, TeamPart
 from muster.mission.errors import MissionError
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, findings, record, spec
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.source import IN_PYTHON
-from muster.mission.time_types import ClockTime, ClockWindows, Names, Window, Windows
+from muster.mission.time_types import Window, Windows
 from muster.mission.value_types import (
-    INVALID,
     Choice,
     Fault,
-    JsonSchema,
     Key,
     Many,
     Number,
-    Path,
+    OneOrMany,
     Position,
     Table,
     Text,
@@ -98,87 +98,39 @@ class Action(Checked):
 
 
 @record
-class Lag(Checked):
-    """How long after the end of a prerequisite work may begin."""
-
-    after_s: float = spec(Number(minimum=0), "at least so long after its end", default=0.0)
-    within_s: float | None = spec(Number(minimum=0), "at most so long after its end", default=None)
-
-    @classmethod
-    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
-        after, within = values.get("after_s", 0.0), values.get("within_s")
-        if within is not None and within < after:
-            yield Fault(("within_s",), shown(within), f"at least after_s, {after:g}")
-
-
-@record
-class _LaggedPrerequisite(Lag):
-    """A prerequisite with a lag, as files have it."""
-
-    task: str = spec(Text(), "the id of the task that comes before")
-
-
-@dataclass(frozen=True)
-class _Prerequisite(Text):
-    """The id of a task; files may have a lag beside it, which `Work.split_file_form` reads."""
-
-    def schema(self) -> JsonSchema:
-        return {"anyOf": [super().schema(), Record(_LaggedPrerequisite, "a prerequisite with a lag").schema()]}
-
-
-@record
-class TeamPart(Checked):
-    """Robots of one sort in a team."""
-
-    count: int = spec(Whole(minimum=1), "how many", default=1)
-    type: str | None = spec(Text(), "of that type", default=None)
-    kind: str | None = spec(Choice(("ground", "air")), "of that kind", default=None)
-    requires: tuple[str, ...] = spec(Many(Text()), "with these skills", default=())
-
-
-@record
 class Work(Checked):
     """What there is to do, wherever that is."""
 
     type: str | None = spec(Text(), "column of the suitability table", default=None)
     actuation_cost: float = spec(Number(minimum=0), "cost of doing it", unit="unit of usage", default=0.0)
     prerequisites: tuple[str, ...] = spec(
-        Many(_Prerequisite()), "ids of tasks that must be done before; or {task, after_s, within_s}", default=()
+        Many(PrerequisiteOrId()),
+        "ids of tasks that must be done before; with a lag {task, after_s, within_s}",
+        default=(),
+    )
+    window_s: tuple[Window, ...] = spec(
+        Windows(), "when work may begin: [from, until], or several such pairs", default=(), instead=WINDOW
+    )
+    deadline_s: float | None = spec(Number(minimum=0), "when it must have ended", default=None, instead=DEADLINE)
+    due_s: float | None = spec(
+        Number(minimum=0), "when it should have ended, for the objective lateness", default=None, instead=DUE
     )
     requires: tuple[str, ...] = spec(Many(Text()), "skills a robot must have", default=())
-    duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
-    window_s: tuple[Window, ...] = spec(
-        Windows(),
-        "when work may begin: from and to, or several such; null is open",
-        default=(),
-        instead=("window", ClockWindows(), "window_s as clock times"),
-    )
-    deadline_s: float | None = spec(
-        Number(minimum=0),
-        "when work must have ended",
-        default=None,
-        instead=("deadline", ClockTime(), "deadline_s as a clock time"),
-    )
-    due_s: float | None = spec(
-        Number(minimum=0),
-        "when work should have ended, for the objective lateness",
-        default=None,
-        instead=("due", ClockTime(), "due_s as a clock time"),
-    )
-    robots_needed: int | None = spec(Whole(minimum=1), "so many robots do it together", default=None)
+    robots_needed: int | None = spec(Whole(minimum=1), "how many robots do it together", default=None)
     team: tuple[TeamPart, ...] = spec(
-        Many(Record(TeamPart, "a part of a team")), "the robots that do it together, by sort", default=()
+        Many(Record(TeamPart, "a part of a team")), "the robots that do it together, by what they must be", default=()
     )
     needs: Mapping[str, float] | None = spec(
-        Table(Number(minimum=0), "a mapping from abilities to amounts"),
-        "the robots that do it together give so much in all",
+        Table(Number(above=0), "a mapping from abilities to amounts"),
+        "what the abilities of the robots that do it together must sum to",
         default=None,
     )
-    same_robot_as: tuple[str, ...] = spec(Names("task"), "tasks that the same robots do", default=())
-    other_robot_than: tuple[str, ...] = spec(Names("task"), "tasks that other robots do", default=())
+    same_robot_as: tuple[str, ...] = spec(OneOrMany(Text()), "ids of tasks that the same robot does", default=())
+    other_robot_than: tuple[str, ...] = spec(OneOrMany(Text()), "ids of tasks that another robot does", default=())
     starts_with: tuple[str, ...] = spec(
-        Names("task"), "tasks that begin at the same moment, by other robots; all of them or none", default=()
+        OneOrMany(Text()), "ids of tasks that other robots begin at the same moment", default=()
     )
+    duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)
     only_robots: tuple[str, ...] | None = spec(
         Many(Text(), minimum=1), "ids of the only robots that may do it", default=None
@@ -189,56 +141,44 @@ class Work(Checked):
     )
 
     lags: Mapping[str, Lag] = field(default_factory=dict, hash=False)
-    """By prerequisite: how long after its end; in files the lag stands within `prerequisites`."""
+    """By prerequisite, those that have one; in files they stand inside `prerequisites`."""
 
     @property
     def is_for_team(self) -> bool:
-        """Whether more than one robot may do it together."""
-        return bool(self.team) or self.needs is not None or (self.robots_needed or 1) > 1
+        """Whether more robots than one may have to do it."""
+        return (self.robots_needed or 1) > 1 or bool(self.team) or bool(self.needs)
 
     def lag(self, prerequisite: str) -> Lag:
-        """How long after the end of a prerequisite work may begin."""
+        """How long after the end of a prerequisite work begins."""
         return self.lags.get(prerequisite, Lag())
 
+    def waiting_for(self, prerequisites: Iterable[str]) -> Self:
+        """The same work with only those prerequisites, and their lags."""
+        kept = tuple(prerequisites)
+        return replace(self, prerequisites=kept, lags={name: lag for name, lag in self.lags.items() if name in kept})
+
     @classmethod
-    def split_file_form(
-        cls, data: Mapping[Any, Any], at: Path, faults: list[Fault]
-    ) -> tuple[Mapping[Any, Any], dict[str, Any]]:
-        listed = data.get("prerequisites")
-        if not isinstance(listed, list | tuple) or not any(isinstance(item, Mapping) for item in listed):
-            return data, {}
-        kind = Record(_LaggedPrerequisite, "a prerequisite with a lag")
-        names: list[object] = []
-        lags: dict[str, Lag] = {}
-        for k, item in enumerate(listed):
-            if not isinstance(item, Mapping):
-                names.append(item)
-                continue
-            before = len(faults)
-            entry = kind.read(item, (*at, "prerequisites", k), faults)
-            if len(faults) > before:
-                return {**data, "prerequisites": INVALID}, {}
-            names.append(entry.task)
-            if entry.after_s > 0 or entry.within_s is not None:
-                lags[entry.task] = Lag(after_s=entry.after_s, within_s=entry.within_s)
-        return {**data, "prerequisites": names}, {"lags": lags}
+    def settled(cls, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        given = values.get("prerequisites", ())
+        lags = dict(values.get("lags", {}))
+        for one in given:
+            if isinstance(one, Prerequisite):
+                lags[one.task] = Lag(after_s=one.after_s, within_s=one.within_s)
+        ids = tuple(one.task if isinstance(one, Prerequisite) else one for one in given)
+        return {"prerequisites": ids, "lags": {name: lag for name, lag in lags.items() if lag != Lag()}}
 
-    def file_form(self, data: dict[str, Any]) -> dict[str, Any]:
-        if self.lags and "prerequisites" in data:
-            data["prerequisites"] = [self._prerequisite_in_file(name) for name in self.prerequisites]
-        return data
+    def file_values(self) -> Mapping[str, Any]:
+        return {"prerequisites": tuple(self._prerequisite(name) for name in self.prerequisites)}
 
-    def _prerequisite_in_file(self, name: str) -> object:
-        lag = self.lag(name)
-        parts = {"after_s": lag.after_s or None, "within_s": lag.within_s}
-        given = {key: value for key, value in parts.items() if value is not None}
-        return {"task": name} | given if given else name
+    def _prerequisite(self, name: str) -> Prerequisite | str:
+        lag = self.lags.get(name)
+        return name if lag is None else Prerequisite(task=name, after_s=lag.after_s, within_s=lag.within_s)
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         yield from _team_faults(values)
-        for name in values.get("lags") or ():
-            if name not in (values.get("prerequisites") or ()):
+        for name in values.get("lags", {}):
+            if name not in values.get("prerequisites", ()):
                 yield Fault(("lags", name), shown(name), "one of its prerequisites")
         action = values.get("action")
         if action is not None and action.has_geometry and values.get("actuation_cost"):
@@ -249,9 +189,9 @@ class Work(Checked):
 
 
 def _team_faults(values: Mapping[str, Any]) -> Iterable[Fault]:
-    given = [key for key in ("robots_needed", "team", "needs") if values.get(key)]
-    for key in given[1:]:
-        yield Fault((key,), shown(values[key]), f"{given[0]} or {key}, not both")
+    ways = [name for name in ("robots_needed", "team", "needs") if values.get(name)]
+    if len(ways) > 1:
+        yield Fault((ways[1],), f"beside {ways[0]}", "at most one of robots_needed, team, needs")
 
 
 @record

@@ -1,170 +1,112 @@
-"""The types of values about time: windows, clock times, and what may be one name or several."""
+"""The kinds of value that say when: a moment, and the time windows of a task."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from itertools import pairwise
 from typing import Any, ClassVar
 
-from muster.mission.value_types import INVALID, Fault, JsonSchema, Number, Path, Text, refuse
+from muster.mission.value_types import INVALID, Fault, JsonSchema, Number, Path, refuse, shown
 
 Window = tuple[float, float | None]
-"""When work may begin: seconds from and to; None: open."""
+"""When work may begin, seconds from the start of the mission: from, until; None: no end."""
 
-_CLOCK = re.compile(r"([01]?\d|2[0-3]):([0-5]\d)(?::([0-5]\d))?")
-
-
-@dataclass(frozen=True)
-class Windows:
-    """One time window `[from, to]` or several, in seconds; `null` leaves an end open. Read to a tuple of windows."""
-
-    filler: ClassVar[tuple[()]] = ()
-    expected: ClassVar[str] = "[from, to] in seconds, or a list of such windows in order and apart"
-
-    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        if isinstance(value, str) or not isinstance(value, Sequence):
-            return refuse(self, value, at, faults)
-        rows = [value] if value and not isinstance(value[0], Sequence) else list(value)
-        windows = [_window(row) for row in rows]
-        right = [window for window in windows if window is not None]
-        if len(right) < len(windows) or not _in_order(right):
-            return refuse(self, value, at, faults)
-        return tuple(right)
-
-    def schema(self) -> JsonSchema:
-        end = {"type": ["number", "null"], "minimum": 0}
-        pair = {"type": "array", "items": end, "minItems": 2, "maxItems": 2}
-        return {"anyOf": [pair, {"type": "array", "items": pair}]}
-
-
-def _window(row: object) -> Window | None:
-    if isinstance(row, str) or not isinstance(row, Sequence) or len(row) != 2:
-        return None
-    faults: list[Fault] = []
-    first, last = (None if end is None else Number(minimum=0).read(end, (), faults) for end in row)
-    if faults or (first is not None and last is not None and last < first):
-        return None
-    return (first or 0.0, last)
-
-
-def _in_order(windows: Sequence[Window]) -> bool:
-    return all(last is not None and last < first for (_, last), (first, _) in pairwise(windows))
-
-
-@dataclass(frozen=True)
-class Names:
-    """An id, or a list of ids, each once; read to a tuple."""
-
-    filler: ClassVar[tuple[()]] = ()
-    of: str
-
-    @property
-    def expected(self) -> str:
-        return f"the id of a {self.of}, or a list of such ids"
-
-    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        if isinstance(value, str | int):
-            name = Text().read(value, at, faults)
-            return INVALID if name is INVALID else (name,)
-        if not isinstance(value, Sequence):
-            return refuse(self, value, at, faults)
-        names = [Text().read(item, (*at, k), faults) for k, item in enumerate(value)]
-        if len(set(names)) < len(names):
-            return refuse(self, value, at, faults)
-        return INVALID if INVALID in names else tuple(names)
-
-    def schema(self) -> JsonSchema:
-        return {"anyOf": [Text().schema(), {"type": "array", "items": Text().schema()}]}
+_SECONDS = Number(minimum=0)
 
 
 @dataclass(frozen=True)
 class Moment:
-    """A date and time of day, `2027-03-01T08:00:00+01:00`."""
+    """A date and a time of day, by ISO 8601, with a zone or without."""
 
-    filler: ClassVar[str] = "1970-01-01T00:00"
-    expected: ClassVar[str] = "a date and time such as 2027-03-01T08:00:00+01:00"
+    filler: ClassVar[None] = None
+    expected: ClassVar[str] = "a date and a time, as 2027-03-01T08:00:00+01:00"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         text = value.isoformat() if isinstance(value, datetime) else value
-        if not isinstance(text, str) or _moment(text) is None:
-            return refuse(self, value, at, faults)
-        return text
+        return refuse(self, value, at, faults) if moment_in(text) is None else text
 
     def schema(self) -> JsonSchema:
-        return {"type": "string", "format": "date-time"}
+        return {"type": "string", "minLength": len("2027-03-01T08")}
+
+
+def moment_in(value: object) -> datetime | None:
+    """The date and time in a text of ISO 8601; None where it is no such text."""
+    if not isinstance(value, str) or len(value) <= len("2027-03-01"):
+        return None
+    try:
+        return datetime.fromisoformat(value)
+    except ValueError:
+        return None
 
 
 @dataclass(frozen=True)
-class ClockTime:
-    """A time of day, `10:00` or `10:00:30`, or a date and time."""
+class Windows:
+    """`[from, until]`, or a list of such pairs; null where an end is open.
 
-    filler: ClassVar[str] = "00:00"
-    expected: ClassVar[str] = 'a clock time such as "10:00", or a date and time'
-
-    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        right = isinstance(value, str) and (_CLOCK.fullmatch(value) or _moment(value))
-        return value if right else refuse(self, value, at, faults)
-
-    def schema(self) -> JsonSchema:
-        return {"type": "string"}
-
-
-@dataclass(frozen=True)
-class ClockWindows:
-    """`[from, to]` in clock times, or several such; with `single` just one."""
-
-    filler: ClassVar[tuple[()]] = ()
-    single: bool = False
-
-    @property
-    def expected(self) -> str:
-        pair = 'clock times ["10:00", "14:00"]'
-        return pair if self.single else f"{pair}, or a list of such windows"
-
-    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
-        return value if isinstance(value, Sequence) else refuse(self, value, at, faults)
-
-    def schema(self) -> JsonSchema:
-        pair = {"type": "array", "items": {"type": ["string", "null"]}, "minItems": 2, "maxItems": 2}
-        return pair if self.single else {"anyOf": [pair, {"type": "array", "items": pair}]}
-
-
-def seconds_of(clock: object, starts_at: str) -> float | None:
-    """Seconds from the start of the mission to a clock time; None where it is none, or lies before the start.
-
-    A time of day is that of the first day, in the zone of `starts_at`; one before the start is the next day's.
+    The order of the pairs does not matter; windows that overlap are refused, as one of them is a mistake.
     """
-    start = _moment(starts_at)
-    if start is None or not isinstance(clock, str):
-        return None
-    found = _CLOCK.fullmatch(clock)
-    if found:
-        hour, minute, second = (int(part or 0) for part in found.groups())
-        moment = start.replace(hour=hour, minute=minute, second=second, microsecond=0)
-        return (moment + timedelta(days=int(moment < start)) - start).total_seconds()
-    at = _moment(clock)
-    if at is None:
-        return None
-    if at.tzinfo is None or start.tzinfo is None:
-        at = at.replace(tzinfo=start.tzinfo)
-    seconds = (at - start).total_seconds()
-    return seconds if seconds >= 0 else None
+
+    filler: ClassVar[tuple[Window, ...]] = ()
+    expected: ClassVar[str] = "[from, until] in seconds, or a list of such pairs; null where an end is open"
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, str) or not isinstance(value, Sequence):
+            return refuse(self, value, at, faults)
+        pairs = [((*at, k), pair) for k, pair in enumerate(value)]
+        if is_pair(value):
+            pairs = [(at, value)]
+        windows = [self._window(pair, where, faults) for where, pair in pairs]
+        if INVALID in windows:
+            return INVALID
+        windows.sort(key=lambda window: window[0])
+        for (first, closes), (second, _) in pairwise(windows):
+            if closes is None or second < closes:
+                both = f"[{first:g}, {'null' if closes is None else f'{closes:g}'}] and one from {second:g}"
+                faults.append(Fault(at, both, "windows that do not overlap"))
+                return INVALID
+        return tuple(windows)
+
+    def _window(self, pair: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(pair, str) or not isinstance(pair, Sequence) or len(pair) != 2:
+            return refuse(self, pair, at, faults)
+        opens = 0.0 if pair[0] is None else _SECONDS.read(pair[0], (*at, 0), faults)
+        closes = None if pair[1] is None else _SECONDS.read(pair[1], (*at, 1), faults)
+        if opens is INVALID or closes is INVALID:
+            return INVALID
+        if closes is not None and closes < opens:
+            faults.append(Fault((*at, 1), shown(pair[1]), f"null, or a number of at least {opens:g}, when it opens"))
+            return INVALID
+        return opens, closes
+
+    def file_form(self, value: tuple[Window, ...]) -> Any:
+        """One window as a pair, several as a list of pairs."""
+        return value[0] if len(value) == 1 else value
+
+    def schema(self) -> JsonSchema:
+        return pair_or_pairs({"type": "number", "minimum": 0})
 
 
 def clock_text(seconds: float, starts_at: str) -> str:
     """The clock time so many seconds after the start, `10:00:30`; of later days `+1 10:00:30`."""
-    start = _moment(starts_at)
-    assert start is not None
+    start = datetime.fromisoformat(starts_at)
     moment = start + timedelta(seconds=round(seconds))
     days = (moment.date() - start.date()).days
     return (f"+{days} " if days else "") + moment.strftime("%H:%M:%S")
 
 
-def _moment(text: str) -> datetime | None:
-    try:
-        return datetime.fromisoformat(text)
-    except ValueError:
-        return None
+def is_pair(value: Sequence[object]) -> bool:
+    """Whether a list is one window, and not a list of windows."""
+    return len(value) == 2 and not any(isinstance(item, list | tuple) for item in value)
+
+
+def pair_or_pairs(end: JsonSchema) -> JsonSchema:
+    """JSON Schema of a pair of such values, each of which may be null, or a list of such pairs."""
+    pair: JsonSchema = {
+        "type": "array",
+        "items": {"anyOf": [end, {"type": "null"}]},
+        "minItems": 2,
+        "maxItems": 2,
+    }
+    return {"anyOf": [pair, {"type": "array", "items": pair}]}

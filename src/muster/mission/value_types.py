@@ -18,9 +18,16 @@ Path = tuple[str | int, ...]
 JsonSchema = dict[str, Any]
 
 RESERVED_NAMES = frozenset(
-    {"battery", "delivers", "lanes", "load", "load_at_start", "load_capacity", "recharge", "relay", "stations"}
+    {"load", "delivers", "relay", "load_capacity", "load_at_start", "battery", "stations", "lanes", "recharge"}
 )
 """Keys that a later version will give a meaning; until then they are refused, not ignored."""
+
+OTHER_NAMES = {
+    "earliest_s": "window_s: [earliest, latest]",
+    "latest_s": "window_s: [earliest, latest], or deadline_s where it must have ended by then",
+    "time_window": "window_s: [from, until]",
+}
+"""Keys that people try, and what says it here."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +64,13 @@ class Kind(Protocol):
         """The value in the model's own form; or INVALID, and what is wrong appended to `faults`."""
 
     def schema(self) -> JsonSchema: ...
+
+
+@runtime_checkable
+class FileForm(Protocol):
+    """A kind whose values stand in files in another form than in the model."""
+
+    def file_form(self, value: Any) -> Any: ...
 
 
 @dataclass(frozen=True)
@@ -279,6 +293,28 @@ class Many:
     def schema(self) -> JsonSchema:
         least = {"minItems": self.minimum} if self.minimum else {}
         return {"type": "array", "items": self.kind.schema()} | least
+
+
+@dataclass(frozen=True)
+class OneOrMany(Many):
+    """A list of values of one kind, of which one may stand by itself."""
+
+    @property
+    def expected(self) -> str:
+        return f"{self.kind.expected}, or a list of such"
+
+    def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
+        if isinstance(value, str | int) and not isinstance(value, bool):
+            item = self.kind.read(value, at, faults)
+            return INVALID if item is INVALID else (item,)
+        return super().read(value, at, faults)
+
+    def file_form(self, value: tuple[Any, ...]) -> Any:
+        """One value by itself, several as a list."""
+        return value[0] if len(value) == 1 else value
+
+    def schema(self) -> JsonSchema:
+        return {"anyOf": [self.kind.schema(), super().schema()]}
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import Field, replace
 from os.path import relpath
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 from muster.mission.mission_data import MissionData
 from muster.mission.records import specified
 from muster.mission.source import IN_PYTHON
+from muster.mission.value_types import FileForm
 
 M = TypeVar("M", bound=MissionData)
 
@@ -23,7 +24,7 @@ def yaml_text(mission: MissionData) -> str:
         value = getattr(mission, f.name)
         if f.name != "schema" and value == f.default:
             continue
-        data = plain(value)
+        data = _file_form(f, mission)
         if isinstance(data, list) and data:
             lines += [f"{f.name}:", *(f"  - {flow_text(item)}" for item in data)]
         elif f.name == "suitability" and isinstance(data, dict):
@@ -57,10 +58,17 @@ def plain(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {key: plain(item) for key, item in value.items()}
     if hasattr(value, "__dataclass_fields__"):
-        own = {f.name: (getattr(value, f.name), f.default) for f in specified(type(value))}
-        given = {name: plain(item) for name, (item, default) in own.items() if item != default}
-        return value.file_form(given | plain(getattr(value, "extra", {})))
+        fields = specified(type(value))
+        given = {f.name: _file_form(f, value) for f in fields if getattr(value, f.name) != f.default}
+        return given | plain(getattr(value, "extra", {}))
     return value
+
+
+def _file_form(f: Field[Any], value: Any) -> Any:
+    """The value of a field as plain data."""
+    item = value.file_values().get(f.name, getattr(value, f.name))
+    kind = f.metadata["kind"]
+    return plain(kind.file_form(item) if isinstance(kind, FileForm) and item is not None else item)
 
 
 def flow_text(data: Any) -> str:

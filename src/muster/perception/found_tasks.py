@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import Any
 
 from muster.mission.model import Event, Found, Mission, MovedTask, Task, Work
-from muster.mission.records import specified
 from muster.perception.point_search import FoundPoint
 
 
@@ -62,7 +62,7 @@ class FoundTasks:
 
 def task_of(work: Work, name: str, position: Sequence[float]) -> Task:
     """Work as a task at a place."""
-    own: dict[str, Any] = {f.name: getattr(work, f.name) for f in specified(Work)}
+    own: dict[str, Any] = {f.name: getattr(work, f.name) for f in fields(Work)}
     return Task(id=name, position=tuple(position), **own)
 
 

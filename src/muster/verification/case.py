@@ -40,6 +40,15 @@ class Case:
         """The tasks in the plan."""
         return frozenset(step.task.id for route in self.routes for step in route.steps)
 
+    @cached_property
+    def members(self) -> dict[str, list[Robot]]:
+        """For each task in the plan the robots that do it, in mission order."""
+        members: dict[str, list[Robot]] = {}
+        for route in self.routes:
+            for step in route.steps:
+                members.setdefault(step.task.id, []).append(route.robot)
+        return members
+
     @property
     def unit(self) -> str:
         """The unit of usage."""
@@ -105,4 +114,9 @@ class Case:
         for route in self.routes:
             for first, second in pairwise(route.steps):
                 before[second.task.id].append(first.task.id)
+        if self.holds("relation"):
+            for task in self.mission.tasks:
+                for name in task.starts_with:
+                    shared = [*before[task.id], *before[name]]
+                    before[task.id] = before[name] = shared
         return before

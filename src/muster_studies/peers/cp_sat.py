@@ -104,8 +104,7 @@ class _Run:
         program.hint(self.routes)
         units = program.complete_hint()
         if units is not None:
-            times = max(1, self.count) if self._problem.objective == "average" else 1
-            self.claimed = units / times / program.scale.units
+            self.claimed = units / program.per / program.scale.units
 
     def _program(self) -> Program:
         from muster.allocation.exact.program import Program

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -76,22 +76,17 @@ def _last(problem: Problem, i: int) -> Floats:
     return problem.legs(i, tasks, [problem.end(i)])[:, 0]
 
 
-def in_time(problem: Problem) -> Problem:
-    """The problem whose usage is time, and whose routes may end anywhere; its capacities mean nothing."""
-    rules = replace(problem.mission.rules, usage="time")
-    robots = tuple(replace(robot, return_to_start=False, end_position=None) for robot in problem.robots)
-    return replace(problem, mission=replace(problem.mission, rules=rules), robots=robots)
-
-
 def like_robots(problem: Problem, usable: Bools) -> list[list[int]]:
     """Robots in groups whose members could change places in any plan."""
-    groups: dict[bytes, list[int]] = {}
-    first, between, work, last = real_costs(problem)
+    groups: dict[tuple[bytes, object], list[int]] = {}
+    rules, (first, between, work, last) = problem.timed_rules, real_costs(problem)
     for i, robot in enumerate(problem.robots):
-        pace = robot.speed_mps, robot.efficiency, robot.available_from_s, problem.capacity[i]
+        shift = robot.available_from_s, rules.available_until[i]
+        pace = robot.speed_mps, robot.efficiency, *shift, problem.capacity[i]
         own = i if problem.beginning(i) else -1
         parts = [usable[i], first[i], between[i], work[i], last[i], np.array(pace), np.array(own)]
-        groups.setdefault(b"".join(part.tobytes() for part in parts), []).append(i)
+        key = b"".join(part.tobytes() for part in parts), rules.in_team(i)
+        groups.setdefault(key, []).append(i)
     return list(groups.values())
 
 

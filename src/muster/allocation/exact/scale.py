@@ -33,7 +33,7 @@ class Scale:
     def of(cls, problem: Problem, largest_sum: float) -> Scale:
         """Units in which the largest sum of a route is in range."""
         units = 2.0 ** math.floor(math.log2(_RANGE / largest_sum)) if largest_sum > 0 else 1.0
-        return cls(units, 2 * (len(problem.tasks) + len(problem.robots) + 1) / units)
+        return cls(units, 3 * (len(problem.tasks) + len(problem.robots) + 1) / units)
 
     def down(self, costs: Floats) -> Whole:
         """Costs in units, rounded down; -1 for those that are infinite."""

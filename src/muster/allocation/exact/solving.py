@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -122,7 +122,17 @@ class _Solving:
             return ExactResult(self._routes, weight, False, None, False)
         bound, slack = self._minimise()
         optimal = self._value() <= (bound + slack) * (1 + _ROUNDING)
+        if optimal and self._problem.objective == "lateness":
+            optimal = self._minimise_total()
         return ExactResult(self._routes, weight, True, bound, optimal)
+
+    def _minimise_total(self) -> bool:
+        """Find the least total cost of plans that are no later; whether it is proven."""
+        program = self._program()
+        program.minimise_total(self._weight(), self._value())
+        least = self._run(program) / program.scale.units
+        total = sum(core.Inspection(self._problem.core, self._routes).usages)
+        return total <= (least + program.scale.slack) * (1 + _ROUNDING)
 
     def _maximise_weight(self) -> bool:
         """Find the greatest weight; whether it is proven."""
@@ -142,7 +152,7 @@ class _Solving:
         if self._weight() == sum(self._weights):
             quick = best_bound(self._problem)
             least, why = quick.value, quick.why
-        if self._problem.objective == "average" and few_partings(self._problem) and not self._problem.fixed:
+        if self._problem.objective == "average" and few_partings(self._problem) and self._alone():
             parting = least_average(self._problem, self._usable, self._weights, self._weight())
             if core.Inspection(self._problem.core, parting.routes).admissible:
                 self._take_over(parting.routes)
@@ -153,14 +163,18 @@ class _Solving:
         for count in self._counts():
             program = self._program()
             program.minimise_value(self._weight(), count, least, self._value())
-            bounds.append(self._run(program) / (count or 1) / program.scale.units)
-            slack = program.scale.slack
+            bounds.append(self._run(program) / program.per / program.scale.units)
+            slack = program.slack
         least, why = max((least, why), (min(bounds), "OR-Tools CP-SAT"))
         return sound_bound(least, self._value(), why), slack
 
+    def _alone(self) -> bool:
+        """Whether every task is done by one robot, and none is in a route already."""
+        return not self._problem.fixed and not self._problem.timed_rules.with_teams
+
     def _counts(self) -> Sequence[int | None]:
         """How many tasks the plans of the plan's weight may complete, where the objective asks for that."""
-        done, n = sum(map(len, self._routes)), len(self._weights)
+        done, n = len(_done(self._routes)), len(self._weights)
         if self._problem.objective != "average":
             return [None]
         if done == n or len(set(self._weights)) == 1:
@@ -171,7 +185,7 @@ class _Solving:
         return self._problem.value(self._routes if routes is None else routes)[1]
 
     def _weight(self, routes: Routes | None = None) -> int:
-        return sum(self._weights[j] for route in (self._routes if routes is None else routes) for j in route)
+        return sum(self._weights[j] for j in _done(self._routes if routes is None else routes))
 
     def _program(self) -> Program:
         from muster.allocation.exact.program import Program
@@ -183,7 +197,7 @@ class _Solving:
     def _run(self, program: Program) -> float:
         """Take over the program's best plan, if it is better; returns the bound of its objective, in units.
 
-        A plan that is within capacities only because costs were rounded is forbidden, and the program runs again.
+        A plan that is admissible only because costs were rounded is forbidden, and the program runs again.
         """
         while (left := self._until - self._clock.now()) > 0 and not self._interrupted():
             solved = program.solve(left, self._seed, _WORKERS, interrupted=self._interrupted)
@@ -193,12 +207,30 @@ class _Solving:
             if inspection.admissible:
                 self._take_over(solved.routes)
                 return solved.bound
-            for i, usage in enumerate(inspection.usages):
-                if usage > self._problem.capacity[i] * (1 + _ROUNDING):
-                    program.forbid(i, solved.routes[i])
+            for some in self._not_admissible(solved.routes, inspection.usages):
+                program.forbid(some)
         return program.unproven
 
+    def _not_admissible(self, routes: Routes, usages: Sequence[float]) -> Iterator[Routes]:
+        """Routes that rounding alone made admissible: one that is above its capacity, else all of them together."""
+        above = [i for i, usage in enumerate(usages) if usage > self._problem.capacity[i] * (1 + _ROUNDING)]
+        for i in above:
+            yield [route if k == i else [] for k, route in enumerate(routes)]
+        if not above:
+            yield routes
+
     def _take_over(self, routes: Routes) -> None:
-        old = self._routes
-        if (-self._weight(routes), self._value(routes)) < (-self._weight(old), self._value(old)):
+        if self._rank(routes) < self._rank(self._routes):
             self._routes = routes
+
+    def _rank(self, routes: Routes) -> tuple[float, ...]:
+        """What is least of the best plan; of plans that are late alike, the one of least total cost is the best."""
+        rank = -self._weight(routes), self._value(routes)
+        if self._problem.objective != "lateness":
+            return rank
+        return *rank, sum(core.Inspection(self._problem.core, routes).usages)
+
+
+def _done(routes: Routes) -> set[int]:
+    """The tasks in routes, a team's once."""
+    return {j for route in routes for j in route}

@@ -9,13 +9,31 @@ from __future__ import annotations
 
 from muster.allocation.rules.action import Action
 from muster.allocation.rules.capacity import Capacity
+from muster.allocation.rules.deadline import Deadline
 from muster.allocation.rules.lock import Lock
 from muster.allocation.rules.prerequisite import Prerequisite
+from muster.allocation.rules.relation import Relation
 from muster.allocation.rules.rule import Change, InPlan, Outlook, Rule
+from muster.allocation.rules.shift import Shift
 from muster.allocation.rules.skill import Skill
 from muster.allocation.rules.suitability import Suitability
+from muster.allocation.rules.team import Team
 from muster.allocation.rules.unreachable import Unreachable
+from muster.allocation.rules.window import Window
 
 __all__ = ["RULES", "Change", "InPlan", "Outlook", "Rule"]
 
-RULES: tuple[Rule, ...] = (Skill(), Action(), Suitability(), Lock(), Prerequisite(), Unreachable(), Capacity())
+RULES: tuple[Rule, ...] = (
+    Skill(),
+    Action(),
+    Suitability(),
+    Lock(),
+    Prerequisite(),
+    Unreachable(),
+    Window(),
+    Deadline(),
+    Shift(),
+    Team(),
+    Relation(),
+    Capacity(),
+)

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import ROUNDING, Bools, Floats, InPlan, Outlook, Question, Rule
+from muster.allocation.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Rule
 
 
 class Capacity(Rule):
@@ -16,8 +16,8 @@ class Capacity(Rule):
 
     word: ClassVar[str] = "capacity"
 
-    def possible(self, problem: Question, least: Floats) -> Bools:
-        return np.asarray(least <= problem.capacity[:, None] * (1 + ROUNDING))
+    def possible(self, limits: Limits) -> Bools:
+        return np.asarray(limits.usage <= limits.problem.capacity[:, None] * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         if outlook.least <= problem.capacity[i] * (1 + ROUNDING):
@@ -26,6 +26,8 @@ class Capacity(Rule):
         return f"takes at least {outlook.least:.2f} {unit}, of {problem.capacity[i]:.2f} {unit}"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        if plan.is_timed:
+            return plan.kept_out(self.word, i, j)
         insertion, problem = plan.insertion(i, j), plan.problem
         if insertion is None or insertion.usage <= problem.capacity[i]:
             return None

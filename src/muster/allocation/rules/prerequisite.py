@@ -13,12 +13,16 @@ class Prerequisite(Rule):
     word: ClassVar[str] = "prerequisite"
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        return f"{outlook.lost_before} comes before it and can never be done" if outlook.lost_before else None
+        if outlook.lost_before not in problem.tasks[j].prerequisites:
+            return None
+        return f"{outlook.lost_before} comes before it and can never be done"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         missing = [plan.problem.tasks[k].id for k in plan.problem.prerequisites[j] if k not in plan.done]
         if missing:
             return f"left out before it: {listed(missing)}"
+        if plan.is_timed:
+            return plan.kept_out(self.word, i, j)
         if plan.insertion(i, j) is None:
             return "at every place in its route the prerequisites would wait in a circle"
         return None

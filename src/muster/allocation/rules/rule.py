@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.allocation.timed_rules import TimedRules
 from muster.mission.model import Mission, Robot, Task
 
 Floats = npt.NDArray[np.float64]
@@ -39,12 +40,47 @@ class Question(Protocol):
     def usage_unit(self) -> str: ...
     @property
     def core(self) -> core.Problem: ...
+    @property
+    def timed_rules(self) -> TimedRules: ...
+
+    def may(self, i: int, j: int) -> bool: ...
 
     def action_refusal(self, i: int, j: int) -> str | None: ...
 
     def actions_refused(self, i: int) -> frozenset[int]: ...
 
     def no_way_to(self, i: int, j: int) -> str: ...
+
+
+class Limits(Protocol):
+    """Lower bounds of usage and times, over all admissible plans; see `muster.allocation.limits`."""
+
+    @property
+    def problem(self) -> Question: ...
+    @property
+    def rules(self) -> TimedRules: ...
+    @property
+    def is_timed(self) -> bool: ...
+    @property
+    def usage(self) -> Floats: ...
+    @property
+    def usable(self) -> Bools: ...
+    @property
+    def alone(self) -> Bools: ...
+    @property
+    def arrival(self) -> Floats: ...
+    @property
+    def home(self) -> Floats: ...
+    @property
+    def ready(self) -> Floats: ...
+    @property
+    def awaited(self) -> tuple[int | None, ...]: ...
+    @property
+    def pair_begin(self) -> Floats: ...
+    @property
+    def pair_end(self) -> Floats: ...
+
+    def must_also(self, j: int) -> list[int]: ...
 
 
 class Change:
@@ -77,13 +113,29 @@ class Change:
         """The suitability table as it would have to be."""
         return table
 
+    def more_robots(self) -> tuple[Robot, ...]:
+        """The robots that there would have to be beside those of the mission."""
+        return ()
+
+    def other(self, other: Task, task: Task) -> Task:
+        """Another task of the mission as it would have to be."""
+        return other
+
+    @property
+    def seconds(self) -> float:
+        """How much time the change gives; 0 for what is not about time."""
+        return 0.0
+
 
 class InPlan:
     """Routes, and what one more task in them would do."""
 
+    is_timed: ClassVar[bool] = False
+
     def __init__(self, problem: Question, routes: Sequence[Sequence[int]]) -> None:
         self.problem = problem
-        self.inspection = core.Inspection(problem.core, [list(route) for route in routes])
+        self.routes = [list(route) for route in routes]
+        self.inspection = core.Inspection(problem.core, self.routes)
         self.done = {j for route in routes for j in route}
         self._at = lru_cache(maxsize=1)(self.inspection.cheapest_insertion)
 
@@ -91,9 +143,25 @@ class InPlan:
         """Where in the route of robot i task j adds least usage and nothing deadlocks; None: nowhere."""
         return self._at(i, j)
 
+    def with_task(self, i: int, j: int, at: int) -> list[list[int]]:
+        """The routes with task j at a place of the route of robot i, where it fits."""
+        return [[*route[:at], j, *route[at:]] if k == i else list(route) for k, route in enumerate(self.routes)]
+
     def has_no_way(self, i: int) -> bool:
         """Whether the route of robot i itself has a leg without a way."""
         return math.isinf(self.inspection.usages[i])
+
+    def members(self, j: int) -> Sequence[int]:
+        """The robots that do a task."""
+        return ()
+
+    def kept_out(self, word: str, i: int, j: int) -> str | None:
+        """Why robot i cannot do task j at any place of its route, if that is by the rule of this word.
+
+        That is the first rule in the order of rules with which, beside those before it, no place is left. Only where
+        times, teams or relations matter.
+        """
+        return None
 
 
 @dataclass(frozen=True)
@@ -102,12 +170,15 @@ class Outlook:
 
     Parameters
     ----------
+    limits
+        lower bounds of usage and times.
     least
         the least usage of any route of the robot that holds the task; inf where there is none.
     lost_before
         a prerequisite that can never be done; empty: none is known.
     """
 
+    limits: Limits
     least: float
     lost_before: str = ""
 
@@ -121,6 +192,8 @@ class Rule:
         of reasons and of `--ignore`.
     ignorable
         whether it can be ignored.
+    about_one
+        whether it looks at one robot at a time; else at the teams that it can be in.
     key, no_change
         of its change in the plain data of a remedy, and what stands there where no change is needed; no key: a robot
         is not changed for it, or not by it alone.
@@ -128,6 +201,7 @@ class Rule:
 
     word: ClassVar[str]
     ignorable: ClassVar[bool] = True
+    about_one: ClassVar[bool] = True
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
 
@@ -139,8 +213,8 @@ class Rule:
         """Why robot i may not do task j whatever its route; None if it may."""
         return None
 
-    def possible(self, problem: Question, least: Floats) -> Bools | None:
-        """(m, n) the pairs that may be in an admissible plan, by the least usages of routes with them; None: all."""
+    def possible(self, limits: Limits) -> Bools | None:
+        """(m, n) the pairs that may be in an admissible plan, by lower bounds of usage and times; None: all."""
         return None
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, Floats, InPlan, Outlook, Question, Rule
+from muster.allocation.rules.rule import Bools, InPlan, Limits, Outlook, Question, Rule
 
 
 class Unreachable(Rule):
@@ -16,13 +16,15 @@ class Unreachable(Rule):
     word: ClassVar[str] = "unreachable"
     ignorable = False
 
-    def possible(self, problem: Question, least: Floats) -> Bools:
-        return np.isfinite(least)
+    def possible(self, limits: Limits) -> Bools:
+        return np.isfinite(limits.usage)
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         return problem.no_way_to(i, j) if math.isinf(outlook.least) else None
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        if plan.is_timed:
+            return plan.kept_out(self.word, i, j)
         insertion = plan.insertion(i, j)
         if insertion is None or not math.isinf(insertion.usage):
             return None

@@ -83,7 +83,7 @@ def _as_it_is(mission: Mission, node: Negotiator, past: Collection[str]) -> Miss
     """The mission with announced tasks; tasks already begun have no prerequisites."""
     added = [task_of(fact.content) for fact in in_order(node.facts) if fact.kind == "added"]
     tasks = (*mission.tasks, *added)
-    return replace(mission, tasks=tuple(replace(t, prerequisites=()) if t.id in past else t for t in tasks))
+    return replace(mission, tasks=tuple(t.waiting_for(()) if t.id in past else t for t in tasks))
 
 
 def _begun_for_good(facts: Collection[Fact]) -> Iterator[Fact]:

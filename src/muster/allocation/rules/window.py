@@ -1,0 +1,83 @@
+"""Work on a task begins within one of its time windows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule
+from muster.allocation.rules.times import known_least, longer, moments, reaches, span
+from muster.mission.model import Robot, Task
+
+
+@dataclass(frozen=True)
+class LongerWindow(Change):
+    """A later end of a task's last window.
+
+    `until_s` is the new end, None without one; with an end before `at_least_s` no admissible plan does the task by the
+    robot, the other changes made.
+    """
+
+    closes_s: float
+    until_s: float | None
+    at_least_s: float | None = None
+
+    @property
+    def plain(self) -> dict[str, float | None]:
+        return asdict(self)
+
+    @property
+    def seconds(self) -> float:
+        return math.inf if self.until_s is None else self.until_s - self.closes_s
+
+    @property
+    def short(self) -> str:
+        return f"a window {longer(self.seconds)} longer"
+
+    @property
+    def line(self) -> str:
+        return f"{self.short}, until {span(self.until_s or 0.0)}: {known_least(self.until_s, self.at_least_s)}"
+
+    def task(self, task: Task, robot: Robot) -> Task:
+        *before, (opens, _) = task.window_s
+        return replace(task, window_s=(*before, (opens, self.until_s)))
+
+
+class Window(Rule):
+    """The begin of the work is in one of `window_s`. A robot that is too early waits for the next one."""
+
+    word: ClassVar[str] = "window"
+    key = "window"
+
+    def possible(self, limits: Limits) -> Bools | None:
+        return np.isfinite(limits.pair_begin) if limits.is_timed else None
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        limits = outlook.limits
+        if not limits.is_timed or math.isfinite(limits.pair_begin[i, j]):
+            return None
+        how, ready = reaches(limits, i, j)
+        return closed(problem, j, how, ready) or _never_together(problem, j)
+
+    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        return plan.kept_out(self.word, i, j)
+
+
+def closed(problem: Question, j: int, how: str, ready: float) -> str | None:
+    """That all windows of a task are closed by a time; None: one is not."""
+    windows = problem.timed_rules.windows[j]
+    if not windows or ready <= windows[-1][1]:
+        return None
+    at, closes = moments(problem, ready, windows[-1][1])
+    which = "window" if len(windows) == 1 else "last window"
+    return f"{how} {at} at the earliest, its {which} closes at {closes}"
+
+
+def _never_together(problem: Question, j: int) -> str:
+    """That tasks which begin together have no window in common from when they are ready."""
+    unit = problem.timed_rules.units[problem.timed_rules.unit[j]]
+    names = ", ".join(problem.tasks[k].id for k in unit if k != j)
+    return f"begins together with {names}, and from when all are ready no window is open to all"

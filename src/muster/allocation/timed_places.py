@@ -1,0 +1,303 @@
+"""What one more task in the routes of a plan would do where times, teams and relations matter."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from muster import core
+from muster.allocation.bottleneck import fills
+from muster.allocation.problem import Problem
+from muster.allocation.rules.deadline import too_late
+from muster.allocation.rules.rule import ROUNDING, InPlan
+from muster.allocation.rules.shift import beyond
+from muster.allocation.rules.window import closed
+
+_RELAXED = ("window", "deadline", "shift", "capacity")
+"""The rules that are looked at one after the other, in the order of rules."""
+
+_MOST_PLACES = 400  # of a team, the earliest first, that are looked at
+_MOST_TEAMS = 60
+
+Member = tuple[int, int]
+"""A robot, and the task that it does."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A way to put a task, with all that begins together with it, into routes.
+
+    `at` is its index in the route of the robot that was asked about.
+    """
+
+    at: int
+    routes: list[list[int]]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The best admissible place, with the usage of the robot; or the rule that leaves none, and how."""
+
+    place: Place | None = None
+    usage: float = math.inf
+    word: str = ""
+    detail: str = ""
+
+
+class TimedPlaces(InPlan):
+    """All places of a task in routes, by trial."""
+
+    is_timed = True
+
+    def __init__(self, problem: Problem, routes: Sequence[Sequence[int]]) -> None:
+        self.problem: Problem = problem
+        self.routes = [list(route) for route in routes]
+        self.inspection = core.Inspection(problem.core, self.routes)
+        self.done = {j for route in routes for j in route}
+        self.outcome = cache(self._outcome)
+
+    def members(self, j: int) -> Sequence[int]:
+        return [i for i, route in enumerate(self.routes) if j in route]
+
+    def with_task(self, i: int, j: int, at: int) -> list[list[int]]:
+        place = self.outcome(i, j).place
+        assert place is not None  # as `at` is its place
+        return [list(route) for route in place.routes]
+
+    def kept_out(self, word: str, i: int, j: int) -> str | None:
+        found = self.outcome(i, j)
+        return found.detail if found.word == word else None
+
+    def _outcome(self, i: int, j: int) -> Outcome:
+        """The place of task j with the least usage of robot i, or why there is none."""
+        missing = self._left_out_with(j)
+        if missing:
+            return Outcome(word="relation", detail=missing)
+        places = self.places(i, j)
+        best = min(self._admissible(self.problem, places), key=lambda one: one[1].usages[i], default=None)
+        if best is not None:
+            return Outcome(best[0], best[1].usages[i])
+        if not places:
+            return Outcome(word="relation", detail="no team for it keeps its relations to the tasks of the plan")
+        return self._refused(i, j, places)
+
+    def _left_out_with(self, j: int) -> str:
+        """What the tasks that begin together with a task lack; empty: nothing."""
+        problem = self.problem
+        for k in problem.timed_rules.beginning_with(j):
+            before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done]
+            if before:
+                return f"begins together with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
+        return ""
+
+    @staticmethod
+    def _admissible(problem: Problem, places: Iterable[Place]) -> list[tuple[Place, core.Inspection]]:
+        tried = ((place, core.Inspection(problem.core, place.routes)) for place in places)
+        return [(place, found) for place, found in tried if found.admissible]
+
+    # --- the rule that leaves no place -------------------------------------------------------------------------------
+
+    def _refused(self, i: int, j: int, places: list[Place]) -> Outcome:
+        """The first rule with which, beside those before it, no place is left."""
+        left = self._admissible(self._without(_RELAXED), places)
+        if not left:
+            return self._no_order(i, j, places)
+        for at, word in enumerate(_RELAXED):
+            before, left = left, self._admissible(self._without(_RELAXED[at + 1 :]), [place for place, _ in left])
+            if not left:
+                return Outcome(word=word, detail=self._detail(word, i, j, before))
+        raise AssertionError("a place that keeps all rules is admissible")
+
+    @cache  # noqa: B019
+    def _without(self, words: Sequence[str]) -> Problem:
+        """The problem in which some rules do not hold."""
+        problem = self.problem
+        if not words:
+            return problem
+        return replace(problem, ignored=(*problem.ignored, *words), known=problem.measured)
+
+    def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
+        """Why no place is left whatever the times and capacities."""
+        inspections = [core.Inspection(self._without(_RELAXED).core, place.routes) for place in places]
+        if any(found.makespan is not None and math.isinf(found.usages[i]) for found in inspections):
+            return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
+        detail = "at every place in its route tasks would wait for each other in a circle, or longer than they may"
+        return Outcome(word="prerequisite", detail=detail)
+
+    def _detail(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> str:
+        """How a rule is broken at the place where it is broken least."""
+        if word == "capacity":
+            usage, unit = min(found.usages[i] for _, found in left), self.problem.usage_unit
+            if usage > self.problem.capacity[i]:
+                return f"at least {usage:.2f} {unit} with it, of {self.problem.capacity[i]:.2f} {unit}"
+            return "with its team one of the robots would need more than its capacity"
+        if word == "shift":
+            ends = (self._route_end(found, i, place.routes[i]) for place, found in left)
+            own = beyond(self.problem, i, min(ends))
+            return own or "with it the route of another robot would end after its shift"
+        times = [(stop_of(found, i, place.at), place, found) for place, found in left]
+        own = self._own_lateness(word, i, j, [stop for stop, _, _ in times])
+        return own or self._others_lateness(word, i, j, min(times, key=lambda one: one[0][1]))
+
+    def _own_lateness(self, word: str, i: int, j: int, stops: list[tuple[float, float, float]]) -> str | None:
+        """That the task itself is too late at every place."""
+        if word == "deadline":
+            return too_late(self.problem, j, min(end for _, _, end in stops))
+        earliest, begin = (min(times) for times in list(zip(*stops, strict=True))[:2])
+        return closed(self.problem, j, "arrives at", earliest) or closed(self.problem, j, "begins at", begin)
+
+    def _others_lateness(
+        self, word: str, i: int, j: int, best: tuple[tuple[float, float, float], Place, core.Inspection]
+    ) -> str:
+        """Which other task would be too late, at the place where the task begins first."""
+        _, place, found = best
+        for r, route in enumerate(place.routes):
+            for at, k in enumerate(route):
+                _, begin, end = stop_of(found, r, at)
+                late = (
+                    closed(self.problem, k, "begins at", begin) if word == "window" else too_late(self.problem, k, end)
+                )
+                if late and k != j:
+                    return f"with it {self.problem.tasks[k].id} {late}".replace(" at the earliest", "")
+        what = "windows" if word == "window" else "deadlines"
+        return f"at no place in its route are all {what} kept"
+
+    def _route_end(self, found: core.Inspection, i: int, route: list[int]) -> float:
+        """When robot i is at the end of its route."""
+        problem = self.problem
+        end = stop_of(found, i, len(route) - 1)[2]
+        if problem.robots[i].place_at_end(problem.mission.rules) is None:
+            return end
+        return end + float(problem.travel_seconds(i, [route[-1]], [problem.end(i)])[0, 0])
+
+    # --- places ------------------------------------------------------------------------------------------------------
+
+    def places(self, i: int, j: int) -> list[Place]:
+        """Ways to put task j into the route of robot i; of teams those that can begin first."""
+        found: list[Place] = []
+        for team in itertools.islice(self._teams(i, j), _MOST_TEAMS):
+            gaps = [self._gaps(robot) for robot, _ in team]
+            if len(team) == 1:
+                combinations: Iterable[tuple[int, ...]] = itertools.product(*gaps)
+            else:
+                combinations = self._earliest(team, gaps)
+            found += [self._put(i, team, at) for at in combinations]
+            if len(team) > 1 and len(found) >= _MOST_PLACES:
+                break
+        return found
+
+    def _put(self, i: int, team: Sequence[Member], at: Sequence[int]) -> Place:
+        routes = list(self.routes)
+        for (robot, task), gap in zip(team, at, strict=True):
+            routes[robot] = [*routes[robot][:gap], task, *routes[robot][gap:]]
+        return Place(next(gap for (robot, _), gap in zip(team, at, strict=True) if robot == i), routes)
+
+    def _gaps(self, i: int) -> range:
+        return range(len(self.problem.beginning(i)), len(self.routes[i]) + 1)
+
+    def _earliest(self, team: Sequence[Member], gaps: Sequence[range]) -> list[tuple[int, ...]]:
+        """Combinations of gaps, those first at which the last member arrives first; of these the latest gaps."""
+        most = max(1, int(_MOST_PLACES ** (1 / len(team))))
+        near = [_spread(list(some), most) for some in gaps]
+        arrivals = [{gap: self._arrival(*member, gap) for gap in some} for member, some in zip(team, near, strict=True)]
+
+        def order(at: tuple[int, ...]) -> tuple[float, int]:
+            return max(times[gap] for times, gap in zip(arrivals, at, strict=True)), -sum(at)
+
+        return sorted(itertools.product(*near), key=order)
+
+    def _arrival(self, i: int, j: int, gap: int) -> float:
+        """When robot i would be at task j after the tasks before a gap."""
+        problem = self.problem
+        if gap == 0:
+            there = problem.travel_seconds(i, [problem.start(i)], [j])
+            return problem.robots[i].available_from_s + float(there[0, 0])
+        there = problem.travel_seconds(i, [self.routes[i][gap - 1]], [j])
+        return stop_of(self.inspection, i, gap - 1)[2] + float(there[0, 0])
+
+    # --- teams -------------------------------------------------------------------------------------------------------
+
+    def _teams(self, i: int, j: int) -> Iterator[list[Member]]:
+        """Different robots for all places of a task and of those that begin with it, robot i at the task."""
+        rules = self.problem.timed_rules
+        unit = [j, *rules.beginning_with(j)]
+        yield from self._completed(unit, i, [])
+
+    def _completed(self, unit: Sequence[int], i: int, members: list[Member]) -> Iterator[list[Member]]:
+        if not unit:
+            yield members
+            return
+        taken = {robot for robot, _ in members}
+        for team in self._teams_of(unit[0], None if members else i):
+            if not taken & set(team):
+                yield from self._completed(unit[1:], i, [*members, *((robot, unit[0]) for robot in team)])
+
+    def _teams_of(self, j: int, required: int | None) -> Iterator[tuple[int, ...]]:
+        """The teams of one task, with a robot that must be in it; the robots that are free first before others."""
+        able = [k for k in self._by_arrival(j) if self._keeps_relations(k, j)]
+        if required is not None and required not in able:
+            return
+        others = [k for k in able if k != required]
+        given = () if required is None else (required,)
+        for size in self._sizes(j, len(able)):
+            for rest in itertools.combinations(others, size - len(given)):
+                team = (*given, *rest)
+                if self._is_team(j, team) and self._is_that_of_relations(j, team):
+                    yield team
+
+    def _sizes(self, j: int, most: int) -> range:
+        rules = self.problem.timed_rules
+        if rules.is_for_team(j) and rules.needs(j):
+            return range(1, most + 1)
+        count = sum(count for count, _ in rules.parts(j))
+        return range(count, count + 1)
+
+    def _is_team(self, j: int, team: Sequence[int]) -> bool:
+        """Whether robots fill the places of a team, or have the abilities, none of them for nothing."""
+        rules = self.problem.timed_rules
+        if rules.is_for_team(j) and rules.needs(j):
+            return self._able(j, team) and not any(self._able(j, [k for k in team if k != one]) for one in team[1:])
+        rows = [fits[list(team)] for count, fits in rules.parts(j) for _ in range(count)]
+        return fills(np.array(rows, dtype=np.bool_))
+
+    def _able(self, j: int, team: Sequence[int]) -> bool:
+        needs = self.problem.timed_rules.needs(j)
+        return all(float(able[list(team)].sum()) >= needed * (1 - ROUNDING) for needed, able in needs)
+
+    def _by_arrival(self, j: int) -> list[int]:
+        able = [k for k in range(len(self.problem.robots)) if self.problem.may(k, j)]
+        return sorted(able, key=lambda k: (self._arrival(k, j, len(self.routes[k])), k))
+
+    def _keeps_relations(self, k: int, j: int) -> bool:
+        rules = self.problem.timed_rules
+        same = all(not self.members(other) or k in self.members(other) for other in rules.same_robot[j])
+        return same and not any(k in self.members(other) for other in rules.other_robot[j])
+
+    def _is_that_of_relations(self, j: int, team: Sequence[int]) -> bool:
+        """Whether the same members do the tasks that the same robots must do."""
+        same = self.problem.timed_rules.same_robot[j]
+        return all(not self.members(k) or set(self.members(k)) == set(team) for k in same)
+
+
+def stop_of(found: Any, i: int, at: int) -> tuple[float, float, float]:
+    """Arrival, begin and end of a stop of inspected routes."""
+    arrive, begin, end = found.stops[i][at]
+    return arrive, begin, end
+
+
+def in_plan(problem: Problem, routes: Sequence[Sequence[int]]) -> InPlan:
+    """Routes, and what one more task in them would do."""
+    return TimedPlaces(problem, routes) if problem.timed_rules.are_any else InPlan(problem, routes)
+
+
+def _spread(gaps: list[int], most: int) -> list[int]:
+    """Some of many gaps, the last ones and others evenly."""
+    if len(gaps) <= most:
+        return gaps
+    return sorted({gaps[-1 - k * (len(gaps) - 1) // max(1, most - 1)] for k in range(most)})

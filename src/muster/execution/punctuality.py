@@ -1,0 +1,100 @@
+"""Punctuality: notices tasks that cannot begin in time any more, and counts how long robots wait, and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from muster.execution.beginning import Beginning, Missed, next_begin
+from muster.execution.changes import Change
+from muster.execution.forecast import Forecast
+from muster.execution.robot_state import Activity, RobotState
+from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger, MissedTask
+
+_CHANGES = {"window": "window_missed", "deadline": "deadline_missed", "prerequisite": "within_missed"}
+
+
+@dataclass
+class Punctuality:
+    """Compares the clock with windows, deadlines and lags.
+
+    Parameters
+    ----------
+    ledger, crew, beginning
+        of the executor.
+    """
+
+    ledger: Ledger
+    crew: Mapping[str, RobotState]
+    beginning: Beginning
+    _planned_s: dict[str, float] = field(default_factory=dict)
+    _timed: bool = False
+
+    def expect(self, forecast: Forecast, now: float) -> None:
+        """Note when tasks are going to begin by the routes as they are now."""
+        self._timed = self.ledger.is_timed
+        self._planned_s = (forecast.begins(now) or {}) if self._timed else {}
+
+    def look(self, now: float) -> Iterator[Change]:
+        """Tasks that were not begun in time: those of routes ask for a new plan."""
+        if not self._timed:
+            return
+        routed = {name for state in self.crew.values() if not state.out for name in state.route}
+        for task in self.ledger.open:
+            if task.id in self.ledger.starts_s or task.id in self.ledger.expired:
+                continue
+            missed = self.beginning.missed(task.id, now)
+            if missed is not None:
+                self.ledger.expire(task.id, missed.reason)
+            else:
+                missed = self._missed_window(task.id, now)
+            if missed is not None:
+                self.ledger.missed.append(MissedTask(task.id, now, missed.reason, missed.next_s))
+                if task.id in routed:
+                    yield Change(
+                        _CHANGES[missed.rule], {"task": task.id, "reason": missed.reason, "next_s": missed.next_s}
+                    )
+
+    def count_waits(self, seconds: float) -> None:
+        """Robots have waited for so long, each for what it said last."""
+        if not self._timed or seconds <= 0:
+            return
+        for state in self._waiting:
+            self.ledger.waits(state.route[0], state.wait_cause or "prerequisite", seconds)
+
+    def times(self, now: float) -> Iterator[float]:
+        """When the clock alone lets a robot that waits begin, or one is about to arrive where it must ask."""
+        if not self._timed:
+            return
+        for state in self.crew.values():
+            if state.out or not state.route:
+                continue
+            if state.activity is Activity.WAITING:
+                wait = self.beginning.wait(state.route[0], now)
+                yield math.inf if wait is None else wait.until_s
+            elif state.activity is Activity.DRIVING and not state.works:
+                yield now + state.travel_left_m / state.robot.speed_mps
+
+    def waits_for_clock(self, now: float) -> bool:
+        """Whether some robot begins when time goes on, or a task that it waits for is given up then."""
+        if not self._timed:
+            return False
+        waits = [self.beginning.wait(state.route[0], now) for state in self._waiting]
+        return any(wait is None or wait.until_s < math.inf for wait in waits)
+
+    @property
+    def _waiting(self) -> list[RobotState]:
+        return [state for state in self.crew.values() if state.activity is Activity.WAITING and not state.out]
+
+    def _missed_window(self, name: str, now: float) -> Missed | None:
+        """A window that was meant has closed, and another one opens later."""
+        task, planned = self.ledger.tasks[name], self._planned_s.get(name)
+        if planned is None or len(task.window_s) < 2:
+            return None
+        for first, last in task.window_s:
+            if last is not None and first - TIME_ROUNDING_S <= planned <= last < now - TIME_ROUNDING_S:
+                del self._planned_s[name]
+                opens = next_begin([task], now)
+                return Missed("window", f"window: closed at {last:,g} s; the next is open from {opens:,g} s on", opens)
+        return None

@@ -1,0 +1,42 @@
+"""All robots and all work of a mission, also those that come later, with their paths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from muster.mission.mission_data import MissionData
+from muster.mission.near_matches import did_you_mean
+from muster.mission.robots import Robot
+from muster.mission.tasks import Found, Task, Work
+from muster.mission.value_types import Fault, Path, shown
+
+
+def new_tasks(mission: MissionData) -> list[tuple[Path, Task]]:
+    """The tasks of events."""
+    return [(("events", k, "new_task"), e.new_task) for k, e in enumerate(mission.events) if e.new_task]
+
+
+def robots_that_join(mission: MissionData) -> list[tuple[Path, Robot]]:
+    """The robots of events."""
+    return [(("events", k, "robot_joins"), e.robot_joins) for k, e in enumerate(mission.events) if e.robot_joins]
+
+
+def all_work(mission: MissionData) -> list[tuple[Path, Work]]:
+    """Tasks, those that come later, and what becomes of tags."""
+    becomes = [(("found", k, "becomes"), found.becomes) for k, found in rules_of_tags(mission)]
+    return [*((("tasks", k), task) for k, task in enumerate(mission.tasks)), *new_tasks(mission), *becomes]
+
+
+def all_robots(mission: MissionData) -> list[tuple[Path, Robot]]:
+    """Robots, and those that come later."""
+    return [*((("robots", k), robot) for k, robot in enumerate(mission.robots)), *robots_that_join(mission)]
+
+
+def unknown_id(at: Path, name: str, known: Sequence[str], what: str) -> Fault:
+    """The fault of an id that no robot or task has; `what` is one of these words."""
+    return Fault(at, shown(name), f"the id of a {what}{did_you_mean(name, known)}", relies_on=f"{what}s")
+
+
+def rules_of_tags(mission: MissionData) -> list[tuple[int, Found]]:
+    """What becomes of tags, by number; one without a task is on the list of faults already."""
+    return [(k, found) for k, found in enumerate(mission.found) if found.becomes is not None]

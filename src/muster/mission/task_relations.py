@@ -1,0 +1,105 @@
+"""Relations between the tasks of a mission: known tasks, and none that exclude each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from muster.mission.mission_data import MissionData
+from muster.mission.mission_parts import all_work, new_tasks, unknown_id
+from muster.mission.tasks import Task
+from muster.mission.value_types import Fault, Path, shown
+
+RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")
+
+
+def relation_faults(mission: MissionData) -> Iterator[Fault]:
+    """What is wrong with the relations between tasks."""
+    yield from _wrong_names(mission)
+    yield from _contradictions(mission.tasks)
+
+
+def tied_by(relation: str, tasks: Sequence[Task]) -> list[int]:
+    """By task the number of the first task that a relation ties it to, directly or through others; else its own."""
+    index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
+    first = list(range(len(tasks)))
+
+    def found(k: int) -> int:
+        while first[k] != k:
+            first[k] = first[first[k]]
+            k = first[k]
+        return k
+
+    for k, task in enumerate(tasks):
+        for name in getattr(task, relation):
+            if name in index:
+                low, high = sorted((found(k), found(index[name])))
+                first[high] = low
+    return [found(k) for k in range(len(tasks))]
+
+
+def _wrong_names(mission: MissionData) -> Iterator[Fault]:
+    ids = [t.id for t in mission.tasks]
+    with_new = [*ids, *(t.id for _, t in new_tasks(mission))]
+    own, all_of_them = set(ids), set(with_new)
+    for path, task in all_work(mission):
+        known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
+        for relation in RELATIONS:
+            names = getattr(task, relation)
+            for n, name in enumerate(names):
+                at: Path = (*path, relation, n)
+                if name == getattr(task, "id", None):
+                    yield Fault(at, shown(name), "another task than itself")
+                elif name not in among:
+                    yield unknown_id(at, name, known, "task")
+                elif name in names[:n]:
+                    yield Fault(at, shown(name), "each task once")
+
+
+def _contradictions(tasks: Sequence[Task]) -> Iterator[Fault]:
+    """Tasks that the same robot does and that start together, or that other robots do."""
+    if not any(task.same_robot_as for task in tasks):
+        return
+    index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
+    robot = tied_by("same_robot_as", tasks)
+    for k, task in enumerate(tasks):
+        for n, name in enumerate(task.other_robot_than):
+            other = index.get(name)
+            if other not in (None, k) and robot[other] == robot[k]:
+                yield _contradiction(tasks, ("tasks", k, "other_robot_than", n), k, other)
+    yield from _started_by_one_robot(tasks, robot)
+
+
+def _started_by_one_robot(tasks: Sequence[Task], robot: Sequence[int]) -> Iterator[Fault]:
+    """The first two tasks of each start together that the same robot does."""
+    together = tied_by("starts_with", tasks)
+    seen: dict[tuple[int, int], int] = {}
+    for k, key in enumerate(zip(together, robot, strict=True)):
+        if key in seen and seen[key] >= 0:
+            tied = next(t for t in (k, seen[key], *range(len(tasks))) if tasks[t].starts_with and together[t] == key[0])
+            yield _contradiction(tasks, ("tasks", tied, "starts_with"), seen[key], k)
+            seen[key] = -1
+        seen.setdefault(key, k)
+
+
+def _contradiction(tasks: Sequence[Task], at: Path, one: int, other: int) -> Fault:
+    chain = ", ".join(tasks[k].id for k in _chain(tasks, one, other))
+    value = shown(tasks[other].id) if len(at) > 3 else f"{tasks[one].id} with {tasks[other].id}"
+    return Fault(at, value, f"tasks of different robots: by same_robot_as one robot does {chain}")
+
+
+def _chain(tasks: Sequence[Task], start: int, end: int) -> list[int]:
+    """The shortest chain of tasks that the same robot does, from one to another that is tied to it."""
+    index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
+    beside: dict[int, list[int]] = {}
+    for k, task in enumerate(tasks):
+        for name in task.same_robot_as:
+            if name in index:
+                beside.setdefault(k, []).append(index[name])
+                beside.setdefault(index[name], []).append(k)
+    ways = {start: [start]}
+    for here in (queue := [start]):
+        for there in beside.get(here, ()):
+            if there not in ways:
+                ways[there] = [*ways[here], there]
+                queue.append(there)
+    return ways[end]

@@ -1,0 +1,61 @@
+"""The rules of time, teams and relations as arrays, and what is left of them where they are ignored."""
+
+import math
+
+from muster import Mission, Robot, Task
+from muster.allocation.problem import Problem
+from muster.allocation.timed_rules import TimedRules
+from muster.mission.model import Lag, TeamPart
+
+MISSION = Mission(
+    robots=(
+        Robot(id="a", position=(0, 0), type="arm", abilities={"lift": 3}, available_until_s=90),
+        Robot(id="b", position=(1, 0), skills=("camera",), abilities={"lift": 2}),
+        Robot(id="c", position=(1, 0), kind="air"),
+    ),
+    tasks=(
+        Task(id="1", position=(0, 0), window_s=((1, 2), (5, None)), deadline_s=9, due_s=4),
+        Task(id="2", position=(0, 0), prerequisites=("1",), lags={"1": Lag(after_s=2)}, robots_needed=2),
+        Task(id="3", position=(0, 0), starts_with=("4",), team=(TeamPart(count=2), TeamPart(requires=("camera",)))),
+        Task(id="4", position=(0, 0), needs={"lift": 4}, other_robot_than=("1",)),
+        Task(id="5", position=(0, 0), same_robot_as=("2",)),
+    ),
+)
+
+
+def rules(*ignored):
+    return TimedRules(Problem.compile(MISSION, ignored=ignored))
+
+
+def test_times():
+    some = rules()
+    assert some.windows == [[(1, 2), (5, math.inf)], [], [], [], []]
+    assert (some.deadline[0], some.due[0], some.available_until.tolist()) == (9, 4, [90, math.inf, math.inf])
+    assert some.lags(1) == [(0, 2, math.inf)]
+    assert some.are_any
+
+
+def test_teams():
+    some = rules()
+    assert [some.is_for_team(j) for j in range(5)] == [False, True, True, True, False]
+    assert [some.least_members(j) for j in range(5)] == [1, 2, 3, 2, 1]
+    assert [(count, fits.tolist()) for count, fits in some.parts(2)] == [(2, [True] * 3), (1, [False, True, False])]
+    assert [(least, able.tolist()) for least, able in some.needs(3)] == [(4, [3, 2, 0])]
+
+
+def test_relations():
+    some = rules()
+    assert some.units == [[0], [1], [2, 3], [4]]
+    assert some.unit == [0, 1, 2, 2, 3]
+    assert (some.same_robot, some.other_robot) == ([[], [4], [], [], [1]], [[3], [], [], [0], []])
+
+
+def test_what_is_ignored_does_not_bind():
+    assert not any(rules("window").windows)
+    assert rules("deadline").deadline[0] == rules("shift").available_until[0] == math.inf
+    assert rules("deadline").due[0] == 4
+    assert [rules("team").least_members(j) for j in range(5)] == [1] * 5
+    assert len(rules("relation").units) == 5
+    assert rules("prerequisite").lags(1) == []
+    words = ("window", "deadline", "shift", "team", "relation", "prerequisite")
+    assert not TimedRules(Problem.compile(MISSION, ignored=words)).are_any

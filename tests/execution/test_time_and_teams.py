@@ -1,0 +1,198 @@
+"""Plans with time windows, deadlines, lags, shifts, teams and relations, carried out; and what goes wrong with them."""
+
+from dataclasses import replace
+
+import pytest
+from tests.execution.test_executor import carried_out, plan_of
+from tests.execution.world import World, carry_out
+
+from muster import Mission, Robot, Task
+from muster.execution.executor import Executor
+from muster.execution.reallocation import Revision
+from muster.execution.report import report_of
+from muster.execution.status import status_of
+from muster.execution.teams import lacking
+from muster.mission.errors import ParameterError
+from muster.mission.model import DelayedTask, Event, Lag, TeamPart
+
+NEAR = 0.25
+
+
+def mission_of(*tasks, robots=2, events=(), **robot):
+    crew = tuple(Robot(id=f"r_{k}", position=(0.0, float(k)), **robot) for k in range(robots))
+    return Mission(robots=crew, tasks=tasks, events=tuple(events))
+
+
+def task(name, x=1.0, **keys):
+    return Task(id=name, position=(x, 0.0), **{"duration_s": 10.0, **keys})
+
+
+def keeping(rest):
+    """A new plan: what robots still can do of theirs. It is no search, so that the executor alone is tested."""
+    crew = {s.robot.id: s.robot for s in rest.crew}
+    routes = {name: rest.routes[name] for name in crew}
+    for one in rest.tasks:
+        able = [
+            robot
+            for name, robot in crew.items()
+            if one.id in routes[name] and name not in rest.refusals.get(one.id, {})
+        ]
+        if one.id in rest.expired or lacking(one, able):
+            able = []
+        for name, route in routes.items():
+            routes[name] = tuple(other for other in route if other != one.id or crew[name] in able)
+    there = {name for route in routes.values() for name in route}
+    left_out = {
+        one.id: rest.expired.get(one.id, ", ".join(rest.refusals.get(one.id, {}).values()))
+        for one in rest.tasks
+        if one.id not in there
+    }
+    return Revision(
+        routes=routes,
+        ahead={name: {} for name in crew},
+        moved={},
+        forced=frozenset(),
+        added={},
+        dropped=tuple(name for name in left_out if name in rest.former),
+        left_out=left_out,
+    )
+
+
+def words_of(executor):
+    return {(e.data["robot"], e.data["words"]) for e in executor.events if e.kind == "waits"}
+
+
+def test_a_robot_waits_for_its_window_and_says_so():
+    mission = mission_of(task("a", window_s=((30.0, 60.0),)), robots=1)
+    executor = carried_out(mission, plan_of(r_0=["a"]), replan=keeping)
+    report = report_of(executor.account)
+    assert report.starts_s["a"] == pytest.approx(30, abs=NEAR)
+    assert report.waiting_by_cause_s == {"window": pytest.approx(29, abs=NEAR)}
+    assert words_of(executor) == {("r_0", "waits for window: opens at 30 s")}
+
+
+def test_status_says_for_whom_a_team_waits():
+    mission = mission_of(task("lift", robots_needed=2), task("far", x=20.0))
+    world = World(mission)
+    executor = Executor(mission, plan_of(r_0=["lift"], r_1=["far", "lift"]), world.ports, replan=keeping)
+    carry_out(executor, world, until=5)
+    status = status_of(executor)
+    assert status.robots["r_0"].waits == "waits for team: r_1"
+    assert (status.robots["r_0"].team, status.robots["r_1"].team) == (("r_0", "r_1"), ())
+    carry_out(executor, world)
+    report = report_of(executor.account)
+    there = report.ends_s["far"] + 19
+    assert report.starts_s["lift"] == pytest.approx(there, abs=NEAR)
+    assert report.tasks_done.count("lift") == 1
+    assert report.tasks[-1].team == ("r_0", "r_1")
+    assert report.waiting_by_cause_s["team"] == pytest.approx(there - 1, abs=2 * NEAR)
+
+
+def test_a_team_ends_for_all_when_the_slowest_ends():
+    mission = mission_of(task("lift", robots_needed=2))
+    slow = replace(mission.robots[1], efficiency=0.5)
+    mission = replace(mission, robots=(mission.robots[0], slow))
+    report = report_of(carried_out(mission, plan_of(r_0=["lift"], r_1=["lift"]), replan=keeping).account)
+    assert report.ends_s["lift"] - report.starts_s["lift"] == pytest.approx(20, abs=NEAR)
+
+
+def test_a_team_begins_only_when_it_is_enough():
+    """A plan from elsewhere sends one robot too few: nothing is counted as done."""
+    for needed in ({"robots_needed": 2}, {"team": (TeamPart(count=2),)}, {"needs": {"lift_kg": 30.0}}):
+        mission = mission_of(task("lift", **needed), abilities={"lift_kg": 20.0})
+        executor = carried_out(mission, plan_of(r_0=["lift"]), replan=keeping)
+        assert "starts" not in {e.kind for e in executor.events}
+        assert not executor.ledger.ends_s
+
+
+def test_a_part_of_a_team_takes_the_robot_that_fits_it():
+    team = (TeamPart(count=1), TeamPart(count=1, requires=("camera",)))
+    mission = mission_of(task("look", team=team))
+    seeing = replace(mission, robots=(replace(mission.robots[0], skills=("camera",)), mission.robots[1]))
+    for given, done in ((mission, []), (seeing, ["look"])):
+        executor = carried_out(given, plan_of(r_0=["look"], r_1=["look"]), replan=keeping)
+        assert list(executor.ledger.ends_s) == done
+
+
+def test_tasks_begin_together():
+    mission = mission_of(task("a", starts_with=("b",)), task("b", x=30.0, duration_s=3.0))
+    report = report_of(carried_out(mission, plan_of(r_0=["a"], r_1=["b"]), replan=keeping).account)
+    assert report.starts_s["a"] == report.starts_s["b"] == pytest.approx(30, abs=NEAR)
+    assert report.ends_s["b"] < report.ends_s["a"]
+
+
+def test_work_begins_a_while_after_the_prerequisite_has_ended():
+    mission = mission_of(task("a"), task("b", x=2.0, prerequisites=("a",), lags={"a": Lag(after_s=15)}))
+    executor = carried_out(mission, plan_of(r_0=["a"], r_1=["b"]), replan=keeping)
+    report = report_of(executor.account)
+    assert report.starts_s["b"] == pytest.approx(report.ends_s["a"] + 15, abs=NEAR)
+    assert report.waiting_by_cause_s["lag"] == pytest.approx(15, abs=NEAR)
+
+
+@pytest.mark.parametrize("within", [2.0, 20.0])
+def test_a_prerequisite_begins_so_late_that_its_dependant_can_follow_in_time(within):
+    mission = mission_of(task("a"), task("b", x=100.0, prerequisites=("a",), lags={"a": Lag(within_s=within)}))
+    executor = carried_out(mission, plan_of(r_0=["a"], r_1=["b"]), replan=keeping)
+    report = report_of(executor.account)
+    assert report.starts_s["b"] <= report.ends_s["a"] + within + 1e-6
+    assert report.starts_s["a"] == pytest.approx(90 - within, abs=within)
+    assert report.waiting_by_cause_s["dependant"] > 50
+    assert not report.within_exceeded_s
+    assert not report.missed
+
+
+def test_a_window_that_is_missed_is_reported_as_the_reason():
+    mission = mission_of(task("first"), task("a", window_s=((12.0, 30.0),)), robots=1)
+    late = replace(mission, tasks=(replace(mission.tasks[0], duration_s=40.0), mission.tasks[1]))
+    report = report_of(carried_out(late, plan_of(r_0=["first", "a"]), replan=keeping).account)
+    assert report.tasks_lost == (("a", "window: closed at 30 s"),)
+    assert [(one.task, one.reason, one.next_s) for one in report.missed] == [("a", "window: closed at 30 s", None)]
+
+
+def test_a_robot_that_misses_a_window_waits_for_the_next():
+    tasks = (task("first"), task("a", window_s=((12.0, 30.0), (80.0, 90.0))))
+    mission = mission_of(*tasks, robots=1, events=[Event(at_s=2, delay_task=DelayedTask(task="first", by_s=40))])
+    executor = carried_out(mission, plan_of(r_0=["first", "a"]), replan=keeping)
+    report = report_of(executor.account)
+    assert report.starts_s["a"] == pytest.approx(80, abs=NEAR)
+
+
+def test_a_deadline_that_cannot_be_kept_is_not_begun():
+    mission = mission_of(task("a", x=10.0, deadline_s=15.0), robots=1)
+    report = report_of(carried_out(mission, plan_of(r_0=["a"]), replan=keeping).account)
+    assert not report.tasks_done
+    assert "deadline" in dict(report.tasks_lost)["a"]
+
+
+def test_a_robot_begins_nothing_after_which_it_is_late_for_the_end_of_its_shift():
+    mission = mission_of(task("a"), task("b", x=20.0), robots=1, available_until_s=35.0, return_to_start=True)
+    executor = carried_out(mission, plan_of(r_0=["a", "b"]), replan=keeping)
+    assert list(executor.ledger.ends_s) == ["a"]
+    assert executor.ledger.refusals["b"]["r_0"].startswith("shift: would be back at")
+
+
+def test_ignored_rules_do_not_hold():
+    mission = mission_of(task("a", robots_needed=2, window_s=((500.0, 600.0),), deadline_s=3.0), robots=1)
+    plan = replace(plan_of(r_0=["a"]), ignored=("window", "team", "deadline"))
+    assert list(carried_out(mission, plan, replan=keeping).ledger.ends_s) == ["a"]
+
+
+def test_a_task_of_one_robot_stands_in_one_route():
+    with pytest.raises(ParameterError, match="at most once"):
+        carried_out(mission_of(task("a")), plan_of(r_0=["a"], r_1=["a"]), replan=keeping)
+
+
+def test_work_is_broken_off_for_all_when_a_member_fails():
+    """The members that are left do not go on alone; nothing is counted as done by fewer than needed."""
+    mission = mission_of(task("lift", robots_needed=2), events=[Event(at_s=6, robot_fails="r_1")])
+    executor = carried_out(mission, plan_of(r_0=["lift"], r_1=["lift"]), replan=keeping)
+    assert "work_broken_off" in {e.kind for e in executor.events}
+    assert not executor.ledger.ends_s
+    assert "lift" in executor.lost()
+
+
+def test_due_times_make_lateness():
+    mission = mission_of(task("a", due_s=5.0, priority=2.0), robots=1)
+    report = report_of(carried_out(mission, replace(plan_of(r_0=["a"]), objective="lateness"), replan=keeping).account)
+    assert report.lateness_s == report.tasks[0].lateness_s == pytest.approx(6, abs=NEAR)
+    assert report.objective.flown == pytest.approx(12, abs=2 * NEAR)

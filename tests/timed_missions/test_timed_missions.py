@@ -1,0 +1,94 @@
+"""The enumeration of timed missions, by hand; `make campaign-times` holds thousands against planner and judge."""
+
+from muster import Mission, Robot, Rules, Task
+from muster.mission.model import Lag, TeamPart
+from tests.timed_missions.every_plan import EveryPlan
+from tests.timed_missions.meaning import Meaning
+from tests.timed_missions.missions import OBJECTIVES, RULES, ignored_in, timed_mission
+
+
+def test_the_missions_have_every_rule():
+    missions = [timed_mission(seed) for seed in range(300)]
+    tasks = [task for mission in missions for task in mission.tasks]
+    robots = [robot for mission in missions for robot in mission.robots]
+    assert {mission.rules.objective for mission in missions} == set(OBJECTIVES)
+    assert {mission.rules.makespan_includes_return for mission in missions} == {True, False}
+    assert {word for seed in range(300) for word in ignored_in(seed)} >= {
+        "window",
+        "deadline",
+        "shift",
+        "team",
+        "relation",
+    }
+    for values in (
+        [len(task.window_s) > 1 for task in tasks],
+        [task.deadline_s for task in tasks],
+        [task.due_s for task in tasks],
+        [any(lag.within_s for lag in task.lags.values()) for task in tasks],
+        [any(lag.after_s for lag in task.lags.values()) for task in tasks],
+        [task.robots_needed for task in tasks],
+        [task.team for task in tasks],
+        [task.needs for task in tasks],
+        [task.same_robot_as for task in tasks],
+        [task.other_robot_than for task in tasks],
+        [task.starts_with for task in tasks],
+        [robot.available_until_s for robot in robots],
+        [robot.abilities for robot in robots],
+    ):
+        assert 0.01 < sum(bool(value) for value in values) / len(values) < 0.95
+    assert len(RULES) == len(set(RULES))
+
+
+def mission_of(*tasks, robots=2, **rules):
+    """Robots at 0, 10, 20, ... on a line, and tasks of 5 s."""
+    made = (Robot(id=f"r_{k}", position=(10 * k, 0), abilities={"lift": 3}) for k in range(robots))
+    return Meaning(Mission(rules=Rules(timing="constant", **rules), robots=tuple(made), tasks=tasks))
+
+
+def task(name, x, **more):
+    return Task(id=name, position=(x, 0), duration_s=5, **more)
+
+
+def test_work_waits_for_the_next_window_and_for_the_last_of_a_team():
+    meaning = mission_of(task("a", 3, robots_needed=2, window_s=((0, 6), (8, 20))), task("b", 0))
+    begins, ends = meaning.schedule(((0,), (0,)))
+    assert (begins[0], ends[0]) == (8, 13)
+    assert meaning.faults(((0,), ())) == {"team"}
+    begins, _ = meaning.schedule(((1, 0), (0,)))
+    assert begins == {1: 0, 0: 8}
+
+
+def test_a_lag_of_at_most_so_long_holds_the_prerequisite_back():
+    later = task("b", 20, prerequisites=("a",), lags={"a": Lag(after_s=1, within_s=2)}, window_s=((30, 40),))
+    meaning = mission_of(task("a", 0), later)
+    begins, _ = meaning.schedule(((0,), (1,)))
+    assert begins == {0: 23, 1: 30}
+    assert meaning.faults(((0, 1), ())) == {"time"}  # 20 m from the end of a: more than 2 s
+
+
+def test_a_circle_is_no_schedule_even_if_nothing_takes_time():
+    first, second = (Task(id=name, position=(0, 0), robots_needed=2) for name in "ab")
+    meaning = mission_of(first, second)
+    assert meaning.schedule(((0, 1), (0, 1))) is not None
+    assert meaning.schedule(((0, 1), (1, 0))) is None
+
+
+def test_parts_are_seated_whatever_the_order():
+    parts = (TeamPart(count=1), TeamPart(count=1, type="arm"))
+    meaning = mission_of(Task(id="a", position=(0, 0), team=parts))
+    assert meaning.faults(((0,), (0,))) == {"team"}
+    robots = (Robot(id="x", position=(0, 0), type="arm"), Robot(id="y", position=(0, 0)))
+    assert not Meaning(Mission(robots=robots, tasks=meaning.tasks)).faults(((0,), (0,)))
+
+
+def test_every_plan_of_two_tasks_and_two_robots():
+    """Each alone (4), both with one robot (4), each with another (2), and none."""
+    assert len(EveryPlan(mission_of(task("a", 1), task("b", 2))).admissible) == 11
+    assert len(EveryPlan(mission_of(task("a", 1), task("b", 2, starts_with=("a",)))).admissible) == 3
+    assert len(EveryPlan(mission_of(task("a", 1, needs={"lift": 5}))).admissible) == 2
+
+
+def test_lateness_is_weighed_and_cost_breaks_ties():
+    meaning = mission_of(task("a", 3, due_s=6, priority=2), objective="lateness")
+    assert meaning.value(((0,), ())) == (2, 4, 3)
+    assert EveryPlan(meaning).best()[1] == ((0,), ())
