@@ -59,6 +59,21 @@ class Case:
         """By how much a usage may differ from the true one, relative."""
         return max(ROUNDING, self.travel.tolerance)
 
+    @cached_property
+    def is_timed(self) -> bool:
+        """Whether anything but prerequisites and capacities depends on times, teams or relations."""
+        late = any(robot.available_until_s is not None for robot in self.mission.robots)
+        return late or any(
+            task.window_s
+            or task.deadline_s is not None
+            or task.lags
+            or task.is_for_team
+            or task.same_robot_as
+            or task.other_robot_than
+            or task.starts_with
+            for task in self.mission.tasks
+        )
+
     def holds(self, rule: str) -> bool:
         """Whether a rule holds."""
         return rule not in self.ignored
