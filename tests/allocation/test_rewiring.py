@@ -93,3 +93,10 @@ def test_what_is_fixed_stays():
 def test_a_plan_that_is_not_admissible_is_refused():
     with pytest.raises(ParameterError, match="plan: the plan is not admissible"):
         rewire(Problem.compile(thesis_example()), plan_of(f=["j"], n=[]))
+
+
+def test_missions_in_time_are_refused():
+    mission = thesis_example()
+    timed = replace(mission, tasks=(replace(mission.tasks[0], deadline_s=500.0), *mission.tasks[1:]))
+    with pytest.raises(ParameterError, match="rewire: the mission has rules about time"):
+        rewire(Problem.compile(timed), plan_of(f=["j", "later"], n=["g"]))

@@ -20,6 +20,7 @@ from muster.allocation.problem import Floats, Problem
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.stop import Stop
 from muster.mission.clock import VirtualClock
+from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
 
 _LEAST_S = 1e-9  # by which waiting, or the makespan, has to become less
@@ -40,8 +41,12 @@ def rewire(problem: Problem, plan: Plan) -> Rewired:
     Raises
     ------
     ParameterError
-        if the plan is not admissible.
+        if the plan is not admissible, or the mission has rules about time windows, deadlines, shifts, lags, teams or
+        relations, which re-wiring does not look at.
     """
+    if problem.timed_rules.are_any:
+        rules = "time windows, deadlines, shifts, lags, teams, relations or the objective lateness"
+        raise ParameterError(f"rewire: the mission has {rules}; expected one without, which alone can be re-wired")
     before = admissible_routes(problem, plan, "plan")
     after = rewired(problem, before)
     made = finished_plan(problem, Stop(clock=VirtualClock()), Outcome(after), allocator="", seed=0)
@@ -59,7 +64,12 @@ def rewire(problem: Problem, plan: Plan) -> Rewired:
 
 
 def rewired(problem: Problem, routes: Routes) -> Routes:
-    """Admissible routes with less waiting; the fixed beginnings of routes stay."""
+    """Admissible routes with less waiting; the fixed beginnings of routes stay.
+
+    Routes of problems with time windows, deadlines, shifts, lags, teams or relations stay as they are.
+    """
+    if problem.timed_rules.are_any:
+        return routes
     schedule = _Schedule(problem)
     routes, now = [list(route) for route in routes], schedule.waiting(routes)
     while True:
