@@ -98,5 +98,5 @@ def test_a_plan_that_is_not_admissible_is_refused():
 def test_missions_in_time_are_refused():
     mission = thesis_example()
     timed = replace(mission, tasks=(replace(mission.tasks[0], deadline_s=500.0), *mission.tasks[1:]))
-    with pytest.raises(ParameterError, match="rewire: the mission has rules about time"):
+    with pytest.raises(ParameterError, match="rewire: the mission has time windows"):
         rewire(Problem.compile(timed), plan_of(f=["j", "later"], n=["g"]))
