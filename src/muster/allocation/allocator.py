@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
 from muster import core
+from muster.allocation.capabilities import NONE, refuse_what_is_not_kept
 from muster.allocation.explanations import unassigned_of_plan
 from muster.allocation.problem import Problem
 from muster.allocation.returned_routes import checked_routes
@@ -14,7 +15,7 @@ from muster.allocation.stop import Stop
 from muster.mission.auction_book import Book
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
-from muster.mission.plan import Plan, Route
+from muster.mission.plan import Plan, Route, RouteStop
 from muster.mission.value_types import shown
 
 Routes = list[list[int]]
@@ -43,7 +44,8 @@ class Allocator:
 
     `anytime` tells whether it goes on until it is stopped. `parameters` is a frozen, keyword-only dataclass that checks
     itself when made and has the published defaults. `auctions` tells whether its plans have a book; `keeps_fixed`,
-    whether it leaves tasks where they are that are to stay.
+    whether it leaves tasks where they are that are to stay; `can`, which rules of time, teams and relations it
+    keeps (of `capabilities.ALL`).
     """
 
     name: str
@@ -53,6 +55,7 @@ class Allocator:
     algorithm: Algorithm
     auctions: bool = False
     keeps_fixed: bool = False
+    can: frozenset[str] = NONE
 
     def solve(
         self, problem: Problem, stop: Stop, *, seed: int = 0, params: Any = None, start: Plan | None = None
@@ -63,10 +66,12 @@ class Allocator:
         ------
         ParameterError
             if `start` is not an admissible plan of this problem or moves tasks that are to stay, the seed is out of
-            range, or the problem has tasks that are to stay and the allocator would move them.
+            range, the problem has tasks that are to stay and the allocator would move them, or it has rules that the
+            allocator cannot keep.
         """
         if not (isinstance(seed, int) and 0 <= seed < 2**64):
             raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
+        refuse_what_is_not_kept(problem, self.name, self.can)
         if problem.fixed and not self.keeps_fixed:
             raise ParameterError(f"fixed: with {self.name}, which would move tasks; expected search, greedy or auction")
         outcome = self.outcome(problem, stop, seed, params or self.parameters(), _first_routes(problem, start))
@@ -146,10 +151,10 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
     inspection = core.Inspection(problem.core, lists)
     usages = inspection.usages
     mission = problem.mission
-    done = [j for route in lists for j in route]
+    done = sorted({j for route in lists for j in route})
     by_robot = {
-        robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route), usage)
-        for robot, route, usage in zip(problem.robots, lists, usages, strict=True)
+        robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route), usage, stops)
+        for robot, route, usage, stops in zip(problem.robots, lists, usages, _stops(problem, inspection), strict=True)
     }
     return Plan(
         mission=mission.name,
@@ -165,13 +170,20 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         equality_index=equality_index(usages),
         tasks_completed=len(done),
         tasks_total=len(problem.tasks),
-        weight_completed=sum(problem.tasks[j].priority for j in sorted(done)),
+        weight_completed=sum(problem.tasks[j].priority for j in done),
         elapsed_s=elapsed,
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
         unassigned=unassigned_of_plan(problem, lists, lambda: stop.hurried),
         history=tuple(stop.history),
         book=outcome.book,
     )
+
+
+def _stops(problem: Problem, inspection: core.Inspection) -> list[tuple[RouteStop, ...]]:
+    """By robot the times of the earliest schedule."""
+    stops = inspection.stops
+    assert stops is not None, "the routes of an allocator have a schedule"
+    return [tuple(RouteStop(problem.tasks[j].id, *times) for j, *times in row) for row in stops]
 
 
 def equality_index(usages: Sequence[float]) -> float:
