@@ -163,6 +163,7 @@ def test_a_plan_from_elsewhere_needs_only_routes(tmp_path):
         "max_usage": 11,
         "average": 17 / 3,
         "makespan_s": 11,
+        "lateness": 0,
         "equality_index": pytest.approx(PLAN.equality_index),
         "tasks_completed": 3,
         "tasks_total": 4,

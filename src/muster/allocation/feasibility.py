@@ -56,9 +56,10 @@ def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
     return limits_beside(problem, least_usages(problem) if least is None else least).usable
 
 
-def limits_of(problem: Problem) -> Limits:
-    """Lower bounds of usage and times, and the pairs that they leave."""
-    return limits_beside(problem, np.array([least_usage(problem, i) for i in range(len(problem.robots))]))
+def limits_of(problem: Problem, *, timed: bool = False) -> Limits:
+    """Lower bounds of usage, and of times if these matter or are wanted, and the pairs that they leave."""
+    least = np.array([least_usage(problem, i) for i in range(len(problem.robots))])
+    return narrowed(problem, least, _least_times, timed=timed)
 
 
 def limits_beside(problem: Problem, least: Floats) -> Limits:

@@ -6,7 +6,7 @@ The fixed tasks are an admissible plan by themselves, so they can be done whatev
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from muster import core
@@ -59,8 +59,11 @@ def admissible_part(problem: Problem, routes: Routes) -> Routes:
     """The admissible part of routes that begin with the fixed tasks of their robots.
 
     Removed are tasks that their robot may not do, tasks with a prerequisite that is missing, and tasks at the end of a
-    route above its capacity. If routes deadlock, only the fixed tasks are left.
+    route above its capacity. If routes deadlock, only the fixed tasks are left. With rules about time, teams or
+    relations tasks are removed with which there is no schedule, those that begin together all at once.
     """
+    if problem.timed_rules.are_any:
+        return _timed_part(problem, routes)
     least = [len(problem.beginning(i)) for i in range(len(problem.robots))]
     part = [[j for k, j in enumerate(route) if k < least[i] or problem.may(i, j)] for i, route in enumerate(routes)]
     while True:
@@ -76,6 +79,29 @@ def admissible_part(problem: Problem, routes: Routes) -> Routes:
         if shortened == part and there == {j for route in part for j in route}:
             return [list(problem.beginning(i)) for i in range(len(problem.robots))]
         part = shortened
+
+
+def _timed_part(problem: Problem, routes: Routes) -> Routes:
+    """The part of routes that has a schedule: unit after unit is kept that fits with those before it."""
+    kept = {j for i, route in enumerate(routes) for j in route[: len(problem.beginning(i))]}
+    place = {j: k for route in routes for k, j in enumerate(route)}
+    units = {tuple(sorted({j, *problem.timed_rules.beginning_with(j)})) for j in place.keys() - kept}
+    pending = sorted(units, key=lambda unit: (max(place.get(j, 0) for j in unit), unit))
+    while pending:
+        ready = next((unit for unit in pending if _is_whole(problem, unit, place, kept)), None)
+        if ready is None:
+            break
+        pending.remove(ready)
+        more = kept.union(ready)
+        if core.Inspection(problem.core, [[j for j in route if j in more] for route in routes]).admissible:
+            kept = more
+    return [[j for j in route if j in kept] for route in routes]
+
+
+def _is_whole(problem: Problem, unit: Sequence[int], place: Mapping[int, int], kept: Collection[int]) -> bool:
+    """Whether all tasks that begin together are there, and what must be done before them is kept."""
+    before = {other for j in unit for other in problem.prerequisites[j]}
+    return all(j in place for j in unit) and before <= set(kept)
 
 
 def _too_much(usage: float, capacity: float) -> bool:

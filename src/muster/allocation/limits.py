@@ -11,6 +11,8 @@ import numpy as np
 
 from muster.allocation.bottleneck import bottleneck
 from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.rules.deadline import too_late
+from muster.allocation.rules.window import closed
 from muster.allocation.timed_rules import ROUNDING, TimedRules
 
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
@@ -115,19 +117,28 @@ class Limits:
         return self._needed[j]
 
     @cached_property
+    def held_back(self) -> dict[int, str]:
+        """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
+        found = {j: _held_back(self, j) for j in range(len(self.problem.tasks))} if self.is_timed else {}
+        return {j: late for j, late in found.items() if late}
+
+    @cached_property
     def _needed(self) -> dict[int, list[int]]:
         return {}
 
 
-def narrowed(problem: Problem, usage: Floats, ways: Callable[[Problem, int], tuple[Floats, Floats]]) -> Limits:
+def narrowed(
+    problem: Problem, usage: Floats, ways: Callable[[Problem, int], tuple[Floats, Floats]], *, timed: bool = False
+) -> Limits:
     """Narrow the bounds until nothing changes: each pair that is not possible may make others begin later.
 
-    `ways` gives for a robot the seconds until it can be at each task, and from there to the end of its route.
+    `timed` tells whether times are wanted even where none matter. `ways` gives for a robot the
+    seconds until it can be at each task, and from there to the end of its route.
     """
     none = np.empty((0, 0))
     nobody = np.zeros(len(problem.tasks))
     limits = Limits(problem, usage, problem.allowed, none, none, nobody, nobody, (None,) * len(problem.tasks))
-    if not problem.timed_rules.are_any:
+    if not (timed or problem.timed_rules.are_any):
         return replace(limits, usable=limits.possible())
     found = [ways(problem, i) for i in range(len(problem.robots))]
     limits = replace(limits, arrival=np.array([a for a, _ in found]), home=np.array([h for _, h in found]))
@@ -141,6 +152,26 @@ def narrowed(problem: Problem, usage: Floats, ways: Callable[[Problem, int], tup
     return limits
 
 
+@dataclass(frozen=True)
+class _Times:
+    """Bounds while they are raised: see `Limits`."""
+
+    ready: Floats
+    begin: Floats
+    awaited: list[int | None]
+
+    def wait(self, rules: TimedRules, j: int, time: float, why: int | None) -> bool:
+        """Let a task, and all that begins with it, wait until a time; returns whether that is later."""
+        if time <= self.ready[j] * (1 + ROUNDING) + ROUNDING:
+            return False
+        unit = rules.unit[j]
+        for k in rules.units[unit]:
+            self.ready[k], self.awaited[k] = max(self.ready[k], time), why
+        for k in rules.units[unit]:
+            self.begin[k] = _begin(rules, unit, self.ready)
+        return True
+
+
 def _with_begins(limits: Limits) -> Limits:
     """Earliest begins with the pairs that are still possible."""
     rules, tasks = limits.rules, range(len(limits.problem.tasks))
@@ -150,39 +181,50 @@ def _with_begins(limits: Limits) -> Limits:
         latest = max(_of_team(rules, u, there).values())
         for j in rules.units[u]:
             ready[j] = max(ready[j], latest) if math.isfinite(latest) else ready[j]
-    begin, awaited = np.array([_begin(rules, rules.unit[j], ready) for j in tasks]), list(limits.awaited)
+    times = _Times(ready, np.array([_begin(rules, rules.unit[j], ready) for j in tasks]), list(limits.awaited))
     for _ in range(len(tasks) + 1):
-        if not _sweep(limits, ready, begin, awaited):
+        if not _sweep(limits, times):
             break
-    return replace(limits, ready=ready, begin=begin, awaited=tuple(awaited))
+    return replace(limits, ready=times.ready, begin=times.begin, awaited=tuple(times.awaited))
 
 
-def _sweep(limits: Limits, ready: Floats, begin: Floats, awaited: list[int | None]) -> bool:
-    """Let tasks wait for prerequisites, and these for what must follow soon; returns whether anything changed."""
+def _sweep(limits: Limits, times: _Times) -> bool:
+    """Let tasks wait for their prerequisites; returns whether anything changed."""
     changed = False
-    for j in range(len(begin)):
-        for k, after, within in limits.rules.lags(j):
-            if not math.isfinite(begin[k]):
-                continue  # which is left out, and so is all that waits for it
-            onward = begin[k] + limits.shortest_work[k] + max(after, _way(limits, k, j))
-            changed |= _raise(limits, j, onward, ready, begin, awaited, k)
-            if math.isfinite(within) and math.isfinite(begin[j]):
-                earliest = begin[j] - within - limits.longest_work[k]
-                changed |= _raise(limits, k, earliest, ready, begin, awaited, None)
+    for j in range(len(times.begin)):
+        for k, after, _ in limits.rules.lags(j):
+            if math.isfinite(times.begin[k]):  # else it is left out, and so is all that waits for it
+                onward = times.begin[k] + limits.shortest_work[k] + max(after, _way(limits, k, j))
+                changed |= times.wait(limits.rules, j, onward, k)
     return changed
 
 
-def _raise(
-    limits: Limits, j: int, time: float, ready: Floats, begin: Floats, awaited: list[int | None], why: int | None
-) -> bool:
-    if time <= ready[j] * (1 + ROUNDING):
-        return False
-    unit = limits.rules.unit[j]
-    for k in limits.rules.units[unit]:
-        ready[k], awaited[k] = max(ready[k], time), why
-    for k in limits.rules.units[unit]:
-        begin[k] = _begin(limits.rules, unit, ready)
-    return True
+def _held_back(limits: Limits, j: int) -> str:
+    """Which task before a task would be too late in every plan that does both, as it may not end too long before."""
+    tasks = [j, *limits.must_also(j)]
+    lags = [(k, b, within) for k in tasks for b, _, within in limits.rules.lags(k) if math.isfinite(within)]
+    if not lags:
+        return ""
+    times = _Times(limits.ready.copy(), limits.begin.copy(), list(limits.awaited))
+    for _ in range(len(tasks) + 1):
+        waiting = [
+            times.wait(limits.rules, b, times.begin[k] - within - limits.longest_work[b], None)
+            for k, b, within in lags
+            if math.isfinite(times.begin[k])
+        ]
+        if not any(waiting) and not _sweep(limits, times):
+            break
+    return next((late for k in tasks if k != j and (late := _late(limits, times, k))), "")
+
+
+def _late(limits: Limits, times: _Times, k: int) -> str:
+    """That a task is too late at some times; empty: it is not, or not by that alone."""
+    problem, begin = limits.problem, float(times.begin[k])
+    if math.isinf(limits.begin[k]) or begin == limits.begin[k]:
+        return ""
+    late = closed(problem, k, "begins at", float(times.ready[k]))
+    late = late or too_late(problem, k, begin + float(limits.shortest_work[k]))
+    return f"{problem.tasks[k].id} may end only so long before what follows: it {late}" if late else ""
 
 
 def _begin(rules: TimedRules, u: int, ready: Floats) -> float:

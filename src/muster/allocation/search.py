@@ -6,8 +6,8 @@ end waits for; places are those that no prerequisite forbids, through all routes
 every step.
 
 Where tasks are bound to times, teams or relations, and for `makespan` with prerequisites, the search works on a
-schedule that is propagated through the part that a change affects ([pearce2006]); a team is chosen at a cut through the
-schedule, which gives each robot one place, so that no cycle of waiting can arise.
+schedule that is propagated through the part that a change affects ([pearce2006]); a team is chosen at a cut through
+the schedule, which gives each robot one place, so that no cycle of waiting can arise.
 """
 
 from __future__ import annotations

@@ -91,6 +91,8 @@ class TimedPlaces(InPlan):
         """What the tasks that begin together with a task lack; empty: nothing."""
         problem = self.problem
         for k in problem.timed_rules.beginning_with(j):
+            if k in self.done:
+                continue
             before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done]
             if before:
                 return f"begins together with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
@@ -219,6 +221,8 @@ class TimedPlaces(InPlan):
             there = problem.travel_seconds(i, [problem.start(i)], [j])
             return problem.robots[i].available_from_s + float(there[0, 0])
         there = problem.travel_seconds(i, [self.routes[i][gap - 1]], [j])
+        if not has_schedule(self.inspection):
+            return float(there[0, 0])  # of a plan without a schedule nothing more is known
         return stop_of(self.inspection, i, gap - 1)[2] + float(there[0, 0])
 
     # --- teams -------------------------------------------------------------------------------------------------------
@@ -226,29 +230,37 @@ class TimedPlaces(InPlan):
     def _teams(self, i: int, j: int) -> Iterator[list[Member]]:
         """Different robots for all places of a task and of those that begin with it, robot i at the task."""
         rules = self.problem.timed_rules
-        unit = [j, *rules.beginning_with(j)]
-        yield from self._completed(unit, i, [])
+        together = rules.beginning_with(j)
+        unit = [j, *(k for k in together if k not in self.done)]
+        taken = {robot for k in together for robot in self.members(k)}
+        if i not in taken:
+            yield from self._completed(unit, i, taken, [])
 
-    def _completed(self, unit: Sequence[int], i: int, members: list[Member]) -> Iterator[list[Member]]:
+    def _completed(self, unit: Sequence[int], i: int, taken: set[int], members: list[Member]) -> Iterator[list[Member]]:
         if not unit:
             yield members
             return
-        taken = {robot for robot, _ in members}
         for team in self._teams_of(unit[0], None if members else i):
             if not taken & set(team):
-                yield from self._completed(unit[1:], i, [*members, *((robot, unit[0]) for robot in team)])
+                more = [*members, *((robot, unit[0]) for robot in team)]
+                yield from self._completed(unit[1:], i, taken | set(team), more)
 
     def _teams_of(self, j: int, required: int | None) -> Iterator[tuple[int, ...]]:
         """The teams of one task, with a robot that must be in it; the robots that are free first before others."""
         able = [k for k in self._by_arrival(j) if self._keeps_relations(k, j)]
         if required is not None and required not in able:
             return
+        tied = self._members_by_relation(j)
+        if tied is not None:
+            if tied <= set(able) and self._is_enough(j, sorted(tied)):
+                yield tuple(sorted(tied))
+            return
         others = [k for k in able if k != required]
         given = () if required is None else (required,)
         for size in self._sizes(j, len(able)):
             for rest in itertools.combinations(others, size - len(given)):
                 team = (*given, *rest)
-                if self._is_team(j, team) and self._is_that_of_relations(j, team):
+                if self._is_enough(j, team) and self._without_idlers(j, team):
                     yield team
 
     def _sizes(self, j: int, most: int) -> range:
@@ -258,13 +270,20 @@ class TimedPlaces(InPlan):
         count = sum(count for count, _ in rules.parts(j))
         return range(count, count + 1)
 
-    def _is_team(self, j: int, team: Sequence[int]) -> bool:
-        """Whether robots fill the places of a team, or have the abilities, none of them for nothing."""
+    def _is_enough(self, j: int, team: Sequence[int]) -> bool:
+        """Whether robots fill the places of a team, or have the abilities."""
         rules = self.problem.timed_rules
         if rules.is_for_team(j) and rules.needs(j):
-            return self._able(j, team) and not any(self._able(j, [k for k in team if k != one]) for one in team[1:])
+            return self._able(j, team)
         rows = [fits[list(team)] for count, fits in rules.parts(j) for _ in range(count)]
-        return fills(np.array(rows, dtype=np.bool_))
+        return len(rows) == len(team) and fills(np.array(rows, dtype=np.bool_))
+
+    def _without_idlers(self, j: int, team: Sequence[int]) -> bool:
+        """Whether a team of abilities needs all members but the first one."""
+        rules = self.problem.timed_rules
+        if not (rules.is_for_team(j) and rules.needs(j)):
+            return True
+        return not any(self._able(j, [k for k in team if k != one]) for one in team[1:])
 
     def _able(self, j: int, team: Sequence[int]) -> bool:
         needs = self.problem.timed_rules.needs(j)
@@ -279,15 +298,20 @@ class TimedPlaces(InPlan):
         same = all(not self.members(other) or k in self.members(other) for other in rules.same_robot[j])
         return same and not any(k in self.members(other) for other in rules.other_robot[j])
 
-    def _is_that_of_relations(self, j: int, team: Sequence[int]) -> bool:
-        """Whether the same members do the tasks that the same robots must do."""
-        same = self.problem.timed_rules.same_robot[j]
-        return all(not self.members(k) or set(self.members(k)) == set(team) for k in same)
+    def _members_by_relation(self, j: int) -> set[int] | None:
+        """The robots that do the tasks of the plan which the same robots must do; None: there are no such tasks."""
+        teams = [set(self.members(k)) for k in self.problem.timed_rules.same_robot[j] if self.members(k)]
+        return set.intersection(*teams) if teams else None
+
+
+def has_schedule(found: Any) -> bool:
+    """Whether there are times at which inspected routes can be done."""
+    return found.stops is not None
 
 
 def stop_of(found: Any, i: int, at: int) -> tuple[float, float, float]:
     """Arrival, begin and end of a stop of inspected routes."""
-    arrive, begin, end = found.stops[i][at]
+    _, arrive, begin, end = found.stops[i][at]
     return arrive, begin, end
 
 

@@ -187,7 +187,7 @@ def _needed(problem: Problem, opened: Problem, routes: Routes, i: int, j: int, r
     at, of = opened.robot_index[remedy.robot], opened.task_index[problem.tasks[j].id]
     inspection = core.Inspection(opened.core, routes)
     begin, end, over = _times(opened, routes, inspection, at, of)
-    limits, rules = limits_of(opened), problem.timed_rules
+    limits, rules = limits_of(opened, timed=True), problem.timed_rules
     changes = dict(remedy.changes)
     if rules.windows[j] and begin > rules.windows[j][-1][1] * (1 + ROUNDING):
         changes["window"] = LongerWindow(rules.windows[j][-1][1], begin, float(limits.pair_begin[at, of]))

@@ -13,6 +13,21 @@ from muster.mission.model import Mission, Tag
 
 _NEAR_M = 1.0
 """What was found farther from a tag is another one."""
+_CAUSES = {
+    "prerequisite": "prerequisites",
+    "window": "time windows",
+    "lag": "lags",
+    "team": "teams",
+    "start": "tasks that begin together",
+    "dependant": "dependants",
+}
+"""Causes of waiting, as the table has them."""
+_OVER = {
+    "deadlines_missed_s": "deadline missed",
+    "within_exceeded_s": "begun too late",
+    "shifts_exceeded_s": "after its shift",
+}
+"""Figures of the report by task or robot, in seconds, and their names."""
 Report = Mapping[str, Any]
 """As `muster.execution.Report.as_dict` makes it, or as a record has it: what an older or other program wrote may lack
 all but the ids."""
@@ -28,6 +43,7 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
         rows = [(*row, _charge(of)) for row, of in zip(rows, report["robots"], strict=True)]
     print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
+    _print_lateness(report)
     if report.get("reallocations"):
         of_tasks = "; of tasks by the one in force then" if with_tasks else ""
         click.echo(f"planned           of robots: by the plan that the mission began with{of_tasks}")
@@ -59,11 +75,30 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
         ("mission time", f"{number(report.get('mission_time_s'))} s"),
         ("tasks done", f"{done} of {known}"),
         ("objective", _objective(report.get("objective"), unit)),
-        ("waiting", f"{number(report.get('waiting_s'))} s"),
+        ("waiting", _waiting(report)),
         ("least distance", _nearness(report)),
         ("planned again", counted(report.get("reallocations", 0), "time")),
     ):
         click.echo(f"{name:<17} {value}")
+
+
+def _waiting(report: Report) -> str:
+    """For how long robots waited, and why, where time windows, lags or teams made them wait."""
+    causes = report.get("waiting_by_cause_s", {})
+    by_cause = ", ".join(f"{number(seconds)} s for {_CAUSES.get(cause, cause)}" for cause, seconds in causes.items())
+    return f"{number(report.get('waiting_s'))} s" + (f" ({by_cause})" if by_cause else "")
+
+
+def _print_lateness(report: Report) -> None:
+    """Print what was not in time."""
+    if report.get("lateness_s"):
+        click.echo(f"{'late':<17} {number(report['lateness_s'])} s after due times, in all")
+    for key, words in _OVER.items():
+        for name, seconds in report.get(key, {}).items():
+            click.echo(f"{words:<17} {name}, by {number(seconds)} s")
+    rows = [(row["task"], number(row.get("at_s")), str(row.get("reason", "-"))) for row in report.get("missed", ())]
+    if rows:
+        print_table(("task not begun in time", "at [s]", "reason"), rows, right=("at [s]",))
 
 
 def _nearness(report: Report) -> str:

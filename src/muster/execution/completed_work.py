@@ -12,7 +12,10 @@ from muster.execution.task_ledger import Ledger
 
 @dataclass(frozen=True, kw_only=True)
 class CompletedTask:
-    """A task that was done: by whom, when (mission's clock), and usage by the plan and as measured."""
+    """A task that was done: by whom, when (mission's clock), and usage by the plan and as measured.
+
+    `team` names the robots of a task done by several, `robot` first.
+    """
 
     robot: str
     arrives_s: float
@@ -20,6 +23,7 @@ class CompletedTask:
     ends_s: float
     arrival_usage: float
     usage: tuple[float, float]
+    team: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,9 +53,11 @@ class CompletedWork:
             ledger.arrivals_s[task], ledger.starts_s[task] = deed.arrives_s, deed.starts_s
             ledger.arrival_usage[task], ledger.usage[task] = deed.arrival_usage, deed.usage
             ledger.end(task, deed.robot, deed.ends_s)
-            if deed.robot in crew:
-                crew[deed.robot].done.append(task)
-                crew[deed.robot].at_home = False
+            ledger.teams[task] = deed.team or (deed.robot,)
+            for robot in ledger.teams[task]:
+                if robot in crew:
+                    crew[robot].done.append(task)
+                    crew[robot].at_home = False
         ledger.cancelled.update(self.cancelled)
         ledger.delays_s.update(self.delays_s)
         for task, why in self.barred.items():

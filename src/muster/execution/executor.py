@@ -269,13 +269,25 @@ class Executor:
             state.activity is Activity.WAITING or (state.activity is Activity.IDLE and not state.route)
             for state in self._present
         )
-        if waiting and still and self._stood_still_at != len(self.ledger.ends_s):
+        if not waiting or not still:
+            return
+        if self._stood_still_at == len(self.ledger.ends_s):
+            self._give_up_waiting(waiting)
+        else:
             self._stood_still_at = len(self.ledger.ends_s)
             wait = self._beginning.wait(waiting[0], self.now_s)
-            words = "" if wait is None else wait.words
-            missing = self.ledger.missing(waiting[0])
+            missing, words = self.ledger.missing(waiting[0]), "" if wait is None else wait.words
             self._ask([Change("standstill", {"task": waiting[0], "waits_for": missing, "words": words})])
-            self._go_on()
+        self._go_on()
+
+    def _give_up_waiting(self, tasks: Iterable[str]) -> None:
+        """The new plan stands still too: the tasks at which robots wait are given up, with what they waited for."""
+        for task in dict.fromkeys(tasks):
+            wait = self._beginning.wait(task, self.now_s)
+            if wait is not None and task not in self.ledger.expired:
+                rule = {"start": "relation"}.get(wait.cause, wait.cause)
+                self.ledger.expire(task, f"{rule}: {wait.words}; no new plan brings that about")
+                self._ask([Change("standstill", {"task": task, "words": wait.words})])
 
     def _go_on(self) -> None:
         """Plan the rest again if that is due, and send robots on, until no robot refuses its task."""

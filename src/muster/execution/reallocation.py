@@ -23,6 +23,9 @@ from muster.mission.clock import VirtualClock
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Reason, Unassigned
 
+RobotsOf = Mapping[int, frozenset[int]]
+"""For each task, by index, the robots that do it."""
+
 REPLANNING_HOT = 1.0
 """Temperature at which a search begins that goes on from a good plan."""
 
@@ -111,33 +114,34 @@ class Reallocation:
         what = remaining_problem(rest, self.travel)
         problem = what.problem.ready()
         before = _routes_before(problem, rest)
-        robot_of = {j: i for i, route in enumerate(before) for j in route[len(problem.beginning(i)) :]}
+        robots_of = _robots_of(problem, before)
         stable = rest.mission.rules.stability
         if stable is None:
             routes, forced = self._searched(problem, admissible_part(problem, before)), frozenset[int]()
         else:
-            routes, forced = self._stable(problem, before, robot_of, stable)
+            routes, forced = self._stable(problem, before, robots_of, stable)
         if self.fill_waiting:
             routes = rewired(problem, routes)
         return _revision(rest, what, routes, {problem.tasks[j].id for j in forced})
 
     def _stable(
-        self, problem: Problem, before: Routes, robot_of: Mapping[int, int], most: int
+        self, problem: Problem, before: Routes, robots_of: RobotsOf, most: int
     ) -> tuple[Routes, frozenset[int]]:
-        """Routes in which at most so many tasks have another robot, beyond those that their robot cannot do."""
+        """Routes in which at most so many tasks have another robot or team, beyond those that theirs cannot do."""
         forced: frozenset[int] = frozenset()
         routes = admissible_part(problem, before)
         while True:
-            routes = self._searched(_locked(problem, robot_of, forced), routes)
-            lost = frozenset(robot_of) - forced - {j for route in routes for j in route}
+            routes = self._searched(_locked(problem, robots_of, forced), routes)
+            lost = frozenset(robots_of) - forced - {j for route in routes for j in route}
             if not lost:
                 break
             forced |= lost
         freely = self._searched(problem, routes) if most else routes
-        moved = [j for i, route in enumerate(freely) for j in route if robot_of.get(j, i) != i and j not in forced]
+        freely_of = _robots_of(problem, freely)
+        moved = [j for j, robots in freely_of.items() if robots_of.get(j, robots) != robots and j not in forced]
         spared = _spared(problem, routes)
         free = forced.union(sorted(moved, key=lambda j: -spared[j])[:most])
-        return self._searched(_locked(problem, robot_of, free), routes), forced
+        return self._searched(_locked(problem, robots_of, free), routes), forced
 
     def _searched(self, problem: Problem, start: Routes) -> Routes:
         stop = Stop(iterations=self.iterations, clock=VirtualClock())
@@ -152,13 +156,37 @@ def _routes_before(problem: Problem, rest: RemainingMission) -> Routes:
     for i, robot in enumerate(problem.robots):
         still = [problem.task_index[name] for name in rest.routes.get(robot.id, ()) if name in problem.task_index]
         routes.append([*problem.beginning(i), *(j for j in still if problem.may(i, j))])
-    return routes
+    return _with_whole_teams(problem, rest, routes)
 
 
-def _locked(problem: Problem, robot_of: Mapping[int, int], free: frozenset[int]) -> Problem:
-    """The problem in which tasks that have a robot keep it, but for some."""
+def _with_whole_teams(problem: Problem, rest: RemainingMission, routes: Routes) -> Routes:
+    """The routes without tasks whose team is not whole any more, and without those that begin with them."""
+    there = _robots_of(problem, routes)
+    broken = {
+        j
+        for j, robots in there.items()
+        if len(robots) < len(rest.former.get(problem.tasks[j].id, "").split(", "))
+        or not there.keys() >= set(problem.timed_rules.beginning_with(j))
+    }
+    broken |= {other for j in broken for other in problem.timed_rules.beginning_with(j)}
+    return [[j for j in route if j not in broken] for route in routes]
+
+
+def _robots_of(problem: Problem, routes: Routes) -> RobotsOf:
+    """For each task the robots that do it; work under way is left out."""
+    robots: dict[int, set[int]] = {}
+    for i, route in enumerate(routes):
+        for j in route[len(problem.beginning(i)) :]:
+            robots.setdefault(j, set()).add(i)
+    return {j: frozenset(team) for j, team in robots.items()}
+
+
+def _locked(problem: Problem, robots_of: RobotsOf, free: frozenset[int]) -> Problem:
+    """The problem in which tasks that have a robot or a team keep it, but for some."""
     tasks = tuple(
-        replace(task, only_robots=(problem.robots[robot_of[j]].id,)) if j in robot_of and j not in free else task
+        replace(task, only_robots=tuple(problem.robots[i].id for i in sorted(robots_of[j])))
+        if j in robots_of and j not in free
+        else task
         for j, task in enumerate(problem.tasks)
     )
     return replace(problem, tasks=tasks)
@@ -166,7 +194,7 @@ def _locked(problem: Problem, robot_of: Mapping[int, int], free: frozenset[int])
 
 def _spared(problem: Problem, routes: Routes) -> dict[int, float]:
     """For each task in the routes the usage that its robot is spared without it."""
-    spared = {}
+    spared: dict[int, float] = {}
     for i, route in enumerate(routes):
         places = [problem.start(i), *route]
         ends = [problem.end(i)] if problem.robots[i].place_at_end(problem.mission.rules) is not None else []
@@ -174,7 +202,9 @@ def _spared(problem: Problem, routes: Routes) -> dict[int, float]:
         work = problem.work_usage(i)
         for k, j in enumerate(route):
             after = k + 1 < legs.shape[1]
-            spared[j] = float(legs[k, k] + work[j] + (legs[k + 1, k + 1] - legs[k, k + 1] if after else 0.0))
+            spared[j] = spared.get(j, 0.0) + float(
+                legs[k, k] + work[j] + (legs[k + 1, k + 1] - legs[k, k + 1] if after else 0.0)
+            )
     return spared
 
 
@@ -207,7 +237,11 @@ def _revision(rest: RemainingMission, what: RemainingProblem, routes: Routes, fo
         robot.id: tuple(problem.tasks[j].id for j in routes[i][len(problem.beginning(i)) :])
         for i, robot in enumerate(problem.robots)
     }
-    now = {task: robot for robot, tasks in planned.items() for task in tasks}
+    teams: dict[str, list[str]] = {}
+    for robot, tasks in planned.items():
+        for task in tasks:
+            teams.setdefault(task, []).append(robot)
+    now = {task: ", ".join(team) for task, team in teams.items()}
     left_out = {item.task: _why(item, rest) for item in unassigned(problem, routes)} | dict(what.hopeless)
     moved = {task: (rest.former[task], robot) for task, robot in now.items() if rest.former.get(task, robot) != robot}
     still = {task for robot, tasks in rest.routes.items() for task in tasks}

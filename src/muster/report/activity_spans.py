@@ -11,7 +11,7 @@ from muster.report.record.mission_state import OUT
 TRAVEL, WAITING, WORK = "travel", "waiting", "work"
 _BEGINS = {"sets_out": TRAVEL, "arrives": WAITING, "starts": WORK, "returns": TRAVEL}
 _ENDS = ("ends", "robot_at_end")
-_BREAKS_OFF = (*OUT, "cancel_task", "lost")
+_BREAKS_OFF = (*OUT, "cancel_task", "lost", "work_broken_off")
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,13 @@ def spans(events: Sequence[ExecutionEvent], duration_s: float) -> list[Span]:
                 found.append(Span(robot, task, kind, from_s, until_s))
 
     for event in events:
-        robot, task = event.data.get("robot"), event.data.get("task")
-        if event.kind in _BEGINS:
-            close(str(robot), event.time_s)
-            doing[str(robot)] = ("" if task is None else str(task), _BEGINS[event.kind], event.time_s)
-        elif event.kind in _ENDS:
-            close(str(robot), event.time_s)
+        task = event.data.get("task")
+        for robot in event.data.get("team") or [str(event.data.get("robot"))]:
+            if event.kind in _BEGINS:
+                close(robot, event.time_s)
+                doing[robot] = ("" if task is None else str(task), _BEGINS[event.kind], event.time_s)
+            elif event.kind in _ENDS:
+                close(robot, event.time_s)
         for one in [name for name, (of, kind, _) in doing.items() if _breaks_off(event, name, of, kind)]:
             close(one, event.time_s)
     for one in list(doing):
@@ -58,7 +59,8 @@ def _breaks_off(event: ExecutionEvent, robot: str, task: str, kind: str) -> bool
     """Whether an event ends what a robot does for a task."""
     if event.kind in _BREAKS_OFF:
         who = event.data.get("robot")
-        return who == robot or (who is None and event.data.get("task") == task)
+        of_task = who is None or event.kind == "work_broken_off"
+        return who == robot or (of_task and event.data.get("task") == task)
     if event.kind == "replanned" and kind != WORK:
         return task in event.data.get("dropped", {}) or event.data.get("moved", {}).get(task, [""])[0] == robot
     return False

@@ -40,6 +40,24 @@ class Case:
         """The tasks in the plan."""
         return frozenset(step.task.id for route in self.routes for step in route.steps)
 
+    @cached_property
+    def members(self) -> dict[str, list[Robot]]:
+        """For each task in the plan the robots that do it, in mission order."""
+        members: dict[str, list[Robot]] = {}
+        for route in self.routes:
+            for step in route.steps:
+                members.setdefault(step.task.id, []).append(route.robot)
+        return members
+
+    @cached_property
+    def beginning_with(self) -> dict[str, list[str]]:
+        """For each task those that name it in their `starts_with`."""
+        named: dict[str, list[str]] = {}
+        for task in self.mission.tasks:
+            for name in task.starts_with:
+                named.setdefault(name, []).append(task.id)
+        return named
+
     @property
     def unit(self) -> str:
         """The unit of usage."""
@@ -49,6 +67,21 @@ class Case:
     def tolerance(self) -> float:
         """By how much a usage may differ from the true one, relative."""
         return max(ROUNDING, self.travel.tolerance)
+
+    @cached_property
+    def is_timed(self) -> bool:
+        """Whether anything but prerequisites and capacities depends on times, teams or relations."""
+        late = any(robot.available_until_s is not None for robot in self.mission.robots)
+        return late or any(
+            task.window_s
+            or task.deadline_s is not None
+            or task.lags
+            or task.is_for_team
+            or task.same_robot_as
+            or task.other_robot_than
+            or task.starts_with
+            for task in self.mission.tasks
+        )
 
     def holds(self, rule: str) -> bool:
         """Whether a rule holds."""
@@ -105,4 +138,9 @@ class Case:
         for route in self.routes:
             for first, second in pairwise(route.steps):
                 before[second.task.id].append(first.task.id)
+        if self.holds("relation"):
+            for task in self.mission.tasks:
+                for name in task.starts_with:
+                    shared = [*before[task.id], *before[name]]
+                    before[task.id] = before[name] = shared
         return before

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
-from muster.mission.model import OBJECTIVES, Mission
-from muster.mission.objectives import objective_values
+from muster.mission.model import OBJECTIVES, Mission, Task
+from muster.mission.objectives import lateness, objective_values
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
@@ -16,12 +16,15 @@ from muster.verification.book import book_faults
 from muster.verification.case import Case
 from muster.verification.known_routes import known_routes
 from muster.verification.left_out import left_out_faults
-from muster.verification.measure import MeasuredRoute, equality_index, measured
+from muster.verification.measure import MeasuredRoute, all_measured, equality_index
 from muster.verification.rules import rules_that_hold
-from muster.verification.schedule import Deadlock, Times, awaited_in, schedule
+from muster.verification.schedule import Deadlock, Times, schedule
 from muster.verification.statements import false_statements
 from muster.verification.travel import Travel
 from muster.verification.verdict import RouteFigures, Verdict, Violation, Visit
+
+TimesOf = Mapping[tuple[str, str], Times]
+"""By robot and task."""
 
 
 def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
@@ -51,21 +54,20 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     objective = mission.rules.objective if objective is None else objective
     if objective not in OBJECTIVES:
         raise ParameterError(f"objective: {shown(objective)}; expected {' or '.join(OBJECTIVES)}")
-    tasks_of, violations = known_routes(mission, plan)
+    tasks_of, violations = known_routes(mission, plan, teams="team" not in ignored)
     travel = Travel(mission)
-    routes = tuple(measured(mission, travel, robot, tasks_of.get(robot.id, ())) for robot in mission.robots)
-    times = schedule(routes, awaited_in(routes, ignored="prerequisite" in ignored))
+    routes = all_measured(mission, travel, tasks_of)
+    found = schedule(routes, ignored)
     case = Case(
         mission=mission,
         travel=travel,
         routes=routes,
         ignored=ignored,
-        deadlocked=isinstance(times, Deadlock),
+        deadlocked=isinstance(found, Deadlock),
     )
     violations += _broken_rules(case)
-    if isinstance(times, Deadlock):
-        violations.append(Violation("deadlock", None, None, times.detail))
-    verdict = _verdict(case, objective, None if isinstance(times, Deadlock) else times)
+    violations += [found.violation] if isinstance(found, Deadlock) else found.broken
+    verdict = _verdict(case, objective, None if isinstance(found, Deadlock) else found.times)
     violations += left_out_faults(case, plan)
     violations += false_statements(plan, verdict, travel.tolerance)
     violations += book_faults(mission, plan)
@@ -80,13 +82,20 @@ def _broken_rules(case: Case) -> Iterator[Violation]:
             yield from rule.violations(case, route)
 
 
-def _verdict(case: Case, objective: str, times: Mapping[str, Times] | None) -> Verdict:
+def _verdict(case: Case, objective: str, times: TimesOf | None) -> Verdict:
     """Put the figures together, before anything is found wrong; without `times` the plan has no schedule."""
     usages = [route.usage for route in case.routes]
-    steps = [step for route in case.routes for step in route.steps]
-    ends = [] if times is None else [time.ends for time in times.values()]
-    values = objective_values(usages, [step.arrival_usage for step in steps], ends)
+    done: dict[str, Task] = {}
+    arrivals: dict[str, float] = {}  # of a team the largest
+    for step in (step for route in case.routes for step in route.steps):
+        done[step.task.id] = step.task
+        arrivals[step.task.id] = max(step.arrival_usage, arrivals.get(step.task.id, 0.0))
+    ends = {} if times is None else {task: time.ends for (_, task), time in times.items()}
+    late = lateness((done[name].priority, end, done[name].due_s) for name, end in ends.items())
     routes = tuple(_figures(route, case.capacity_of(route.robot), times) for route in case.routes)
+    back = [route.back_s for route in routes if route.back_s is not None]
+    returns = back if case.mission.rules.makespan_includes_return else []
+    values = objective_values(usages, list(arrivals.values()), [*ends.values(), *returns], late)
     return Verdict(
         violations=(),
         objective_name=objective,
@@ -96,15 +105,16 @@ def _verdict(case: Case, objective: str, times: Mapping[str, Times] | None) -> V
         max_usage=values["max"],
         average=values["average"],
         makespan_s=None if times is None else values["makespan"],
+        lateness=None if times is None else values["lateness"],
         equality_index=equality_index(usages),
-        tasks_completed=len(steps),
+        tasks_completed=len(done),
         tasks_total=len(case.mission.tasks),
-        weight_completed=sum((step.task.priority for step in steps), start=0.0),
+        weight_completed=sum((task.priority for task in done.values()), start=0.0),
         routes=routes,
     )
 
 
-def _figures(route: MeasuredRoute, capacity: float | None, times: Mapping[str, Times] | None) -> RouteFigures:
+def _figures(route: MeasuredRoute, capacity: float | None, times: TimesOf | None) -> RouteFigures:
     visits = tuple(_visits(route, times)) if times is not None else ()
     return RouteFigures(
         robot=route.robot.id,
@@ -119,7 +129,7 @@ def _figures(route: MeasuredRoute, capacity: float | None, times: Mapping[str, T
     )
 
 
-def _visits(route: MeasuredRoute, times: Mapping[str, Times]) -> Iterator[Visit]:
+def _visits(route: MeasuredRoute, times: TimesOf) -> Iterator[Visit]:
     for step in route.steps:
-        time = times[step.task.id]
+        time = times[route.robot.id, step.task.id]
         yield Visit(step.task.id, time.arrives, time.starts, time.ends, step.arrival_usage)

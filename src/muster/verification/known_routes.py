@@ -7,8 +7,11 @@ from muster.mission.plan import Plan
 from muster.verification.verdict import Violation
 
 
-def known_routes(mission: Mission, plan: Plan) -> tuple[dict[str, list[Task]], list[Violation]]:
-    """Take from the plan what exists and does not repeat: each robot's tasks; and a violation for all else."""
+def known_routes(mission: Mission, plan: Plan, teams: bool) -> tuple[dict[str, list[Task]], list[Violation]]:
+    """Take from the plan what exists and does not repeat: each robot's tasks; and a violation for all else.
+
+    With `teams` a task for a team may stand in several routes, once in each.
+    """
     violations: list[Violation] = []
     robots = {robot.id for robot in mission.robots}
     tasks = {task.id: task for task in mission.tasks}
@@ -27,7 +30,7 @@ def known_routes(mission: Mission, plan: Plan) -> tuple[dict[str, list[Task]], l
         for name in route.tasks:
             if name not in tasks:
                 violations.append(Violation("unknown-task", route.robot, name, "no task of the mission"))
-            elif name in robot_of:
+            elif name in robot_of and not (teams and tasks[name].is_for_team and tasks[name] not in known):
                 detail = f"already in the route of {robot_of[name]}"
                 violations.append(Violation("repeated-task", route.robot, name, detail))
             else:

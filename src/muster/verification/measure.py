@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.mission.model import Mission, Robot, Task
@@ -48,8 +48,19 @@ class MeasuredRoute:
         return self.travel + self.work
 
 
-def measured(mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Task]) -> MeasuredRoute:
-    """Measure one robot's route."""
+def all_measured(mission: Mission, travel: Travel, tasks_of: Mapping[str, Sequence[Task]]) -> tuple[MeasuredRoute, ...]:
+    """Measure the routes of all robots, in mission order. A task takes as long as for the slowest of its team."""
+    slowest: dict[str, float] = {}
+    for robot in mission.robots:
+        for task in tasks_of.get(robot.id, ()):
+            seconds = work_seconds(robot, task, travel.work_metres(robot, task) or 0.0)
+            slowest[task.id] = max(seconds, slowest.get(task.id, 0.0))
+    return tuple(_measured(mission, travel, robot, tasks_of.get(robot.id, ()), slowest) for robot in mission.robots)
+
+
+def _measured(
+    mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Task], work_s: Mapping[str, float]
+) -> MeasuredRoute:
     in_time = mission.rules.usage == "time"
     steps: list[Step] = []
     travelled = worked = 0.0
@@ -59,7 +70,7 @@ def measured(mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Tas
         leg = _leg(travel.metres(robot, here, there), robot, in_time)
         travelled += leg.usage
         metres = travel.work_metres(robot, task)
-        seconds = work_seconds(robot, task, metres or 0.0)
+        seconds = work_s[task.id]
         steps.append(Step(task, leg, travelled + worked, seconds, passable=metres is not None))
         worked += seconds if in_time else metres or 0.0
         here = there

@@ -1,21 +1,26 @@
-"""The earliest schedule of routes, or the deadlock that forbids one (docs/design.md, Meaning).
+"""The earliest schedule of routes, or what forbids one (docs/design.md, Meaning).
 
 [tcf-thesis] (3.25) compares the order within one route only. Here the graph of all routes and all prerequisites
-is judged, which also finds robots that wait for each other for ever.
+is judged, which also finds robots that wait for each other for ever. Tasks that begin together are one node of it, and
+so is a task with its team. Maximum lags are lower bounds of what comes before: the least fixpoint of all bounds is the
+earliest schedule.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from itertools import groupby, pairwise
 
 from muster.mission.plan import tie_order
+from muster.mission.tasks import Task
 from muster.verification.measure import MeasuredRoute
+from muster.verification.verdict import Violation
 
-Awaited = Mapping[str, Sequence[str]]
-"""For each task in the plan, those of its prerequisites that are in the plan."""
+ROUNDING = 1e-9
+"""By how much a time may be above a limit, relative, or in seconds where it is below one."""
 
 
 @dataclass(frozen=True)
@@ -29,67 +34,227 @@ class Times:
 
 @dataclass(frozen=True)
 class Deadlock:
-    """There is no schedule: tasks wait for each other in a cycle, which `detail` names step by step."""
+    """There is no schedule: tasks wait for each other in a cycle, which `violation` names step by step."""
 
-    detail: str
-
-
-def awaited_in(routes: Sequence[MeasuredRoute], ignored: bool) -> Awaited:
-    """Find what each task waits for, besides the task before it in its route."""
-    tasks = [step.task for route in routes for step in route.steps]
-    done = {task.id for task in tasks}
-    return {task.id: [] if ignored else [name for name in task.prerequisites if name in done] for task in tasks}
+    violation: Violation
 
 
-def schedule(routes: Sequence[MeasuredRoute], awaited: Awaited) -> dict[str, Times] | Deadlock:
+@dataclass(frozen=True)
+class Schedule:
+    """The times of every robot at every task, by their ids; and the limits that these break."""
+
+    times: Mapping[tuple[str, str], Times]
+    broken: tuple[Violation, ...]
+
+
+@dataclass(frozen=True)
+class _Node:
+    """Tasks that begin at the same moment."""
+
+    tasks: list[Task]
+    legs: list[tuple[str | None, str, float]] = field(default_factory=list)  # task before, robot, seconds of the leg
+    awaited: list[tuple[str, float, float]] = field(default_factory=list)  # prerequisite, least and most lag
+
+
+def is_after(time: float, limit: float) -> bool:
+    """Whether a time is later than a limit, by more than rounding."""
+    return time > limit + ROUNDING * max(1.0, abs(limit))
+
+
+def schedule(routes: Sequence[MeasuredRoute], ignored: Sequence[str]) -> Schedule | Deadlock:
     """Find the times of every task, if each robot does its tasks in order, as early as it can.
 
-    A robot leaves when it is available, and waits at a task until the last of the task's prerequisites has ended.
+    A robot leaves when it is available, and waits at a task for its team, the tasks that begin with it, its time window
+    and its prerequisites with their lags.
     """
-    at = {step.task.id: (route, step) for route in routes for step in route.steps}
-    before = _task_before(routes)
-    graph = {task: [*awaited[task], *([] if last is None else [last])] for task, last in before.items()}
-    try:
-        order = list(TopologicalSorter(graph).static_order())
-    except CycleError as error:
-        cycle = error.args[1][:-1]  # graphlib repeats the first task at the end
-        return Deadlock(_deadlock_text(cycle, before, {task: route.robot.id for task, (route, _) in at.items()}))
-    times: dict[str, Times] = {}
-    for task in order:
-        route, step = at[task]
-        last = before[task]
-        leaves = route.robot.available_from_s if last is None else times[last].ends
-        arrives = leaves + step.leg.seconds
-        starts = max([arrives, *(times[name].ends for name in awaited[task])])
-        times[task] = Times(arrives, starts, starts + step.work_s)
-    return times
+    return _Graph(routes, ignored).solve()
 
 
-def _task_before(routes: Sequence[MeasuredRoute]) -> dict[str, str | None]:
-    """Find for each task the one before it in its route; None for the first."""
-    before: dict[str, str | None] = {}
-    for route in routes:
-        last = None
-        for step in route.steps:
-            before[step.task.id] = last
-            last = step.task.id
-    return before
+class _Graph:
+    """What bounds the begin of each node."""
+
+    def __init__(self, routes: Sequence[MeasuredRoute], ignored: Sequence[str]) -> None:
+        self.routes, self.ignored = routes, ignored
+        self.task = {step.task.id: step.task for route in routes for step in route.steps}
+        self.work = {step.task.id: step.work_s for route in routes for step in route.steps}
+        self.node_of = self._units()
+        self.nodes = {name: _Node([]) for name in self.node_of.values()}
+        for name, task in self.task.items():
+            self.nodes[self.node_of[name]].tasks.append(task)
+        for route in routes:
+            before = None
+            for step in route.steps:
+                own = self.nodes[self.node_of[step.task.id]]
+                own.legs.append((before, route.robot.id, self._leaves(route, before) + step.leg.seconds))
+                before = step.task.id
+        for name, task in self.task.items():
+            self.nodes[self.node_of[name]].awaited.extend(self._lags(task))
+        self.begin = dict.fromkeys(self.nodes, 0.0)
+
+    @staticmethod
+    def _leaves(route: MeasuredRoute, before: str | None) -> float:
+        return route.robot.available_from_s if before is None else 0.0
+
+    def _units(self) -> dict[str, str]:
+        """For each task the name of its node."""
+        unit = {name: name for name in self.task}
+        for name, task in self.task.items():
+            for other in task.starts_with if "relation" not in self.ignored else ():
+                if other in unit:
+                    old, new = unit[other], unit[name]
+                    unit = {each: new if of == old else of for each, of in unit.items()}
+        return unit
+
+    def _lags(self, task: Task) -> list[tuple[str, float, float]]:
+        if "prerequisite" in self.ignored:
+            return []
+        lags = ((name, task.lag(name)) for name in task.prerequisites if name in self.task)
+        return [(name, lag.after_s, math.inf if lag.within_s is None else lag.within_s) for name, lag in lags]
+
+    def solve(self) -> Schedule | Deadlock:
+        order = self._order()
+        if isinstance(order, Deadlock):
+            return order
+        lagged = sum(math.isfinite(within) for node in self.nodes.values() for _, _, within in node.awaited)
+        jumps, passes = self._windows_passed(), 0
+        while True:
+            for name in order:
+                self.begin[name] = self._earliest(self.nodes[name])
+            delayed = self._delay_prerequisites()
+            if delayed is None:
+                break
+            # Between jumps to later windows bounds that still rise after so many passes do so for ever.
+            passes += 1
+            if self._windows_passed() != jumps:
+                jumps, passes = self._windows_passed(), 0
+            if passes > lagged + 1:
+                return Deadlock(delayed)
+        return Schedule(self._times(), tuple(self._broken()))
+
+    def _order(self) -> list[str] | Deadlock:
+        graph = {
+            name: {self.node_of[b] for b in (*(leg[0] for leg in node.legs), *(a[0] for a in node.awaited)) if b}
+            for name, node in self.nodes.items()
+        }
+        try:
+            return list(TopologicalSorter(graph).static_order())
+        except CycleError as error:
+            cycle = error.args[1][:-1]  # graphlib repeats the first node at the end
+            return Deadlock(Violation("deadlock", None, None, self._deadlock_text(cycle)))
+
+    def _end(self, task: str) -> float:
+        return self.begin[self.node_of[task]] + self.work[task]
+
+    def _arrival(self, leg: tuple[str | None, str, float]) -> float:
+        before, _, seconds = leg
+        return seconds + (0.0 if before is None else self._end(before))
+
+    def _earliest(self, node: _Node) -> float:
+        """The begin of a node from what comes before it, and at least what it is now."""
+        bounds = [self._arrival(leg) for leg in node.legs]
+        bounds += [self._end(name) + after for name, after, _ in node.awaited]
+        return self._open(node, max(self.begin[self.node_of[node.tasks[0].id]], *bounds))
+
+    def _open(self, node: _Node, time: float) -> float:
+        """The first time from `time` on that lies in a window of each task; `time` where none is left."""
+        for _ in range(1 + sum(len(task.window_s) for task in node.tasks)):
+            later = max(self._next(task, time) for task in node.tasks)
+            if later == time or math.isinf(later):
+                return time
+            time = later
+        return time
+
+    def _next(self, task: Task, time: float) -> float:
+        if not task.window_s or "window" in self.ignored:
+            return time
+        left = [first for first, last in task.window_s if last is None or not is_after(time, last)]
+        return max(time, min(left)) if left else math.inf
+
+    def _windows_passed(self) -> int:
+        """How many windows have closed before their tasks begin."""
+        return sum(
+            last is not None and is_after(self.begin[self.node_of[name]], last)
+            for name, task in self.task.items()
+            for _, last in task.window_s
+        )
+
+    def _delay_prerequisites(self) -> Violation | None:
+        """Begin later what must not have ended too long before its dependant begins; the last such, if any."""
+        found = None
+        for node in self.nodes.values():
+            begin = self.begin[self.node_of[node.tasks[0].id]]
+            for name, _, within in node.awaited:
+                least = begin - within - self.work[name]
+                if is_after(least, self.begin[self.node_of[name]]):
+                    self.begin[self.node_of[name]] = least
+                    task = next(t.id for t in node.tasks if name in t.prerequisites)
+                    detail = f"cannot begin within {within:g} s after {name} has ended, however late that begins"
+                    found = Violation("prerequisite", None, task, detail)
+        return found
+
+    def _times(self) -> dict[tuple[str, str], Times]:
+        times = {}
+        for route in self.routes:
+            leaves = route.robot.available_from_s
+            for step in route.steps:
+                begin = self.begin[self.node_of[step.task.id]]
+                times[route.robot.id, step.task.id] = Times(leaves + step.leg.seconds, begin, begin + step.work_s)
+                leaves = begin + step.work_s
+        return times
+
+    def _broken(self) -> list[Violation]:
+        """The windows, deadlines and shifts that the earliest begins break: then every schedule breaks one."""
+        found = []
+        for name, task in self.task.items():
+            begin = self.begin[self.node_of[name]]
+            if "window" not in self.ignored and task.window_s and not _in_windows(task, begin):
+                found.append(Violation("window", None, name, _window_text(task, begin)))
+            end = begin + self.work[name]
+            if "deadline" not in self.ignored and task.deadline_s is not None and is_after(end, task.deadline_s):
+                detail = f"ends at {end:,.10g} s at the earliest, its deadline is {task.deadline_s:,.10g} s"
+                found.append(Violation("deadline", None, name, detail))
+        for route in self.routes:
+            until = route.robot.available_until_s
+            if not route.steps or until is None or "shift" in self.ignored:
+                continue
+            back = self._end(route.steps[-1].task.id) + (route.last_leg.seconds if route.last_leg else 0.0)
+            if is_after(back, until):
+                detail = f"its route ends at {back:,.10g} s at the earliest, it is available until {until:,.10g} s"
+                found.append(Violation("shift", route.robot.id, None, detail))
+        return found
+
+    def _deadlock_text(self, cycle: Sequence[str]) -> str:
+        """Describe the cycle step by step, and what makes each: `r_1: 2 -> 16; prerequisite: 16 -> 14; ...`."""
+        links = [self._link(node, later) for node, later in pairwise([*cycle, cycle[0]])]
+        # Prerequisites have no cycle and routes have none, so a route's step follows on a prerequisite somewhere.
+        starts = [k for k in range(len(links)) if links[k][0] and not links[k - 1][0]] or [0]
+        first = starts[tie_order([links[k][1] for k in starts])[0]]
+        parts = []
+        for label, steps in groupby([*links[first:], *links[:first]], key=lambda link: link[0] or "prerequisite"):
+            (_, task, later), *others = steps
+            parts.append(f"{label}: {' -> '.join([task, later, *(other for _, _, other in others)])}")
+        return "; ".join(parts)
+
+    def _link(self, node: str, later: str) -> tuple[str, str, str]:
+        """What makes one node come before another: a robot, or nothing for a prerequisite; and the tasks."""
+        for before, robot, _ in self.nodes[later].legs:
+            if before is not None and self.node_of[before] == node:
+                return robot, before, self._task_after(robot, before)
+        name = next(name for name, _, _ in self.nodes[later].awaited if self.node_of[name] == node)
+        return "", name, next(task.id for task in self.nodes[later].tasks if name in task.prerequisites)
+
+    def _task_after(self, robot: str, before: str) -> str:
+        steps = next(route.steps for route in self.routes if route.robot.id == robot)
+        return next(after.task.id for first, after in pairwise(steps) if first.task.id == before)
 
 
-def _deadlock_text(cycle: Sequence[str], before: Mapping[str, str | None], robots: Mapping[str, str]) -> str:
-    """Describe the cycle step by step, and what makes each: `r_1: 2 -> 16; prerequisite: 16 -> 14; ...`."""
-    in_route = [before[later] == task for task, later in pairwise([*cycle, cycle[0]])]
-    # Prerequisites have no cycle and routes have none, so a route's step follows on a prerequisite somewhere.
-    starts = [k for k in range(len(cycle)) if in_route[k] and not in_route[k - 1]]
-    first = starts[tie_order([cycle[k] for k in starts])[0]]
-    turned = [*cycle[first:], *cycle[: first + 1]]
+def _in_windows(task: Task, begin: float) -> bool:
+    return any(
+        not is_after(first, begin) and (last is None or not is_after(begin, last)) for first, last in task.window_s
+    )
 
-    def reason(step: tuple[str, str]) -> str:
-        task, later = step
-        return robots[task] if before[later] == task else "prerequisite"
 
-    parts = []
-    for label, steps in groupby(pairwise(turned), key=reason):
-        (task, later), *others = steps
-        parts.append(f"{label}: {' -> '.join([task, later, *(other for _, other in others)])}")
-    return "; ".join(parts)
+def _window_text(task: Task, begin: float) -> str:
+    close = task.window_s[-1][1]
+    last = "" if len(task.window_s) == 1 else "last "
+    return f"begins at {begin:,.10g} s at the earliest, its {last}window closes at {close:,.10g} s"

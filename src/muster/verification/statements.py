@@ -22,7 +22,10 @@ def false_statements(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator
         yield Violation("objective", None, None, detail)
     yield from _figures(plan, verdict, relative, tolerance)
     yield from _usages(plan, verdict, relative)
+    yield from _stops(plan, verdict, relative)
     yield from _history(plan, verdict, relative)
+    if plan.elapsed_s is not None and plan.elapsed_s < 0:
+        yield Violation("figure", None, None, f"elapsed_s: the plan says {plan.elapsed_s}; expected at least 0")
 
 
 def _figures(plan: Plan, verdict: Verdict, relative: float, tolerance: float) -> Iterator[Violation]:
@@ -58,6 +61,24 @@ def _usages(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violatio
         usage = stated.get(figures.robot)
         if not agrees(usage, figures.usage, tolerance):
             yield Violation("figure", figures.robot, None, f"usage: the plan says {usage}, it is {figures.usage}")
+
+
+def _stops(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
+    """Find stops whose times are not those of the earliest schedule."""
+    visits = {(route.robot, visit.task): visit for route in verdict.routes for visit in route.visits}
+    for route in plan.routes:
+        for stop in route.stops:
+            visit = visits.get((route.robot, stop.task))
+            if visit is None:
+                continue
+            times = (
+                ("arrive_s", stop.arrive_s, visit.arrives_s),
+                ("begin_s", stop.begin_s, visit.starts_s),
+                ("end_s", stop.end_s, visit.ends_s),
+            )
+            for name, stated, found in times:
+                if not agrees(stated, found, tolerance, RELATIVE_TOLERANCE):
+                    yield Violation("stop", route.robot, stop.task, f"{name}: the plan says {stated}, it is {found}")
 
 
 def _history(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:

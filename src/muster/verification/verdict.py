@@ -24,12 +24,18 @@ KINDS = (
     "unreachable",
     "capacity",
     "prerequisite",
+    "window",
+    "deadline",
+    "shift",
+    "team",
+    "relation",
     "deadlock",
     "unassigned",
     "reason",
     "book",
     "objective",
     "figure",
+    "stop",
     "history",
 )
 """The kinds of violation."""
@@ -81,9 +87,9 @@ class RouteFigures:
 class Verdict:
     """The judgement of one plan.
 
-    `total_cost`, `max_usage` and `average` are in `usage_unit`. `makespan_s` is None where routes and prerequisites
-    deadlock. `ignored` are the rules that the caller had ignored. `routes` holds every robot, in mission order. All
-    numbers are finite.
+    `total_cost`, `max_usage` and `average` are in `usage_unit`. `makespan_s` and `lateness` are None where routes and
+    prerequisites deadlock. `ignored` are the rules that the caller had ignored. `routes` holds every robot, in mission
+    order. All numbers are finite.
     """
 
     violations: tuple[Violation, ...]
@@ -94,6 +100,7 @@ class Verdict:
     max_usage: float
     average: float
     makespan_s: float | None
+    lateness: float | None
     equality_index: float
     tasks_completed: int
     tasks_total: int
@@ -107,13 +114,13 @@ class Verdict:
 
     @property
     def waiting_s(self) -> float | None:
-        """How long robots wait at tasks for prerequisites, in all; None where they deadlock."""
+        """How long robots wait at tasks, in all; None where they deadlock."""
         if self.makespan_s is None:
             return None
         return sum(visit.starts_s - visit.arrives_s for route in self.routes for visit in route.visits)
 
     def value(self, name: str | None = None) -> float | None:
-        """Return the value of an objective, by default the one judged by; None for the makespan of a deadlocked plan.
+        """Return the value of an objective, by default the one judged by; None for a time of a deadlocked plan.
 
         Raises
         ------
@@ -126,6 +133,7 @@ class Verdict:
             "total+max": self.total_cost + self.max_usage,
             "average": self.average,
             "makespan": self.makespan_s,
+            "lateness": self.lateness,
         }
         name = self.objective_name if name is None else name
         if name not in values:
@@ -145,6 +153,7 @@ class Verdict:
             "max_usage": self.max_usage,
             "average": self.average,
             "makespan_s": self.makespan_s,
+            "lateness": self.lateness,
             "equality_index": self.equality_index,
             "tasks_completed": self.tasks_completed,
             "tasks_total": self.tasks_total,

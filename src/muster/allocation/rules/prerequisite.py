@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from muster.allocation.rules.rule import InPlan, Outlook, Question, Rule, listed
+import numpy as np
+
+from muster.allocation.rules.rule import Bools, InPlan, Limits, Outlook, Question, Rule, listed
 
 
 class Prerequisite(Rule):
@@ -12,9 +14,16 @@ class Prerequisite(Rule):
 
     word: ClassVar[str] = "prerequisite"
 
+    def possible(self, limits: Limits) -> Bools | None:
+        if not limits.held_back:
+            return None
+        possible = np.ones_like(limits.usable)
+        possible[:, list(limits.held_back)] = False
+        return possible
+
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         if outlook.lost_before not in problem.tasks[j].prerequisites:
-            return None
+            return outlook.limits.held_back.get(j)
         return f"{outlook.lost_before} comes before it and can never be done"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:

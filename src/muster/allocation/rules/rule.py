@@ -80,6 +80,9 @@ class Limits(Protocol):
     @property
     def pair_end(self) -> Floats: ...
 
+    @property
+    def held_back(self) -> dict[int, str]: ...
+
     def must_also(self, j: int) -> list[int]: ...
 
 

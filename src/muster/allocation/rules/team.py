@@ -12,6 +12,7 @@ import numpy as np
 from muster.allocation.bottleneck import fills, matched, on_some_matching
 from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
 from muster.mission.model import Robot, Task, TeamPart
+from muster.mission.near_matches import did_you_mean
 
 _MOST_NAMED, _MOST_ADDED = 4, 10
 
@@ -50,11 +51,8 @@ class Team(Rule):
 
     def refusal(self, problem: Question, i: int, j: int) -> str | None:
         rules = problem.timed_rules
-        if not rules.is_for_team(j):
+        if not rules.is_for_team(j) or rules.needs(j):
             return None
-        if rules.needs(j):
-            useful = any(able[i] > 0 for _, able in rules.needs(j))
-            return None if useful else f"has none of the abilities needed: {needed(problem.tasks[j])}"
         if any(fits[i] for _, fits in rules.parts(j)):
             return None
         return f"fits no part of the team: {needed(problem.tasks[j])}"
@@ -101,10 +99,16 @@ def shortfall(problem: Question, i: int, j: int, able: Bools) -> str | None:
         sums = ", ".join(
             f"{name} {float(a[able].sum()):g}" for name, (_, a) in zip(task.needs or {}, rules.needs(j), strict=True)
         )
-        return f"{wanted}; all who can be there have {sums} together"
+        return f"{wanted}; all who can be there have {sums} together{_like_others(problem, j)}"
     if not fills(_places(problem, j, able)):
         return f"{wanted}; {_who(names)}"
     return f"{wanted}; with it one place stays empty"
+
+
+def _like_others(problem: Question, j: int) -> str:
+    """Of the abilities that a task needs and no robot has, whether one that a robot has is spelt much like it."""
+    known = sorted({name for robot in problem.robots for name in robot.abilities or ()})
+    return "".join(did_you_mean(name, known) for name in problem.tasks[j].needs or () if name not in known)
 
 
 def needed(task: Task) -> str:
@@ -144,6 +148,8 @@ def missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRo
     able = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
     if not rules.is_for_team(j) or not able[i] or in_some_team(problem, j, able)[i]:
         return None
+    if problem.mission.travel_rule == "matrix":
+        return None  # whose ways are known of the robots of the mission alone
     if task.needs is not None:
         return _as_able(problem, i, j, able, names)
     owner = matched(_places(problem, j, able))

@@ -88,7 +88,8 @@ class MissionTopics:
         robot = robot.get("id") if isinstance(robot, Mapping) else robot
         if robot is not None and kind in _ACTIVITIES:
             task = {"task": str(data["task"])} if kind in ("sets_out", "arrives", "starts") and "task" in data else {}
-            self._robots[robot] = {"activity": _ACTIVITIES[kind], **task}
+            for name in data.get("team") or [robot]:
+                self._robots[name] = {"activity": _ACTIVITIES[kind], **task}
             self._say("robots", self._robots)
         if kind == "ends":
             self._done += 1

@@ -32,7 +32,7 @@ OUT = ("robot_fails", "robot_silent", "robot_stuck")
 """Kinds of event after which a robot takes no part."""
 ALARMING = ("lost", *OUT, "contact")
 """Kinds of event that somebody should look at."""
-_BECOMES = {"starts": UNDER_WAY, "ends": DONE, "lost": LOST, "cancel_task": CANCELLED}
+_BECOMES = {"starts": UNDER_WAY, "ends": DONE, "lost": LOST, "cancel_task": CANCELLED, "work_broken_off": OPEN}
 
 
 class MissionState:

@@ -62,6 +62,7 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
                 ends_s=now,
                 arrival_usage=data["arrival_usage"],
                 usage=usage,
+                team=tuple(data.get("team", ())),
             )
         elif kind == "cancel_task":
             cancelled[data["task"]] = now

@@ -24,6 +24,11 @@ _HAPPENS = {
     "robot_stuck": "{robot} does not get on",
     "robot_returns": "{robot} takes part again",
     "robot_joins": "{robot} joins",
+    "waits": "{robot} {words}",
+    "window_missed": "task {task} is not begun in time",
+    "deadline_missed": "task {task} is not begun in time",
+    "within_missed": "task {task} is not begun in time",
+    "work_broken_off": "work on task {task} is broken off",
     "lost": "task {task} is lost",
     "mission_ended": "the mission is over",
 }

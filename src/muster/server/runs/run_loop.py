@@ -254,6 +254,8 @@ def _robot(robot: RobotStatus) -> dict[str, Any]:
         "out": robot.out,
         "task": robot.task,
         "waits_for": list(robot.waits_for),
+        "waits": robot.waits,
+        "team": list(robot.team),
         "route": list(robot.route),
         "used": round(robot.used, 3),
         "usage_left": None if left is None else round(left, 3),

@@ -1,8 +1,8 @@
 """The rules of the judge, one a file. A new rule is registered here.
 
 A rule finds what is wrong with a route, and says whether it keeps a robot from one more task. The judge asks the latter
-of the reasons that a plan gives for tasks left out. That routes and prerequisites do not wait for each other in a cycle
-is found by `schedule`, which all routes enter at once.
+of the reasons that a plan gives for tasks left out. Which limits of times are broken, and that routes and prerequisites
+wait for each other in a cycle, is found by `schedule`, which all routes enter at once.
 """
 
 from __future__ import annotations
@@ -15,11 +15,16 @@ from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute
 from muster.verification.rules.action import Action
 from muster.verification.rules.capacity import Capacity
+from muster.verification.rules.deadline import Deadline
 from muster.verification.rules.lock import Lock
 from muster.verification.rules.prerequisite import Prerequisite
+from muster.verification.rules.relation import Relation
+from muster.verification.rules.shift import Shift
 from muster.verification.rules.skill import Skill
 from muster.verification.rules.suitability import Suitability
+from muster.verification.rules.team import Team
 from muster.verification.rules.unreachable import Unreachable
+from muster.verification.rules.window import Window
 from muster.verification.verdict import Violation
 
 
@@ -45,7 +50,20 @@ class Rule(Protocol):
         ...
 
 
-RULES: tuple[Rule, ...] = (Skill(), Action(), Suitability(), Lock(), Prerequisite(), Unreachable(), Capacity())
+RULES: tuple[Rule, ...] = (
+    Skill(),
+    Action(),
+    Suitability(),
+    Lock(),
+    Team(),
+    Relation(),
+    Prerequisite(),
+    Unreachable(),
+    Capacity(),
+    Window(),
+    Deadline(),
+    Shift(),
+)
 
 
 def rules_that_hold(case: Case) -> list[Rule]:

@@ -23,11 +23,14 @@ class Capacity:
             yield Violation(self.kind, route.robot.id, None, detail)
 
     def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
-        """Whether the route would use more than the capacity with the task at any place in it."""
+        """Whether the route would use more than the capacity with the task at any place in it.
+
+        Undecided where there is room, but maybe only where other rules allow no work: those of times, teams, relations.
+        """
         capacity = case.capacity_of(route.robot)
         if capacity is None:
             return False
         usage = case.insertions(route).least_usage(task, case.first_gap(route, task), capacity)
         if abs(usage - capacity) <= capacity * case.tolerance:
             return None
-        return usage > capacity
+        return True if usage > capacity else (None if case.is_timed else False)

@@ -26,9 +26,10 @@ class Prerequisite:
     def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
         """Whether a prerequisite is left out.
 
-        With all of them in the plan the task can stand at the end of any route, unless a task in the plan waits for it.
+        With all of them in the plan the task can stand at the end of any route, unless a task in the plan waits for it
+        or there are rules of times, teams and relations, lags among them.
         """
         if not case.done.issuperset(task.prerequisites):
             return True
         awaited = case.deadlocked or any(task.id in step.task.prerequisites for r in case.routes for step in r.steps)
-        return None if awaited else False
+        return None if awaited or case.is_timed else False

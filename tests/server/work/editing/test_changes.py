@@ -57,6 +57,19 @@ def test_a_task_that_goes_is_no_prerequisite_any_more() -> None:
         changes.drop(TEXT, "task", "77")
 
 
+def test_relations_and_lags_let_go_of_a_task_that_goes() -> None:
+    text = (
+        TEXT
+        + """\
+  - {id: a, position: [7, 7, 0], prerequisites: [8, {task: 7, after_s: 5}], same_robot_as: 7}
+  - {id: b, position: [7, 7, 0], other_robot_than: [7, 8], starts_with: [7]}
+"""
+    )
+    *_, a, b = data_of(changes.drop(text, "task", "7"))["tasks"]
+    assert a == {"id": "a", "position": [7, 7, 0], "prerequisites": [8]}
+    assert b == {"id": "b", "position": [7, 7, 0], "other_robot_than": [8]}
+
+
 def test_a_corner_that_is_another_by_now_stays() -> None:
     corner = {"what": "zone", "id": 0, "corner": 1}
     data = data_of(changes.move(TEXT, {**corner, "from": [2.0, 1.0]}, 3, 4))

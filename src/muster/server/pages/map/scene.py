@@ -54,7 +54,9 @@ def _task(task: Mapping[str, Any]) -> dict[str, Any]:
         "y": y,
         "z": rest[0] if rest else None,
         "type": str(task.get("type") or action.get("name") or ""),
-        "prerequisites": [str(before) for before in task.get("prerequisites") or ()],
+        "prerequisites": [
+            str(before["task"] if isinstance(before, Mapping) else before) for before in task.get("prerequisites") or ()
+        ],
     }
 
 

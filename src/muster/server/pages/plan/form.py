@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -15,9 +13,9 @@ from muster.mission.model import OBJECTIVES, Robot, Rules, Task
 from muster.mission.records import specified
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import warn, words_of
+from muster.server.pages.plan.cell_texts import text_of, value_of
 from muster.server.pages.plan.table import Column, Table
 
-_AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _PLACE = (Column("x", "number", hint="metres east"), Column("y", "number", hint="metres north"))
 _HEIGHT = Column("z", "number", hint="metres above the ground of the map")
 _ROBOTS = (
@@ -30,11 +28,31 @@ _ROBOTS = (
 )
 _TASKS = (
     Column("type"),
-    Column("prerequisites", "words"),
+    Column("prerequisites", "lagged", hint="with a lag as 31(5..60): from 5 to 60 s after its end"),
     Column("actuation_cost", "number"),
     Column("duration_s", "number"),
     Column("priority", "number"),
     Column("requires", "words"),
+)
+_ROBOT_TIMES = (
+    Column("shift", "clock spans", hint="as 08:00 to 16:00, beside starts_at"),
+    Column("available_from_s", "number"),
+    Column("available_until_s", "number"),
+    Column("abilities", "amounts", hint="as lift_kg 20, water_l 3"),
+)
+_TASK_TIMES = (
+    Column("window", "clock spans", hint="as 10:00 to 14:00; 16:00 to, beside starts_at"),
+    Column("window_s", "spans", hint="as 600 to 1200; 2000 to"),
+    Column("deadline", hint="as 14:30, beside starts_at"),
+    Column("deadline_s", "number"),
+    Column("due", hint="as 14:00, beside starts_at"),
+    Column("due_s", "number"),
+    Column("robots_needed", "number"),
+    Column("team", "parts", hint="as 2 type=rover; 1 kind=air requires=camera+gripper"),
+    Column("needs", "amounts", hint="as lift_kg 35"),
+    Column("same_robot_as", "words"),
+    Column("other_robot_than", "words"),
+    Column("starts_with", "words"),
 )
 _RULES = (
     Column("objective", "choice", OBJECTIVES),
@@ -43,15 +61,28 @@ _RULES = (
     Column("min_suitability", "number"),
     Column("capacity_reserve", "number"),
     Column("return_to_start", "choice", ("true", "false")),
+    Column("timing", "choice", ("profile", "constant")),
+    Column("makespan_includes_return", "choice", ("true", "false")),
 )
 _SHOWN = {"rules": "rules", "robot": "robots", "task": "tasks"}
 _AXES = {"x": 0, "y": 1, "z": 2}
+_COLUMNS = {
+    column.key: column for column in (*_PLACE, _HEIGHT, *_ROBOTS, *_ROBOT_TIMES, *_TASKS, *_TASK_TIMES, *_RULES)
+}
+_TIMES = {column.key for column in (*_ROBOT_TIMES, *_TASK_TIMES)}
+_AMOUNTS = {column.key for column in _COLUMNS.values() if column.kind == "amounts"}
 
 
 def _explained(model: type[Any], columns: Sequence[Column]) -> tuple[Column, ...]:
     """Columns with what the format says of their keys."""
     words = {one.name: str(one.metadata["doc"]) for one in specified(model)}
-    return tuple(replace(column, hint=words.get(column.key, column.hint)) for column in columns)
+    for one in specified(model):
+        if "instead" in one.metadata:
+            key, _, doc = one.metadata["instead"]
+            words[key] = doc
+    return tuple(
+        replace(column, hint="; ".join(filter(None, (words.get(column.key, ""), column.hint)))) for column in columns
+    )
 
 
 class Form:
@@ -67,6 +98,8 @@ class Form:
             if editable:
                 raising = ui.button("Make it 3-D", on_click=lambda: self._edit("raised")).props("outline dense")
                 raising.props('title="Every robot and task gets a height z, which is 0 at first"')
+        self._timed = ui.checkbox("Times, teams and relations", on_change=self.show).props("dense")
+        self._timed.props('title="Columns for windows, deadlines, shifts, teams, abilities and relations of tasks"')
         with ui.element("div").classes("forms"):
             self._rules = Table("Rules", editable=editable, grows=False)
             self._robots = Table("Robots", editable=editable)
@@ -104,16 +137,18 @@ class Form:
         self._flat.set_visibility(not in_space)
         place = (*_PLACE, _HEIGHT) if in_space else _PLACE
         self._rules.show(_explained(Rules, _RULES), [_row(data.get("rules") or {})])
-        self._robots.show(_explained(Robot, (Column("id"), *place, *_ROBOTS)), robots)
-        self._tasks.show(_explained(Task, (Column("id"), *place, *_TASKS)), tasks)
+        timed = self._timed.value or any(not _TIMES.isdisjoint(row) for row in (*robots, *tasks))
+        self._timed.set_value(timed)
+        of_robots, of_tasks = (_ROBOT_TIMES, _TASK_TIMES) if timed else ((), ())
+        self._robots.show(_explained(Robot, (Column("id"), *place, *_ROBOTS, *of_robots)), robots)
+        self._tasks.show(_explained(Task, (Column("id"), *place, *_TASKS, *of_tasks)), tasks)
 
     async def _cell(self, team: str, change: Mapping[str, Any]) -> None:
         key, row, name = str(change["key"]), int(change["row"]), str(change["id"])
-        columns = {column.key: column for column in (*_PLACE, _HEIGHT, *_ROBOTS, *_TASKS, *_RULES)}
-        kind = columns[key].kind if key in columns else "text"
+        kind = _COLUMNS[key].kind if key in _COLUMNS else "text"
         where = key if team == "rules" else f"{team[:-1]} {name or f'in row {row + 1}'}: {key}"
         try:
-            value = _value(str(change["value"]), where, kind)
+            value = value_of(str(change["value"]), where, kind)
             if key in _AXES and value is None:
                 raise ParameterError(f"{where}: empty; expected a number of metres")
         except ParameterError as error:
@@ -132,31 +167,6 @@ class Form:
             await self._edit("set_cell", (team, row, key), value, name)
 
 
-def _value(typed: str, where: str, kind: str) -> object:
-    """A typed value as in the mission's text; None for an empty cell. `where` stands in errors."""
-    typed = typed.strip()
-    if not typed:
-        return None
-    if kind == "words":
-        return typed.replace(",", " ").split()
-    if kind == "number":
-        return number_of(typed, where)
-    if kind == "choice" and typed in ("true", "false"):
-        return typed == "true"
-    return typed
-
-
-def number_of(typed: str, where: str) -> float:
-    """A number with a decimal point or comma; 1,000 is ambiguous and refused."""
-    try:
-        number = math.nan if "_" in typed or _AMBIGUOUS.fullmatch(typed) else float(typed.replace(",", "."))
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise ParameterError(f"{where}: {typed!r}; expected a number, as 1000 or 1.5")
-    return int(number) if number.is_integer() and abs(number) < 1e15 else number
-
-
 def _rows(items: object) -> list[dict[str, str]]:
     return [_row(item) for item in _items(items)]
 
@@ -167,14 +177,9 @@ def _items(items: object) -> list[Mapping[str, Any]]:
 
 def _row(item: Mapping[str, Any]) -> dict[str, str]:
     """One item as its cells show it."""
-    row = {str(key): _shown(value) for key, value in item.items() if not isinstance(value, dict)}
+    shown = {str(key): value for key, value in item.items() if not isinstance(value, dict) or key in _AMOUNTS}
+    row = {key: text_of(value, _COLUMNS[key].kind if key in _COLUMNS else "text") for key, value in shown.items()}
     position = item.get("position")
     if isinstance(position, list):
-        row.update({axis: _shown(position[k]) for axis, k in _AXES.items() if k < len(position)})
+        row.update({axis: text_of(position[k]) for axis, k in _AXES.items() if k < len(position)})
     return row
-
-
-def _shown(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return " ".join(map(str, value)) if isinstance(value, list) else "" if value is None else str(value)

@@ -10,7 +10,7 @@ from nicegui.element import Element
 
 @dataclass(frozen=True)
 class Column:
-    """A column: its key, its kind (text, number, words or a choice), and its meaning."""
+    """A column: its key, its kind (a choice, or one of `cell_texts`), and its meaning."""
 
     key: str
     kind: str = "text"

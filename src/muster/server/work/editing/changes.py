@@ -53,7 +53,7 @@ def add_beside(text: str, what: str) -> str:
 
 
 def drop(text: str, what: str, name: str | int, corners: Sequence[Sequence[float]] | None = None) -> str:
-    """Take a robot, a task or a zone out; what names it elsewhere (prerequisites, locks) lets go of it.
+    """Take a robot, a task or a zone out; what names it elsewhere (prerequisites, relations, locks) lets go of it.
 
     A zone is known by its number, and by its `corners` where they are given: another one may have that number by now.
     """
@@ -63,14 +63,23 @@ def drop(text: str, what: str, name: str | int, corners: Sequence[Sequence[float
             raise EditError(f"zone {int(name) + 1} is another one by now; choose it again")
         return remove(text, path)
     text = remove(text, _path_of(text, TEAMS[what], str(name)))
-    key = "prerequisites" if what == "task" else "only_robots"
+    for key in _NAMING_TASKS if what == "task" else ("only_robots",):
+        text = _let_go(text, key, str(name))
+    return text
+
+
+_NAMING_TASKS = ("prerequisites", "same_robot_as", "other_robot_than", "starts_with")
+
+
+def _let_go(text: str, key: str, name: str) -> str:
+    """The text in which no task names one under a key: an id, or a list of ids and of mappings with a task."""
     for k, task in enumerate(data_of(text).get("tasks") or []):
         named = task.get(key) if isinstance(task, dict) else None
-        if not isinstance(named, list) or str(name) not in map(str, named):
-            continue
-        rest = [other for other in named if str(other) != str(name)]
-        path = ("tasks", k, key)
-        text = set_value(text, path, rest) if rest else remove(text, path)
+        listed = named if isinstance(named, list) else [] if named is None else [named]
+        rest = [one for one in listed if str(one.get("task") if isinstance(one, dict) else one) != name]
+        if len(rest) < len(listed):
+            path = ("tasks", k, key)
+            text = set_value(text, path, rest) if rest else remove(text, path)
     return text
 
 

@@ -70,7 +70,7 @@ function taskFacts(task, team) {
   else if (task.state === "open") facts.push(["by", ["nobody", team.whyNobody(task.id)].filter(Boolean).join(": ")]);
   if (task.type) facts.push(["type", task.type]);
   if (task.requires?.length) facts.push(["takes", task.requires.join(", ")]);
-  if (task.prerequisites?.length) facts.push(["after", task.prerequisites.map((id) => withState(id, team)).join(", ")]);
+  if (task.prerequisites?.length) facts.push(["after", task.prerequisites.map((one) => withState(one.task ?? one, team)).join(", ")]);
   facts.push(["at", task.place.slice(0, team.spatial ? 3 : 2).map((value) => value.toFixed(2)).join(", ")]);
   return facts;
 }

@@ -1,0 +1,76 @@
+"""A task for a team is done by all the robots that it needs, each allowed for its part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from muster.mission.model import Robot, Task, TeamPart
+from muster.verification.case import Case
+from muster.verification.measure import MeasuredRoute
+from muster.verification.verdict import Violation
+
+_ROUNDING = 1e-9
+
+
+class Team:
+    """The robots in whose routes the task stands are the team that it asks for."""
+
+    kind = "team"
+    ignorable = True
+
+    def violations(self, case: Case, route: MeasuredRoute) -> Iterator[Violation]:
+        for step in route.steps:
+            members = case.members[step.task.id]
+            if members[0] is route.robot:
+                wrong = _wrong(step.task, members, skills=case.holds("skill"))
+                if wrong is not None:
+                    yield Violation(self.kind, None, step.task.id, wrong)
+
+    def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
+        """Undecided for a team's task: it depends on the other members."""
+        return None if task.is_for_team else False
+
+
+def _wrong(task: Task, members: Sequence[Robot], *, skills: bool) -> str | None:
+    if task.needs is not None:
+        return _short(task, members)
+    parts = task.team or (TeamPart(count=task.robots_needed or 1),)
+    needed = sum(part.count for part in parts)
+    names = ", ".join(robot.id for robot in members)
+    if len(members) != needed:
+        return f"needs {needed} robot{'' if needed == 1 else 's'}, done by {len(members)}: {names}"
+    if not _matched([part for part in parts for _ in range(part.count)], members, skills):
+        return f"{names} do not fit the parts of its team"
+    return None
+
+
+def _short(task: Task, members: Sequence[Robot]) -> str | None:
+    """Which ability the members give too little of."""
+    for name, needed in (task.needs or {}).items():
+        given = sum((robot.abilities or {}).get(name, 0.0) for robot in members)
+        if given < needed * (1 - _ROUNDING):
+            return f"needs {name} {needed:g}, {', '.join(robot.id for robot in members)} give {given:g}"
+    return None
+
+
+def _matched(places: Sequence[TeamPart], members: Sequence[Robot], skills: bool) -> bool:
+    """Whether each place of a team can be given to another member: a bipartite matching by augmenting paths."""
+    place_of: dict[int, int] = {}  # by member
+
+    def place(k: int, tried: set[int]) -> bool:
+        for i, robot in enumerate(members):
+            if i in tried or not _fits(robot, places[k], skills):
+                continue
+            tried.add(i)
+            if i not in place_of or place(place_of[i], tried):
+                place_of[i] = k
+                return True
+        return False
+
+    return all(place(k, set()) for k in range(len(places)))
+
+
+def _fits(robot: Robot, part: TeamPart, skills: bool) -> bool:
+    if part.type not in (None, robot.type) or part.kind not in (None, robot.kind):
+        return False
+    return not skills or set(part.requires) <= set(robot.skills)
