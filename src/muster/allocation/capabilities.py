@@ -15,6 +15,14 @@ ALL = frozenset({"window", "deadline", "shift", "lag", "team", "relation", "star
 
 NONE: frozenset[str] = frozenset()
 
+Offered = Callable[[], Mapping[str, frozenset[str]]]
+_offered: list[Offered] = []
+
+
+def offer(allocators: Offered) -> None:
+    """Let refusals name these allocators: by name what each can do. The registry, which is above this module, does."""
+    _offered.append(allocators)
+
 
 def required(problem: Problem) -> dict[str, str]:
     """What the allocator of a problem must be able to do, each with the place that asks for it first."""
@@ -39,10 +47,8 @@ def refuse_what_is_not_kept(problem: Problem, name: str, can: frozenset[str]) ->
 
 def those_that_can(words: Iterable[str]) -> list[str]:
     """The allocators that can do all of this, in the order of the registry."""
-    from muster.allocation.registry import ALLOCATORS  # whose members are made with this module
-
     asked = set(words)
-    return [name for name, allocator in ALLOCATORS.usable().items() if asked <= allocator.can]
+    return [name for offered in _offered for name, can in offered().items() if asked <= can]
 
 
 def _task(problem: Problem, key: str, has: Callable[[int], object]) -> str | None:
@@ -117,11 +123,10 @@ _RULES: Mapping[str, Callable[[Problem], str | None]] = MappingProxyType(
 
 def capability_table() -> str:
     """Which registered allocator can do what, as a table of Markdown."""
-    from muster.allocation.registry import ALLOCATORS
-
     head = f"| allocator | {' | '.join(_RULES)} |"
     rows = [
-        f"| `{name}` | {' | '.join('yes' if word in allocator.can else '' for word in _RULES)} |"
-        for name, allocator in ALLOCATORS.items()
+        f"| `{name}` | {' | '.join('yes' if word in can else '' for word in _RULES)} |"
+        for offered in _offered
+        for name, can in offered().items()
     ]
     return "\n".join([head, "|---|" + "---|" * len(_RULES), *rows])
