@@ -37,7 +37,7 @@ campaign: $(VENV)/developed
 	$(BIN)/python -m tests.campaign $(CAMPAIGN_FLAGS)
 
 campaign-times: $(VENV)/developed
-	$(BIN)/python -m tests.timed_missions 5000 $(CAMPAIGN_FLAGS)
+	$(BIN)/python -m tests.timed_missions $(or $(CAMPAIGN_FLAGS),5000)
 
 campaign-auction: $(VENV)/developed
 	$(BIN)/python -m tests.negotiation.campaign $(CAMPAIGN_FLAGS)

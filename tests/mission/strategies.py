@@ -150,6 +150,18 @@ windows = st.one_of(
 )
 """None, one that is open, or some that are apart."""
 
+TIMES = st.fixed_dictionaries(
+    {},
+    optional={
+        "duration_s": st.none() | not_negative,
+        "window_s": windows,
+        "deadline_s": st.none() | not_negative,
+        "due_s": st.none() | not_negative,
+        "robots_needed": st.none() | st.integers(1, 9),
+    },
+)
+"""What a row of a task list may say besides."""
+
 lags = st.builds(Lag, after_s=st.sampled_from([0.0, 2.5]), within_s=st.none() | st.floats(2.5, 1e9))
 teams = st.one_of(
     st.just({}),
@@ -299,7 +311,7 @@ def plain_missions(draw, names="plain") -> Mission:
     point = POINTS[draw(dimension)]
     suitability = draw(TABLES[names])
     robot_type, task_type = types_of(draw, suitability, WORDS[names])
-    tasks = draw(task_ids[names])
+    tasks, timed = draw(task_ids[names]), draw(seldom)
     return Mission(
         name="tasks",
         robots=tuple(
@@ -313,6 +325,7 @@ def plain_missions(draw, names="plain") -> Mission:
                 type=task_type(),
                 actuation_cost=draw(not_negative),
                 prerequisites=some_of(draw, tasks[:k]),
+                **(draw(TIMES) if timed else {}),
             )
             for k, name in enumerate(tasks)
         ),

@@ -72,7 +72,8 @@ PLAIN = Mission(name="tasks", robots=(R,), tasks=(T,))
         (replace(PLAIN, robots=(replace(R, end_position=(1, 1)),)), "robots"),
         (replace(PLAIN, tasks=(replace(T, requires=("camera",)),)), "tasks"),
         (replace(PLAIN, tasks=(replace(T, priority=2),)), "tasks"),
-        (replace(PLAIN, tasks=(replace(T, duration_s=0),)), "tasks"),
+        (replace(PLAIN, tasks=(replace(T, needs={"lift_kg": 3}),)), "tasks"),
+        (replace(PLAIN, starts_at="2027-03-01T08:00"), "starts_at"),
         (replace(PLAIN, tasks=(replace(T, action=Action(name="go-to-goal")),)), "tasks"),
         (replace(PLAIN, tasks=(replace(T, id="a b"), Task(id="2", position=(1, 1), prerequisites=("a b",)))), "tasks"),
         (replace(PLAIN, tasks=(replace(T, id="[7]"), Task(id="2", position=(1, 1), prerequisites=("[7]",)))), "tasks"),
@@ -127,3 +128,27 @@ def test_a_task_list_alone_is_for_robots_from_elsewhere(tmp_path, header, row, s
     assert asked == [size]
     assert (mission.name, [task.id for task in mission.tasks]) == ("six", ["7"])
     assert [robot.id for robot in mission.robots] == ["r_0"]
+
+
+def test_times_of_a_task_list(tmp_path):
+    tasks, robots, _ = csv_files(tmp_path)
+    head = "index,x,y,type,actuation_cost,prerequisites,duration_s,window_s,deadline_s,due_s,robots_needed\n"
+    tasks.write_text(head + '1,0,0,,,,30,"[600,1200]",1500,900,2\n2,1,0,,,1,,2000 inf; 600 1200,,,\n')
+    robots.write_text("id,type,x,y,work_capacity\nr_0,,0,0,\n")
+    first, second = read_csv(tasks, robots).tasks
+    times = {"duration_s": 30, "window_s": (600, 1200), "deadline_s": 1500, "due_s": 900, "robots_needed": 2}
+    assert first == Task(id="1", position=(0, 0), **times)
+    assert second.window_s == ((600, 1200), (2000, None))
+
+
+def test_a_wrong_time_of_a_task_list_is_named(tmp_path):
+    tasks, robots, _ = csv_files(tmp_path)
+    head = "index,x,y,type,actuation_cost,prerequisites,window_s,robots_needed\n"
+    tasks.write_text(head + "1,0,0,,,,600,\n2,1,0,,,1,,two\n")
+    robots.write_text("id,type,x,y,work_capacity\nr_0,,0,0,\n")
+    with pytest.raises(MissionError) as caught:
+        read_csv(tasks, robots)
+    assert [(f.line, f.field, f.value) for f in caught.value.findings] == [
+        (2, "tasks[0].window_s[0]", "[600.0]"),
+        (3, "tasks[1].robots_needed", '"two"'),
+    ]

@@ -1,10 +1,30 @@
-"""The enumeration of timed missions, by hand; `make campaign-times` holds thousands against planner and judge."""
+"""The enumeration of timed missions, by hand, and against judge and bounds; `make campaign-times` tries thousands."""
+
+import pytest
 
 from muster import Mission, Robot, Rules, Task
 from muster.mission.model import Lag, TeamPart
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import OBJECTIVES, RULES, ignored_in, timed_mission
+from tests.timed_missions.trial import trial
+
+MISSIONS, CHUNK = 90, 15
+
+
+@pytest.mark.parametrize("first", range(0, MISSIONS, CHUNK))
+def test_judge_and_bounds_agree_with_every_plan(first):
+    seeds = range(first, first + CHUNK)
+    failures = {seed: report.failures for seed in seeds if (report := trial(seed, planned=False)).failures}
+    assert failures == {}
+
+
+def test_a_trial_that_goes_wrong_is_a_failure(monkeypatch):
+    monkeypatch.setattr("tests.timed_missions.trial.lower_bound", lambda problem: 1e9)
+    failing = (trial(seed, planned=False).failures for seed in range(100))
+    assert any("quick bound" in failure for failures in failing for failure in failures)
+    monkeypatch.setattr("tests.timed_missions.trial.lower_bound", lambda problem: 1 / 0)
+    assert trial(0, planned=False).failures == ["ZeroDivisionError: division by zero"]
 
 
 def test_the_missions_have_every_rule():

@@ -31,13 +31,16 @@ class Report(trials.Report):
     """The figures: how far the quick bound was below the best of all plans."""
 
 
-def trial(seed):
-    """Plan the mission of a seed and check all that is claimed."""
+def trial(seed, *, planned=True):
+    """Check all that is claimed of the mission of a seed; `planned`: of plans of the allocators too."""
     report = Report(seed)
     with report.trying():
         mission, ignored = timed_mission(seed), ignored_in(seed)
         report.story += [str(part) for part in (*mission.robots, *mission.tasks, mission.rules, ignored)]
-        _Trial(report, mission, ignored).run()
+        tried = _Trial(report, mission, ignored)
+        tried.without_plans()
+        if planned:
+            tried.with_plans()
     return report
 
 
@@ -46,22 +49,26 @@ class _Trial:
 
     def __init__(self, report, mission, ignored):
         self.report, self.mission, self.ignored = report, mission, ignored
-        self.meaning = Meaning(mission, ignored=ignored)
+        self.meaning, self.problem = Meaning(mission, ignored=ignored), Problem.compile(mission, ignored=ignored)
         self.every = EveryPlan(self.meaning, MOST_PLANS)
         self.best, self.routes = self.every.best()
         self.random = Random(f"trial {report.seed}")
         report.story.append(f"the best of {len(self.every.admissible)} admissible plans: {self.best} {self.routes}")
 
-    def run(self):
+    def without_plans(self):
+        """The verdicts of the judge, the quick bound, and the tasks that are said to be impossible."""
         self._judge()
-        problem = Problem.compile(self.mission, ignored=self.ignored)
-        bound = self._bound(problem)
+        self._bound(self.problem)
+        self._impossible(self.problem)
+
+    def with_plans(self):
+        """Plans of the allocators, and that of the exact solver."""
+        bound = lower_bound(self.problem)
         found = [self._plan(name, bound) for name in FOR_ALL_RULES]
         self._reached(found[-1])
         self._plan(OTHERS[self.report.seed % len(OTHERS)], bound, may_refuse=True)
         if self.report.seed % EXACT_EVERY == 0:
-            self._exactly(problem)
-        self._impossible(problem)
+            self._exactly(self.problem)
 
     def _judge(self):
         """The judge accepts what the enumeration accepts, and nothing else; figures agree."""
@@ -111,7 +118,6 @@ class _Trial:
             self.report.check(holds, f"the best of all plans, {value}, is below the quick bound {bound}")
             self.report.counts["complete"] += 1
             self.report.figures.append(1 - bound / value if value else 0.0)
-        return bound
 
     def _all_done(self, routes):
         return len({j for route in routes for j in route}) == len(self.mission.tasks)

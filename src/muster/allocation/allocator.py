@@ -14,7 +14,7 @@ from muster.allocation.stop import Stop
 from muster.mission.auction_book import Book
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
-from muster.mission.plan import Plan, Route
+from muster.mission.plan import Plan, Route, RouteStop
 from muster.mission.value_types import shown
 
 Routes = list[list[int]]
@@ -146,10 +146,10 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
     inspection = core.Inspection(problem.core, lists)
     usages = inspection.usages
     mission = problem.mission
-    done = [j for route in lists for j in route]
+    done = sorted({j for route in lists for j in route})
     by_robot = {
-        robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route), usage)
-        for robot, route, usage in zip(problem.robots, lists, usages, strict=True)
+        robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route), usage, stops)
+        for robot, route, usage, stops in zip(problem.robots, lists, usages, _stops(problem, inspection), strict=True)
     }
     return Plan(
         mission=mission.name,
@@ -165,13 +165,20 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         equality_index=equality_index(usages),
         tasks_completed=len(done),
         tasks_total=len(problem.tasks),
-        weight_completed=sum(problem.tasks[j].priority for j in sorted(done)),
+        weight_completed=sum(problem.tasks[j].priority for j in done),
         elapsed_s=elapsed,
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
         unassigned=unassigned_of_plan(problem, lists, lambda: stop.hurried),
         history=tuple(stop.history),
         book=outcome.book,
     )
+
+
+def _stops(problem: Problem, inspection: core.Inspection) -> list[tuple[RouteStop, ...]]:
+    """By robot the times of the earliest schedule."""
+    stops = inspection.stops
+    assert stops is not None, "the routes of an allocator have a schedule"
+    return [tuple(RouteStop(problem.tasks[j].id, *times) for j, *times in row) for row in stops]
 
 
 def equality_index(usages: Sequence[float]) -> float:

@@ -4,6 +4,10 @@ Slack induction by string removals (SISR): [christiaens2020]. Beyond it: a task 
 grows least, the robot that does most included; many ruins begin at that robot, or for `makespan` at the tasks that its
 end waits for; places are those that no prerequisite forbids, through all routes; tasks left out are tried again in
 every step.
+
+Where tasks are bound to times, teams or relations, and for `makespan` with prerequisites, the search works on a
+schedule that is propagated through the part that a change affects ([pearce2006]); a team is chosen at a cut through
+the schedule, which gives each robot one place, so that no cycle of waiting can arise.
 """
 
 from __future__ import annotations
@@ -24,6 +28,8 @@ from muster.allocation.stop import Stop
 from muster.allocation.workers import Threads, Workers
 from muster.mission.errors import ParameterError
 
+_Search = core.Search | core.ScheduleSearch
+
 _EXCHANGES = 20  # how often threads take over the best plan, in a whole run
 _BATCH = 400_000  # tasks and robots times steps, between two looks at the clock: some milliseconds
 
@@ -41,9 +47,9 @@ class Parameters:
     threads: int = 1
     parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
     ray: str = "none"  # address of the Ray cluster that parts are worked on; none: threads of this process
-    hot: float = 0.0  # 0: 1 for the objective `max`, to which most of a change does not matter, else 5
+    hot: float = 0.0  # 0: 1 for the objectives `max` and, on a schedule, `makespan`, which few tasks decide; else 5
     cold: float = 0.02
-    removed: float = 10.0  # tasks that a ruin takes out, on average
+    removed: float = 0.0  # tasks that a ruin takes out, on average; 0: 5 for `makespan` on a schedule, else 10
     longest_string: int = 10  # of tasks taken out of one route
     blink: float = 0.01  # how often a place is overlooked
     near: int = 12  # tasks beside which a task is tried, in large teams
@@ -60,15 +66,15 @@ class Parameters:
                 raise ParameterError(f"{name}: {getattr(self, name)}; expected a whole number of at least 1")
         if not 0 < self.cold <= (self.hot or self.cold) < float("inf"):
             raise ParameterError(f"cold, hot: {self.cold:g}, {self.hot:g}; expected 0 < cold <= hot, or hot 0")
-        if not 1 <= self.removed < float("inf"):
-            raise ParameterError(f"removed: {self.removed:g}; expected a number of at least 1")
+        if self.removed != 0 and not 1 <= self.removed < float("inf"):
+            raise ParameterError(f"removed: {self.removed:g}; expected a number of at least 1, or 0")
         if not 0 <= self.blink < 1:
             raise ParameterError(f"blink: {self.blink:g}; expected a number from 0 to below 1")
 
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Anneal the greedy plan; of a team that outgrows that, one part after the other."""
-    parts = params.parts or number_of_parts(len(problem.tasks))
+    parts = 1 if problem.core.is_timed else params.parts or number_of_parts(len(problem.tasks))
 
     def improve(part: Problem, until: Stop, part_seed: int, routes: Routes) -> Routes:
         return anneal(part, until, part_seed, params if parts == 1 else replace(params, threads=1), routes)
@@ -90,11 +96,12 @@ def _workers(params: Parameters) -> AbstractContextManager[Workers]:
 
 def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes) -> Routes:
     """From the greedy plan; several threads begin with other random numbers and take over the best now and then."""
-    first = greedy.completed(problem, start)
+    first = start if problem.core.is_timed else greedy.completed(problem, start)
     stop.improved(*problem.value(first))
     searches = [_search(problem, first, seed + thread, params) for thread in range(params.threads)]
     way = searches[0].mean_way or 1.0
-    hot = max(params.cold, params.hot or (1.0 if problem.objective == "max" else 5.0))
+    few = problem.objective == "max" or (problem.objective == "makespan" and _on_schedule(problem))
+    hot = max(params.cold, params.hot or (1.0 if few else 5.0))
     exchanged, known = 0, None
     with ThreadPoolExecutor(params.threads) as pool:
         for steps in stop.batches(max(20, min(1000, _BATCH // (len(problem.tasks) + len(problem.robots))))):
@@ -112,19 +119,26 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
     return _best(searches).best
 
 
-def exchange(searches: Sequence[core.Search], best: core.Search) -> None:
+def exchange(searches: Sequence[_Search], best: _Search) -> None:
     """All but the best go on from its plan."""
     for search in searches:
         if search is not best:
             search.go_on_from(best.best)
 
 
-def _search(problem: Problem, first: Routes, seed: int, params: Parameters) -> core.Search:
-    return core.Search(
+def _on_schedule(problem: Problem) -> bool:
+    """Whether the search must know when each task begins."""
+    return problem.core.is_timed or (problem.objective == "makespan" and any(problem.prerequisites))
+
+
+def _search(problem: Problem, first: Routes, seed: int, params: Parameters) -> _Search:
+    on_schedule = _on_schedule(problem)
+    kind = core.ScheduleSearch if on_schedule else core.Search
+    return kind(
         problem.core,
         first,
         seed % 2**64,
-        removed=params.removed,
+        removed=params.removed or (5.0 if on_schedule and problem.objective == "makespan" else 10.0),
         longest_string=params.longest_string,
         blink=params.blink,
         greatest_share=0.8 if problem.objective in ("max", "makespan") else 0.5,
@@ -132,16 +146,16 @@ def _search(problem: Problem, first: Routes, seed: int, params: Parameters) -> c
     )
 
 
-def _best(searches: Sequence[core.Search]) -> core.Search:
+def _best(searches: Sequence[_Search]) -> _Search:
     return min(searches, key=_rank)
 
 
-def _rank(search: core.Search) -> tuple[float, float]:
+def _rank(search: _Search) -> tuple[float, float]:
     return search.best_weight_left_out, search.best_objective
 
 
-def _weight(problem: Problem, search: core.Search) -> float:
-    return sum(problem.tasks[j].priority for j in sorted(j for route in search.best for j in route))
+def _weight(problem: Problem, search: _Search) -> float:
+    return sum(problem.tasks[j].priority for j in sorted({j for route in search.best for j in route}))
 
 
 SEARCH = Allocator(

@@ -17,7 +17,7 @@ _TEMPLATE = """\
 schema: muster/1
 name: {name}
 rules:
-  objective: total+max        # or: total, max, average, makespan
+  objective: total+max        # or: total, max, average, makespan, lateness
   return_to_start: false
 robots:
   - {{id: r_0, position: [0, 0], work_capacity: 60, skills: [camera]}}
@@ -27,6 +27,10 @@ tasks:
   - {{id: open, position: [12, 8], requires: [gripper], actuation_cost: 3}}
   - {{id: enter, position: [15, 9], prerequisites: [open]}}
   - {{id: patrol, position: [-6, 4], actuation_cost: 12}}
+  # In time and together, seconds from the start (docs/mission-file.md has all keys):
+  # - {{id: visit, position: [3, 9], window_s: [60, 300], deadline_s: 330, duration_s: 20}}
+  # - {{id: check, position: [3, 9], prerequisites: [{{task: visit, after_s: 5, within_s: 60}}], due_s: 360}}
+  # - {{id: lift, position: [8, -2], robots_needed: 2}}
 """
 
 

@@ -63,6 +63,12 @@ class Inspection:
     def makespan(self) -> float | None:
         """Seconds; None if routes and prerequisites deadlock."""
 
+    @property
+    def stops(self) -> list[list[tuple[int, float, float, float]]] | None:
+        """
+        By robot: task, arrival, begin and end of each stop of the earliest schedule; None if there is none.
+        """
+
     def cheapest_insertion(self, robot: int, task: int) -> Insertion | None:
         """
         The place in the robot's route where the task adds least usage and nothing deadlocks, whatever the capacity; usage inf if there is no way to it, None if it would deadlock everywhere.
@@ -280,6 +286,106 @@ class Search:
     @property
     def mean_way(self) -> float:
         """The usual way from one task to the next, in the unit of usage."""
+
+class UnitInsertion:
+    """A unit of work with the robots that do it, and what it costs."""
+
+    @property
+    def unit(self) -> int: ...
+
+    @property
+    def score(self) -> float:
+        """What the objective grows by, ties broken by the routes' growth."""
+
+    @property
+    def growth(self) -> float:
+        """Of usage, all members together."""
+
+    @property
+    def members(self) -> list[tuple[int, int, int]]:
+        """Task, robot and place in its route, of each."""
+
+class Roster:
+    """
+    Routes while an algorithm changes them, where tasks are bound to times, teams and relations.
+    """
+
+    def __init__(self, problem: Problem) -> None: ...
+
+    def begin(self, routes: Sequence[Sequence[int]]) -> bool:
+        """Take over routes; False if there is no schedule for them."""
+
+    def ready(self, unit: int) -> bool:
+        """Whether all that a unit waits for is in routes."""
+
+    def fixed(self, unit: int) -> bool:
+        """Whether a unit stays where it is."""
+
+    @property
+    def absent(self) -> list[int]:
+        """The units in no route."""
+
+    @property
+    def absent_weight(self) -> float: ...
+
+    def usage(self, robot: int) -> float: ...
+
+    def best_insertion(self, unit: int, *, append_only: bool = False, robots: Sequence[int] | None = None) -> UnitInsertion | None:
+        """
+        The team and the places at which a unit costs least, or None. All that it waits for must be in routes; `append_only` looks at the ends of routes alone, `robots` at these alone.
+        """
+
+    def insert(self, insertion: UnitInsertion) -> bool:
+        """False: no schedule exists; then only `rollback` helps."""
+
+    def remove(self, unit: int) -> bool:
+        """False: no schedule exists; then only `rollback` helps."""
+
+    def commit(self) -> None: ...
+
+    def rollback(self) -> None:
+        """Undo everything since the last `commit`."""
+
+    @property
+    def objective(self) -> float: ...
+
+    @property
+    def routes(self) -> list[list[int]]: ...
+
+    @property
+    def stops(self) -> list[list[tuple[int, float, float, float]]]:
+        """By robot: task, arrival, begin and end of each stop."""
+
+class ScheduleSearch:
+    """
+    Ruin and recreate under simulated annealing (SISR), where tasks are bound to times, teams and relations. One thread at a time may use one.
+    """
+
+    def __init__(self, problem: Problem, start: Sequence[Sequence[int]], seed: int, *, removed: float, longest_string: int, blink: float, greatest_share: float, near: int) -> None:
+        """
+        Begins with the routes and what they leave room for. Raises ValueError if there is no schedule for them.
+        """
+
+    def anneal(self, steps: int, hot: float, cold: float) -> None:
+        """
+        So many steps, while the temperature falls evenly from hot to cold (in the unit of the objective).
+        """
+
+    def go_on_from(self, routes: Sequence[Sequence[int]]) -> None:
+        """Go on from these routes; the best stays."""
+
+    @property
+    def best(self) -> list[list[int]]: ...
+
+    @property
+    def best_weight_left_out(self) -> float: ...
+
+    @property
+    def best_objective(self) -> float: ...
+
+    @property
+    def mean_way(self) -> float:
+        """The usual way from one task to the next, in the unit of the objective."""
 
 class Team:
     """

@@ -1,6 +1,9 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+
+#include <tuple>
 
 #include "bindings.hpp"
 #include "inspection.hpp"
@@ -10,6 +13,23 @@ namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace muster {
+
+namespace {
+
+using Stops = std::vector<std::vector<std::tuple<int, double, double, double>>>;
+
+std::optional<Stops> stops_of(Inspection& inspection) {
+  const auto found = inspection.stops();
+  if (!found) return std::nullopt;
+  Stops stops;
+  for (const auto& row : *found) {
+    auto& own = stops.emplace_back();
+    for (const StopTimes& stop : row) own.emplace_back(stop.task, stop.arrive, stop.begin, stop.end);
+  }
+  return stops;
+}
+
+}  // namespace
 
 void bind_inspection(nb::module_& m) {
   nb::class_<Insertion>(m, "Insertion",
@@ -27,6 +47,9 @@ void bind_inspection(nb::module_& m) {
                    "Whatever the capacities; None if routes and prerequisites deadlock.")
       .def_prop_ro("usages", &Inspection::usages)
       .def_prop_ro("makespan", &Inspection::makespan, "Seconds; None if routes and prerequisites deadlock.")
+      .def_prop_ro(
+          "stops", &stops_of,
+          "By robot: task, arrival, begin and end of each stop of the earliest schedule; None if there is none.")
       .def("cheapest_insertion", &Inspection::cheapest_insertion, "robot"_a, "task"_a,
            nb::call_guard<nb::gil_scoped_release>(),
            "The place in the robot's route where the task adds least usage and nothing deadlocks, whatever the "

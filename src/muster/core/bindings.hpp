@@ -13,6 +13,8 @@ void bind_decoder(nanobind::module_& m);
 void bind_bidders(nanobind::module_& m);
 void bind_annealing(nanobind::module_& m);
 void bind_search(nanobind::module_& m);
+void bind_roster(nanobind::module_& m);
+void bind_schedule_search(nanobind::module_& m);
 void bind_team(nanobind::module_& m);
 void bind_distances(nanobind::module_& m);
 void bind_grid(nanobind::module_& m);

@@ -28,8 +28,10 @@ struct Offer {
 // Sums over the members of a team; then `value`.
 class InsertionScore {
  public:
-  // Weight of the routes' own growth where the objective does not see it.
+  // Weight of the routes' own growth where the objective does not see it; and where it is when the mission ends, of the
+  // robots' time.
   static constexpr double kTie = 1e-2;
+  static constexpr double kTaken = 0.1;
 
   InsertionScore(Objective objective, double peak) : objective_(objective), peak_(peak) {}
 
@@ -55,7 +57,7 @@ class InsertionScore {
       case Objective::average:
         return late_;
       case Objective::makespan:
-        return kTie * taken_ + std::max(0.0, begin + std::max(tail, through_) - peak_);
+        return kTaken * taken_ + std::max(0.0, begin + std::max(tail, through_) - peak_);
       case Objective::lateness:
         return kTie * growth_ + lateness;
     }
@@ -64,7 +66,7 @@ class InsertionScore {
   double growth() const { return growth_; }
 
  private:
-  static constexpr double kWaiting = 1.0;
+  static constexpr double kWaiting = 0.3;  // weight of the time for which a robot waits for others
 
   Objective objective_;
   double peak_;

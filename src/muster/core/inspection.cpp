@@ -7,18 +7,61 @@
 
 namespace muster {
 
+namespace {
+
+// A robot comes to a task at most once, and a task stands in one route unless a team does it.
+const Routes& checked(const Problem& problem, const Routes& routes) {
+  if (static_cast<int>(routes.size()) != problem.robots())
+    throw std::invalid_argument("routes need one for each robot");
+  for (const auto& route : routes) {
+    std::vector<char> seen(problem.tasks(), 0);
+    for (const int task : route) {
+      if (task < 0 || task >= problem.tasks()) throw std::invalid_argument("no such task");
+      if (seen[task]++) throw std::invalid_argument("a task stands twice");
+    }
+  }
+  return routes;
+}
+
+}  // namespace
+
 Inspection::Inspection(const Problem& problem, const Routes& routes)
-    : problem_(problem),
-      evaluator_(problem),
-      draft_(draft_from(problem, routes)),
-      admissible_(evaluator_.evaluate(draft_)),
-      makespan_(evaluator_.makespan(draft_)) {
+    : problem_(problem), evaluator_(problem), draft_(problem), admissible_(false) {
+  if (problem.is_timed()) {
+    inspect_schedule(routes);
+    return;
+  }
+  draft_ = draft_from(problem, routes);
+  admissible_ = evaluator_.evaluate(draft_);
+  makespan_ = evaluator_.makespan(draft_);
   if (makespan_) objective_ = evaluator_.objective(draft_);
+}
+
+void Inspection::inspect_schedule(const Routes& routes) {
+  roster_ = std::make_unique<Roster>(problem_);
+  scheduled_ = roster_->begin(checked(problem_, routes));
+  admissible_ = scheduled_ && roster_->keeps_rules();
+  if (!scheduled_) return;
+  makespan_ = roster_->timeline().end();
+  objective_ = roster_->value().objective;
+  for (std::size_t robot = 0; robot < routes.size(); ++robot) {
+    admissible_ = admissible_ && problem_.fits(static_cast<int>(robot), roster_->usage(static_cast<int>(robot)));
+  }
+}
+
+std::optional<std::vector<std::vector<StopTimes>>> Inspection::stops() {
+  if (!roster_) {
+    roster_ = std::make_unique<Roster>(problem_);
+    scheduled_ = roster_->begin(routes_of(problem_, draft_));
+  }
+  return scheduled_ ? std::optional(roster_->stops()) : std::nullopt;
 }
 
 std::vector<double> Inspection::usages() const {
   std::vector<double> usages;
-  for (int robot = 0; robot < problem_.robots(); ++robot) usages.push_back(draft_.figures(robot).usage);
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    usages.push_back(problem_.is_timed() ? roster_->usage(robot) : draft_.figures(robot).usage);
+  }
   return usages;
 }
 
@@ -51,6 +94,7 @@ std::optional<Insertion> Inspection::cheapest_insertion(int robot, int task) {
   if (robot < 0 || robot >= problem_.robots() || task < 0 || task >= problem_.tasks()) {
     throw std::invalid_argument("no such robot or task");
   }
+  if (problem_.is_timed()) return on_schedule(robot, task);
   if (draft_.robot_of(task) != Draft::kNobody) throw std::invalid_argument("the task is in the plan already");
   std::vector<Insertion> places = insertions(robot, task);
   std::ranges::stable_sort(places, {}, &Insertion::usage);
@@ -62,6 +106,19 @@ std::optional<Insertion> Inspection::cheapest_insertion(int robot, int task) {
     if (ordered) return place;
   }
   return std::nullopt;
+}
+
+std::optional<Insertion> Inspection::on_schedule(int robot, int task) {
+  const int unit = problem_.unit(task);
+  if (roster_->present(unit)) throw std::invalid_argument("the task is in the plan already");
+  if (!scheduled_ || !roster_->ready(unit)) return std::nullopt;
+  std::vector<char> robots(problem_.robots(), 0);
+  robots[robot] = 1;
+  Trial trial;
+  trial.robots = &robots;
+  const UnitInsertion* best = roster_->best_insertion(unit, trial);
+  if (!best) return std::nullopt;
+  return Insertion{best->members.front().at, roster_->usage(robot) + best->growth};
 }
 
 }  // namespace muster

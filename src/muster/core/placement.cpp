@@ -15,7 +15,7 @@ Placement::Placement(Roster& roster)
       choice_(problem_),
       busy_(problem_.robots(), 0) {}
 
-const Insertion* Placement::best(int unit, const Trial& trial) {
+const UnitInsertion* Placement::best(int unit, const Trial& trial) {
   trial_ = &trial;
   best_.unit = unit;
   best_.score = kNever;

@@ -17,7 +17,7 @@ class Placement {
  public:
   explicit Placement(Roster& roster);
 
-  const Insertion* best(int unit, const Trial& trial);
+  const UnitInsertion* best(int unit, const Trial& trial);
 
  private:
   bool alone(int unit) const;
@@ -51,7 +51,7 @@ class Placement {
   const Problem& problem_;
   const Timeline& timeline_;
   const Trial* trial_ = nullptr;
-  Insertion best_;
+  UnitInsertion best_;
   // Of the unit.
   Labels labels_{0.0, 1.0};
   double ready_ = 0.0, peak_ = 0.0;

@@ -48,12 +48,12 @@ bool Roster::fixed(int unit) const {
   });
 }
 
-const Insertion* Roster::best_insertion(int unit, const Trial& trial) {
+const UnitInsertion* Roster::best_insertion(int unit, const Trial& trial) {
   settle();
   return placement_->best(unit, trial);
 }
 
-bool Roster::insert(const Insertion& insertion) {
+bool Roster::insert(const UnitInsertion& insertion) {
   for (const Member& member : insertion.members) touch(member.robot);
   timeline_.insert(insertion.unit, insertion.members);
   appear(insertion.unit);

@@ -13,7 +13,7 @@
 namespace muster {
 
 // A unit of work with the robots that do it. `score` is what the objective grows by, ties broken by the routes' growth.
-struct Insertion {
+struct UnitInsertion {
   int unit = -1;
   double score = kNever;
   double growth = 0.0;  // of usage, all members together
@@ -60,9 +60,9 @@ class Roster {
 
   // The team and the places at which an absent unit costs least; null where there are none. All that it waits for must
   // be present. The answer lasts until the next call.
-  const Insertion* best_insertion(int unit, const Trial& trial = {});
+  const UnitInsertion* best_insertion(int unit, const Trial& trial = {});
   // False: no schedule exists; then only `rollback` helps.
-  bool insert(const Insertion& insertion);
+  bool insert(const UnitInsertion& insertion);
   void remove(int unit);
   // Takes out, with everything that waits for it, what stands without its prerequisites.
   void drop_orphans();
@@ -70,6 +70,10 @@ class Roster {
   bool settle();
   // Whether the routes changed since the last commit are within the robots' capacities.
   bool admissible();
+
+  // Whether every present unit has all of its tasks, prerequisites and robots, and relations hold: of routes that
+  // others made.
+  bool keeps_rules() const;
 
   // Of the present units.
   double objective();
@@ -90,6 +94,7 @@ class Roster {
     double usage;
   };
 
+  std::vector<int> team_of(int task) const;
   void touch(int robot);
   void measure(int robot);
   void appear(int unit);

@@ -52,8 +52,34 @@ ScheduleSearch::ScheduleSearch(const Problem& problem, const Routes& start, std:
   if (!roster_.begin(start)) throw std::invalid_argument("there is no schedule for the routes");
   best_.resize(problem.robots());
   best_value_.weight = -kNever;
+  note_best();
+  fill();
   current_ = cost();
   note_best();
+}
+
+// Puts in what the routes leave room for, the most urgent first.
+void ScheduleSearch::fill() {
+  std::vector<int> units = roster_.absent();
+  std::ranges::sort(units);
+  std::ranges::stable_sort(units, {}, [&](int unit) {
+    const int task = problem_.tasks_of_unit(unit).front();
+    return problem_.last_begin(task, problem_.deadline(task));
+  });
+  for (bool more = true; more;) {
+    more = false;
+    for (int& unit : units) {
+      if (unit < 0 || !roster_.ready(unit)) continue;
+      const UnitInsertion* insertion = roster_.best_insertion(std::exchange(unit, -1), trial_);
+      if (!insertion) continue;
+      if (roster_.insert(*insertion)) {
+        roster_.commit();
+        more = true;
+      } else {
+        roster_.rollback();
+      }
+    }
+  }
 }
 
 void ScheduleSearch::go_on_from(const Routes& routes) {
@@ -101,7 +127,7 @@ bool ScheduleSearch::recreate(double most) {
     more = false;
     for (int& unit : pending_) {
       if (unit < 0 || roster_.present(unit) || !roster_.ready(unit)) continue;
-      const Insertion* insertion = roster_.best_insertion(unit, trial_);
+      const UnitInsertion* insertion = roster_.best_insertion(unit, trial_);
       const int tried = std::exchange(unit, -1);
       if (!insertion) {
         if (penalty_ * roster_.weight(tried) > most) return false;

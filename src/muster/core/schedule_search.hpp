@@ -27,6 +27,7 @@ class ScheduleSearch {
   double mean_way() const;
 
  private:
+  void fill();
   void step(double temperature);
   bool recreate(double most);
   void order_pending();

@@ -73,14 +73,19 @@ void TeamChoice::teams(int task, std::span<const int> robots, std::span<const do
   }
 }
 
-bool TeamChoice::complete(int task, std::span<const int> robots) {
-  const std::vector<double> keys(robots.size(), 0.0);
-  Rows found;
-  teams(task, robots, keys, found);
-  for (int k = 0; k < found.size(); ++k) {
-    if (found[k].size() == robots.size()) return true;
+bool TeamChoice::does(int task, std::span<const int> robots) {
+  if (alone(task)) return robots.size() == 1;
+  if (has_needs(task)) {
+    const auto needs = problem_.needs(task);
+    std::vector<double> missing(needs.begin(), needs.end());
+    for (const int robot : robots) {
+      for (std::size_t a = 0; a < missing.size(); ++a) missing[a] -= problem_.ability(robot)[a];
+    }
+    return covered(missing);
   }
-  return false;
+  Rows found;
+  teams(task, robots, std::vector<double>(robots.size(), 0.0), found);
+  return found.size() > 0 && found[0].size() == robots.size();
 }
 
 // The robots that can fill parts together are the independent sets of a matroid, so that the cheapest first is right.

@@ -16,8 +16,8 @@ class TeamChoice {
 
   // Whether one robot alone does the task.
   bool alone(int task) const { return !has_parts(task) && !has_needs(task); }
-  // Whether these robots can do the task and none of them is needless.
-  bool complete(int task, std::span<const int> robots);
+  // Whether these robots can do the task together.
+  bool does(int task, std::span<const int> robots);
   // The teams worth a look, each as indices of `robots`: the cheapest for every way to share the parts or to cover the
   // needs. Sums of independent keys are least among them.
   void teams(int task, std::span<const int> robots, std::span<const double> keys, Rows& found);

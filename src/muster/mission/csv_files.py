@@ -52,7 +52,7 @@ def _head_findings(
         value = shown(",".join(head))
         raise MissionError([Finding(str(path), line, "", value, f"a head line: {','.join(needed)}")])
     known = [*needed, *optional]
-    expected = f"the columns {','.join(needed)}" + "".join(f", and {name} if wanted" for name in optional)
+    expected = f"the columns {','.join(needed)}" + (f", and if wanted {','.join(optional)}" if optional else "")
     missing = [name for name in needed if name not in head]
     unknown = [name for name in head if name not in known]
     repeated = [name for name in dict.fromkeys(head) if name in known and head.count(name) > 1]

@@ -5,6 +5,7 @@ Units are SI; positions are metres in the map frame (ENU: x east, y north, z up)
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -22,7 +23,7 @@ from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Landmark, Map, Origin, Point, Tag, TravelTable, Zone
 from muster.mission.tasks import Action, Found, Task, Work
 from muster.mission.text_files import write_text
-from muster.mission.yaml_writer import with_files_from, yaml_text
+from muster.mission.yaml_writer import flow_text, plain, with_files_from, yaml_text
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -73,12 +74,10 @@ class Mission(MissionData):
         return f"<Mission {self.name}: {self._counts}, {self.rules.objective}>"
 
     def _repr_html_(self) -> str:
-        robots = [(r.id, r.type, r.position, r.work_capacity, r.skills) for r in self.robots]
-        tasks = [(t.id, t.type, t.position, t.actuation_cost, t.prerequisites) for t in self.tasks]
         return (
             html_line(f"Mission {self.name}: {self._counts}, objective {self.rules.objective}")
-            + html_table("Robots", ("robot", "type", "position", "work capacity", "skills"), robots)
-            + html_table("Tasks", ("task", "type", "position", "actuation cost", "prerequisites"), tasks)
+            + _html_table("Robots", self.robots, ("type", "position", "work_capacity", "skills"))
+            + _html_table("Tasks", self.tasks, ("type", "position", "actuation_cost", "prerequisites"))
         )
 
     @property
@@ -105,3 +104,24 @@ class Mission(MissionData):
     def at_once(self, **changes: Any) -> Mission:
         """The mission, changed, without what happens or is found while it is carried out."""
         return replace(self, events=(), tags=(), found=(), **changes)
+
+
+_SHOWN_IF_USED = (
+    *("available_from_s", "available_until_s", "abilities"),
+    *("window_s", "deadline_s", "due_s", "robots_needed", "team", "needs"),
+    *("same_robot_as", "other_robot_than", "starts_with"),
+)
+
+
+def _html_table(title: str, items: Sequence[Robot] | Sequence[Task], columns: Sequence[str]) -> str:
+    """A table of robots or tasks: their ids, these columns, and those of times and teams that say something."""
+    used = [name for name in _SHOWN_IF_USED if any(getattr(item, name, None) for item in items)]
+    names = (*columns, *used)
+    rows = [(item.id, *(_in_cell(getattr(item, name)) for name in names)) for item in items]
+    return html_table(title, (title.lower()[:-1], *(name.replace("_", " ") for name in names)), rows)
+
+
+def _in_cell(value: Any) -> Any:
+    """A value as a cell shows it: what is nested as in a mission file."""
+    flat = isinstance(value, tuple) and all(isinstance(item, str | float) for item in value)
+    return flow_text(plain(value)) if isinstance(value, Mapping | tuple) and not flat else value

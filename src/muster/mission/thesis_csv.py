@@ -2,7 +2,8 @@
 
 Tasks: `index,x,y,type,actuation_cost,prerequisites`, the last as `"[1,18]"` or `1 18`; robots:
 `id,type,x,y,work_capacity`, empty or `inf` where unlimited; suitability: a table with robot types in its first column
-and task types in its first line. Both lists may have a column `z`.
+and task types in its first line. Both lists may have a column `z`, and tasks `duration_s`, `window_s` (`600 1200`,
+several as `600 1200; 2000 inf`), `deadline_s`, `due_s` and `robots_needed`, each empty where a task has none.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from muster.mission.source import Place, Source
 from muster.mission.value_types import Path, shown
 
 TASK_COLUMNS = ("index", "x", "y", "type", "actuation_cost", "prerequisites")
+TIME_COLUMNS = ("duration_s", "window_s", "deadline_s", "due_s", "robots_needed")
 ROBOT_COLUMNS = ("id", "type", "x", "y", "work_capacity")
 _UNLIMITED = ("", "inf", "infinity", ".inf")
 
@@ -56,7 +58,7 @@ def read_csv_for(
     """
     places: dict[Path, Place] = {}
     data = _without_robots(tasks, suitability, places)
-    columns = read_rows(tasks, TASK_COLUMNS, ("z",))[:1]
+    columns = read_rows(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))[:1]
     data["robots"] = list(robots(len(_position(columns[0])) if columns else 2))
     return mission_from(data, Source(str(tasks), places), [])
 
@@ -64,7 +66,7 @@ def read_csv_for(
 def _without_robots(tasks: FilePath, suitability: FilePath | None, places: dict[Path, Place]) -> dict[str, object]:
     """The data of a mission but for its robots."""
     places["suitability",] = (str(suitability), 1)
-    task_rows = read_rows(tasks, TASK_COLUMNS, ("z",))
+    task_rows = read_rows(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))
     data: dict[str, object] = {"schema": SCHEMA, "name": tasks.stem}
     data["tasks"] = [_task(row, k, tasks, places) for k, row in enumerate(task_rows)]
     if suitability is not None:
@@ -89,7 +91,25 @@ def _task(row: Row, k: int, file: FilePath, places: dict[Path, Place]) -> dict[s
         task["type"] = cells["type"]
     if cells["actuation_cost"]:
         task["actuation_cost"] = number(cells["actuation_cost"])
+    for name in TIME_COLUMNS:
+        if cells.get(name):
+            task[name] = _WRITTEN[name](cells[name])
     return task
+
+
+def _windows(cell: str) -> list[list[object]]:
+    ends = [re.split(r"[\s,]+", part.strip("[] ")) for part in cell.split(";")]
+    return [[None if end.lower() in _UNLIMITED else number(end) for end in pair] for pair in ends]
+
+
+def _whole(cell: str) -> object:
+    return int(cell) if cell.isascii() and cell.isdecimal() else cell
+
+
+_WRITTEN: Mapping[str, Callable[[str], object]] = dict.fromkeys(TIME_COLUMNS, number) | {
+    "window_s": _windows,
+    "robots_needed": _whole,
+}
 
 
 def _prerequisites(cell: str) -> list[str]:
@@ -136,7 +156,9 @@ def write_csv(mission: Mission, tasks: FilePath, robots: FilePath, suitability: 
     if lost:
         raise MissionError(lost)
     z = ("z",) if mission.dimensions == 3 else ()
-    task_lines = [[*TASK_COLUMNS[:3], *z, *TASK_COLUMNS[3:]]] + [_task_cells(task) for task in mission.tasks]
+    times = [name for name in TIME_COLUMNS if any(getattr(task, name) not in (None, ()) for task in mission.tasks)]
+    task_lines = [[*TASK_COLUMNS[:3], *z, *TASK_COLUMNS[3:], *times]]
+    task_lines += [[*_task_cells(task), *(_time_cell(getattr(task, name)) for name in times)] for task in mission.tasks]
     robot_lines = [[*ROBOT_COLUMNS[:4], *z, *ROBOT_COLUMNS[4:]]] + [_robot_cells(robot) for robot in mission.robots]
     _write(tasks, task_lines)
     _write(robots, robot_lines)
@@ -146,7 +168,7 @@ def write_csv(mission: Mission, tasks: FilePath, robots: FilePath, suitability: 
 
 def _lost(mission: Mission, with_suitability: bool) -> list[Finding]:
     plain_tasks = [
-        Task(id=t.id, position=t.position, type=t.type, actuation_cost=t.actuation_cost, prerequisites=t.prerequisites)
+        Task(**{name: getattr(t, name) for name in ("id", "position", *TASK_COLUMNS[3:], *TIME_COLUMNS)})
         for t in mission.tasks
     ]
     plain_robots = [
@@ -158,7 +180,7 @@ def _lost(mission: Mission, with_suitability: bool) -> list[Finding]:
         tasks=tuple(plain_tasks),
         suitability=mission.suitability if with_suitability else None,
     )
-    names = ("origin_wgs84", "rules", "map", "travel", "suitability", "robots", "tasks", "events")
+    names = ("origin_wgs84", "starts_at", "rules", "map", "travel", "suitability", "robots", "tasks", "events")
     lost = [name for name in names if getattr(plain, name) != getattr(mission, name)]
     lost += [name for name in ("robots", "tasks", "suitability") if name not in lost and not _cells_last(mission, name)]
     return [
@@ -185,6 +207,12 @@ def _task_cells(task: Task) -> list[str]:
     x, y, *z = (repr(c) for c in task.position)
     prerequisites = f"[{','.join(task.prerequisites)}]"
     return [task.id, x, y, *z, task.type or "", repr(task.actuation_cost), prerequisites]
+
+
+def _time_cell(value: object) -> str:
+    if isinstance(value, tuple):
+        return "; ".join(f"{begins!r} {'inf' if ends is None else repr(ends)}" for begins, ends in value)
+    return "" if value is None else repr(value)
 
 
 def _robot_cells(robot: Robot) -> list[str]:

@@ -49,6 +49,15 @@ class Case:
                 members.setdefault(step.task.id, []).append(route.robot)
         return members
 
+    @cached_property
+    def beginning_with(self) -> dict[str, list[str]]:
+        """For each task those that name it in their `starts_with`."""
+        named: dict[str, list[str]] = {}
+        for task in self.mission.tasks:
+            for name in task.starts_with:
+                named.setdefault(name, []).append(task.id)
+        return named
+
     @property
     def unit(self) -> str:
         """The unit of usage."""

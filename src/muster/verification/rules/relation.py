@@ -42,6 +42,9 @@ def _wrong(case: Case, task: Task) -> Iterator[str]:
             yield f"begins together with {name}, which is not in the plan"
         elif own & _members(case, name):
             yield f"begins together with {name}, which {_listed(own & _members(case, name))} does too"
+    for name in case.beginning_with.get(task.id, ()):
+        if name not in case.done:
+            yield f"{name} begins together with it, and is not in the plan"
 
 
 def _members(case: Case, name: str) -> set[str]:
