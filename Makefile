@@ -7,7 +7,7 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances disturbances-timed help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -54,6 +54,9 @@ network-figures: $(VENV)/developed
 disturbances: $(VENV)/developed
 	$(BIN)/python -m tests.disturbances $(DISTURBANCES_FLAGS)
 
+disturbances-timed: $(VENV)/developed
+	$(BIN)/python -m tests.disturbances.timed $(or $(DISTURBANCES_FLAGS),2000)
+
 help:
 	@echo "make demo       plan, draw and simulate a mission (DEMO_MISSION=$(DEMO_MISSION))"
 	@echo "make test       run all tests"
@@ -67,6 +70,7 @@ help:
 	@echo "make campaign-api  many more requests, made from the description of mission control's API, than the tests make"
 	@echo "make network-figures  time robots in network namespaces, through loss and a cut (root; NETWORK_FLAGS='--robots 20')"
 	@echo "make disturbances  carry out 10,000 random missions in which robots fail and tasks change"
+	@echo "make disturbances-timed  carry out 2,000 with windows, lags, shifts, teams and relations"
 	@echo "make check      formatters, linters, types, import contract"
 	@echo "make format     let the formatters change the files"
 	@echo "make stub       make the type stub of the core anew"

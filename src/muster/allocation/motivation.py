@@ -143,7 +143,7 @@ class Team:
         ways = problem.legs(robot, [place], np.arange(n))[0]
         may = problem.allowed_by_kind[problem.kinds[robot]]
         self._costs[robot] = np.where(may, ways + problem.work_usage(robot), np.inf)
-        seconds = ways if problem.in_time else ways / problem.robots[robot].speed_mps
+        seconds = problem.travel_seconds(robot, [place], np.arange(n))[0]
         self._times[robot] = np.where(may, seconds + problem.work_seconds(robot), np.inf)
 
     def _ways_to_end(self, robot: int) -> Floats:

@@ -28,6 +28,7 @@ from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
 from muster.motion.actions import duration_of
+from muster.motion.leg_times import LegTimes
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
@@ -280,7 +281,7 @@ class Problem:
             exit=self._exits[0],
             table=measured.table,
             travel_class=measured.classes,
-            **timed_arrays(self.timed_rules, self.kinds, self.mission),
+            **timed_arrays(self.timed_rules, self.kinds, self.leg_times, self.mission),
         )
 
     @cached_property
@@ -387,19 +388,29 @@ class Problem:
         """The place where robot i's route ends, if it must end somewhere."""
         return len(self.tasks) + len(self.robots) + i
 
-    def legs(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
-        """(len(places), len(to)) travel usage of robot i between places."""
+    @cached_property
+    def leg_times(self) -> tuple[LegTimes, ...]:
+        """For each robot how long legs take."""
+        return tuple(LegTimes.of(robot, self.mission.rules) for robot in self.robots)
+
+    def metres(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
+        """(len(places), len(to)) metres that robot i travels between places."""
         table, classes = self.travel
         if len(table):
-            metres = table[classes[i]][np.asarray(places, np.int64)[:, None], np.asarray(to, np.int64)[None]]
-        else:
-            metres = np.linalg.norm(self._exits[0, places][:, None] - self._entries[0, to][None], axis=2)
-        return np.asarray(metres / self.robots[i].speed_mps if self.in_time else metres)
+            return np.asarray(table[classes[i]][np.asarray(places, np.int64)[:, None], np.asarray(to, np.int64)[None]])
+        return np.asarray(np.linalg.norm(self._exits[0, places][:, None] - self._entries[0, to][None], axis=2))
+
+    def legs(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
+        """(len(places), len(to)) travel usage of robot i between places."""
+        return self.travel_seconds(i, places, to) if self.in_time else self.metres(i, places, to)
 
     def travel_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
         """(len(places), len(to)) the time that robot i takes between places."""
-        legs = self.legs(i, places, to)
-        return legs if self.in_time else np.asarray(legs / self.robots[i].speed_mps)
+        metres, profile = self.metres(i, places, to), self.leg_times[i]
+        if profile.is_constant:
+            return np.asarray(metres / profile.speed_mps)
+        rise = np.abs(self._exits[0, places, 2][:, None] - self._entries[0, to, 2][None])
+        return np.asarray(profile.seconds(metres, rise))
 
     def work_usage(self, i: int) -> Floats:
         """(n,) usage of robot i for the work of each task."""

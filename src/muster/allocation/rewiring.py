@@ -136,20 +136,23 @@ class _Schedule:
 
     def fits(self, f: int, before: Sequence[int], after: Sequence[int], du: float) -> bool:
         """Whether a new order of robot f's route costs less than `du` seconds more, and is within its capacity."""
-        speed = 1.0 if self.problem.in_time else self.problem.robots[f].speed_mps
-        old, new = self._travel_usage(f, before), self._travel_usage(f, after)
-        usage = new + float(self.problem.work_usage(f)[list(after)].sum())
-        return (new - old) / speed < du and usage <= self.problem.capacity[f] * (1 + ROUNDING)
+        old, new = self._travel_seconds(f, before), self._travel_seconds(f, after)
+        usage = self._travel_usage(f, after) + float(self.problem.work_usage(f)[list(after)].sum())
+        return new - old < du and usage <= self.problem.capacity[f] * (1 + ROUNDING)
 
     def _travel_usage(self, i: int, route: Sequence[int]) -> float:
+        return float(np.trace(self.problem.legs(i, *self._ways(i, route))))
+
+    def _travel_seconds(self, i: int, route: Sequence[int]) -> float:
+        return float(np.trace(self.problem.travel_seconds(i, *self._ways(i, route))))
+
+    def _ways(self, i: int, route: Sequence[int]) -> tuple[list[int], list[int]]:
         ends = [self.problem.end(i)] if self.problem.robots[i].place_at_end(self.problem.mission.rules) else []
-        legs = self.problem.legs(i, [self.problem.start(i), *route], [*route, *ends])
-        return float(np.trace(legs))
+        return [self.problem.start(i), *route], [*route, *ends]
 
     def _leg_seconds(self, i: int, route: Sequence[int]) -> list[float]:
-        legs = np.diagonal(self.problem.legs(i, [self.problem.start(i), *route], route))
-        speed = 1.0 if self.problem.in_time else self.problem.robots[i].speed_mps
-        return [float(leg) / speed for leg in legs]
+        legs = np.diagonal(self.problem.travel_seconds(i, [self.problem.start(i), *route], route))
+        return [float(leg) for leg in legs]
 
     @cached_property
     def _work_seconds(self) -> Floats:

@@ -50,11 +50,14 @@ class Legs:
         """(len(some), n) the least legs from some tasks to all, or from all to some."""
         least = np.full((len(some), len(self._tasks)), math.inf)
         for i, pace in self._paces:
-            speed = self._problem.robots[i].speed_mps if self._problem.in_time else 1.0
             for at in range(0, len(some), 100):
                 few = some[at : at + 100]
-                legs = self._problem.legs(i, self._tasks, few).T if reverse else self._problem.legs(i, few, self._tasks)
-                factor = pace[self._kind_of[few][:, None], self._kind_of[None]] * speed
+                legs = (
+                    self._problem.metres(i, self._tasks, few).T
+                    if reverse
+                    else self._problem.metres(i, few, self._tasks)
+                )
+                factor = pace[self._kind_of[few][:, None], self._kind_of[None]]
                 scaled = np.full(legs.shape, math.inf)
                 np.multiply(legs, factor, out=scaled, where=np.isfinite(factor) & np.isfinite(legs))
                 np.minimum(least[at : at + 100], scaled, out=least[at : at + 100])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,15 @@ import numpy.typing as npt
 
 from muster.allocation.timed_rules import TimedRules
 from muster.mission.model import Mission
+from muster.motion.leg_times import LegTimes
 
 _NONE = np.empty(0)
 _NO_NUMBERS = np.empty(0, dtype=np.int32)
 
 
-def timed_arrays(rules: TimedRules, kinds: npt.NDArray[np.int32], mission: Mission) -> dict[str, Any]:
+def timed_arrays(
+    rules: TimedRules, kinds: npt.NDArray[np.int32], profiles: Sequence[LegTimes], mission: Mission
+) -> dict[str, Any]:
     """The keyword arguments of `core.Problem` that are about time, teams and relations; `kinds` is (m,)."""
     return {
         "windows": rules.windows if any(rules.windows) else [],
@@ -24,9 +28,18 @@ def timed_arrays(rules: TimedRules, kinds: npt.NDArray[np.int32], mission: Missi
         **_lags(rules),
         **_relations(rules),
         **_teams(rules, kinds),
-        "time": _NONE,
-        "time_class": _NO_NUMBERS,
+        **_profiles(profiles),
         "makespan_includes_return": mission.rules.makespan_includes_return,
+    }
+
+
+def _profiles(profiles: Sequence[LegTimes]) -> dict[str, Any]:
+    if all(profile.is_constant for profile in profiles):
+        return {"acceleration": _NONE, "climb": _NONE, "turn": _NONE}
+    return {
+        "acceleration": np.array([profile.acceleration_mps2 for profile in profiles]),
+        "climb": np.array([profile.climb_mps for profile in profiles]),
+        "turn": np.array([profile.turn_s for profile in profiles]),
     }
 
 

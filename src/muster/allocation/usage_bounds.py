@@ -156,10 +156,10 @@ class UsageBounds:
         if count > _MOST_IN_FOREST or len(problem.shortcuts()) > _MOST_SHORTCUTS:
             return None
         near, known = np.full((count, count), math.inf), set[object]()
-        for i, robot in enumerate(problem.robots):
-            speed, through = robot.speed_mps if problem.in_time else 1.0, problem.shortcuts()
+        for i in range(len(problem.robots)):
+            pace, through = problem.leg_times[i] if problem.in_time else None, problem.shortcuts()
             table = int(problem.travel[1][i]) if len(problem.travel[0]) else 0
-            kind = speed, table, problem.allowed[i, through].tobytes(), problem.work_usage(i)[through].tobytes()
+            kind = pace, table, problem.allowed[i, through].tobytes(), problem.work_usage(i)[through].tobytes()
             if kind not in known:
                 known.add(kind)
                 near = np.minimum(near, least_ways(problem, i, range(count), problem.legs, problem.work_usage(i)))

@@ -104,12 +104,11 @@ void Problem::check_times() const {
     require(std::ranges::all_of(row, [&](const TeamPart& part) { return part.allowed.size() == kinds; }),
             "a part of a team needs a flag for each kind");
   }
-  if (data_.time.empty()) return;
-  require(data_.time_class.size() == robots && std::ranges::all_of(data_.time_class, [](int c) { return c >= 0; }),
-          "time classes need a value for each robot");
-  const auto classes = 1 + static_cast<std::size_t>(*std::ranges::max_element(data_.time_class));
-  const auto places = static_cast<std::size_t>(places_);
-  require(data_.time.size() == classes * places * places, "the table of times has the wrong size");
+  require(fits(data_.acceleration.size(), robots) && data_.climb.size() == data_.acceleration.size() &&
+              data_.turn.size() == data_.acceleration.size(),
+          "motion profiles need a value for each robot");
+  require(data_.turn.empty() || data_.exit.size() == 3 * static_cast<std::size_t>(places_),
+          "motion profiles need coordinates");
 }
 
 void Problem::find_units() {

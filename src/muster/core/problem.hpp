@@ -65,8 +65,8 @@ struct ProblemData {
   std::vector<std::vector<TeamPart>> parts;      // by task
   std::vector<double> abilities, needs;          // robots x A, tasks x A
   Rows same_robot, other_robot;                  // symmetric
-  std::vector<double> time;                      // time classes x places x places, seconds; empty: distance / speed
-  std::vector<int> time_class;                   // of each robot
+  std::vector<double> acceleration, climb;       // by robot; inf: no limit
+  std::vector<double> turn;                      // by robot: seconds of the turn with which a leg begins
   bool makespan_includes_return = false;
 };
 
@@ -181,10 +181,19 @@ class Problem {
   }
 
   double travel_time(int robot, int from, int to) const {
-    if (!data_.time.empty()) {
-      return data_.time[(static_cast<std::size_t>(data_.time_class[robot]) * places_ + from) * places_ + to];
-    }
-    return distance(travel_class(robot), from, to) / data_.speed[robot];
+    const double metres = distance(travel_class(robot), from, to);
+    if (data_.turn.empty()) return metres / data_.speed[robot];
+    return leg_seconds(robot, metres, std::abs(exit_z(from) - entry(to, 2)));
+  }
+  // The time of a leg from rest to rest by the robot's motion profile: `LegTimes.seconds` of muster.motion.leg_times.
+  double leg_seconds(int robot, double metres, double rise) const {
+    if (!(metres > 0.0)) return metres;
+    const double acceleration = data_.acceleration[robot];
+    const double climbing = rise > 0.0 ? data_.climb[robot] * metres / rise : kInfinity;
+    const double speed = data_.speed[robot] < climbing ? data_.speed[robot] : climbing;
+    const bool reaches = metres * acceleration >= speed * speed;
+    const double driven = reaches ? metres / speed + speed / acceleration : 2.0 * std::sqrt(metres / acceleration);
+    return driven + data_.turn[robot];
   }
   double actuation_cost(int robot, int task) const {
     return data_.actuation_cost[static_cast<std::size_t>(data_.work_class[robot]) * tasks_ + task];
@@ -223,6 +232,7 @@ class Problem {
   void find_robots_allowed();
   void find_units();
   void check_times() const;
+  double exit_z(int place) const { return data_.exit[3 * static_cast<std::size_t>(place) + 2]; }
   double straight(int from, int to) const {
     const double* a = &data_.exit[3 * static_cast<std::size_t>(from)];
     const double* b = &data_.entry[3 * static_cast<std::size_t>(to)];

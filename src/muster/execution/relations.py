@@ -39,11 +39,27 @@ def binding_of(task: str, ledger: Ledger, under_way: Collection[str]) -> Binding
     other = [name for name in _related(task, ledger, "other_robot_than") if name in begun]
     words = [f"same robot as {name} ({', '.join(begun[name])})" for name in same]
     words += [f"other robot than {name} ({', '.join(begun[name])})" for name in other]
+    only = begun[same[0]] if same else None
+    if only is not None and not _may_be_done_by(ledger.tasks[task], only):
+        only = ()
     return Binding(
-        only=begun[same[0]] if same else None,
+        only=only,
         never=frozenset(robot for name in other for robot in begun[name]),
         reason=f"relation: {', '.join(words)}" if words else "",
     )
+
+
+def _may_be_done_by(task: Task, robots: Collection[str]) -> bool:
+    """Whether the team of a task may be as large as these robots are many; with `needs` it is free in number."""
+    size = sum(part.count for part in task.team) if task.team else task.robots_needed or 1
+    return task.needs is not None or size == len(robots)
+
+
+def with_whole_team(task: Task, binding: Binding) -> Task:
+    """A task free in the number of its robots that is done by the same as another: by all of them."""
+    if task.needs is None or not binding.only:
+        return task
+    return replace(task, needs=None, robots_needed=len(binding.only))
 
 
 def _related(task: str, ledger: Ledger, relation: str) -> Iterator[str]:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from muster.allocation.charges import Charge
-from muster.execution.relations import binding_of, narrowed
+from muster.execution.relations import binding_of, narrowed, with_whole_team
 from muster.execution.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger, task_as_it_holds
@@ -54,7 +54,7 @@ def remaining_mission_of(
         ignored=plan.ignored,
         now_s=now,
         crew=[_snapshot(state, now) for state in present],
-        tasks=[narrowed(task, ledger) for task in left],
+        tasks=[with_whole_team(narrowed(task, ledger), bindings[task.id]) for task in left],
         ended=ledger.ends_s.keys(),
         delays_s=ledger.delays_s,
         refusals=ledger.refusals,

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.mission.model import Mission, Robot, Task
-from muster.verification.travel import Travel, place_at_end, place_of_start, place_of_task
+from muster.motion.leg_times import LegTimes
+from muster.verification.travel import Travel, place_at_end, place_of_start, place_of_task, rise_m
 
 
 @dataclass(frozen=True)
@@ -62,12 +63,13 @@ def _measured(
     mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Task], work_s: Mapping[str, float]
 ) -> MeasuredRoute:
     in_time = mission.rules.usage == "time"
+    times = LegTimes.of(robot, mission.rules)
     steps: list[Step] = []
     travelled = worked = 0.0
     here = place_of_start(robot)
     for task in tasks:
         there = place_of_task(task, robot)
-        leg = _leg(travel.metres(robot, here, there), robot, in_time)
+        leg = _leg(travel.metres(robot, here, there), rise_m(here, there), times, in_time)
         travelled += leg.usage
         metres = travel.work_metres(robot, task)
         seconds = work_s[task.id]
@@ -75,15 +77,15 @@ def _measured(
         worked += seconds if in_time else metres or 0.0
         here = there
     end = place_at_end(robot, mission.rules) if steps else None
-    last_leg = None if end is None else _leg(travel.metres(robot, here, end), robot, in_time)
+    last_leg = None if end is None else _leg(travel.metres(robot, here, end), rise_m(here, end), times, in_time)
     travelled += last_leg.usage if last_leg else 0.0
     return MeasuredRoute(robot, tuple(steps), last_leg, travelled, worked)
 
 
-def _leg(metres: float | None, robot: Robot, in_time: bool) -> Leg:
+def _leg(metres: float | None, rise: float, times: LegTimes, in_time: bool) -> Leg:
     if metres is None:
         return Leg(exists=False, usage=0.0, seconds=0.0)
-    seconds = metres / robot.speed_mps
+    seconds = float(times.seconds(metres, rise))
     return Leg(exists=True, usage=seconds if in_time else metres, seconds=seconds)
 
 

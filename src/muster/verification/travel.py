@@ -40,6 +40,11 @@ def _has_geometry(task: Task) -> bool:
     return task.action is not None and task.action.has_geometry
 
 
+def rise_m(start: Place, end: Place) -> float:
+    """Metres between the heights of the two ends of a leg."""
+    return abs(end.entry[2] - start.exit[2]) if len(start.exit) > 2 else 0.0
+
+
 def place_of_start(robot: Robot) -> Place:
     return Place(robot.id, entry=robot.position, exit=robot.position)
 

@@ -51,5 +51,6 @@ def limits_of(robot: Robot) -> Limits:
     return Limits(
         speed_mps=robot.speed_mps,
         yaw_rate_radps=USUAL_YAW_RATE_RADPS if robot.yaw_rate_radps is None else robot.yaw_rate_radps,
+        climb_mps=robot.climb_mps,
         acceleration_mps2=math.inf if robot.acceleration_mps2 is None else robot.acceleration_mps2,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from muster.mission.model import Task
+from muster.motion.leg_times import LegTimes
 from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute
 from muster.verification.verdict import Violation
@@ -30,6 +31,8 @@ class Capacity:
         capacity = case.capacity_of(route.robot)
         if capacity is None:
             return False
+        if case.unit == "s" and not LegTimes.of(route.robot, case.mission.rules).is_constant:
+            return None  # insertions are measured in metres
         usage = case.insertions(route).least_usage(task, case.first_gap(route, task), capacity)
         if abs(usage - capacity) <= capacity * case.tolerance:
             return None

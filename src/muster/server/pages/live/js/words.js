@@ -11,7 +11,8 @@ export function outOf(robot, takenOut) {
 
 export function doing(robot, takenOut) {
   if (robot.out) return outOf(robot, takenOut);
-  const waits = robot.waits_for.length ? ` for ${robot.waits_for.join(", ")}` : "";
+  const why = robot.waits_for.length ? `for ${robot.waits_for.join(", ")}` : (robot.waits ?? "").replace("waits ", "");
+  const waits = why ? ` ${why}` : "";
   switch (robot.activity) {
     case "driving": return robot.task ? `on the way to ${robot.task}` : "on the way";
     case "waiting": return `waits${robot.task ? ` at ${robot.task}` : ""}${waits}`;

@@ -1,0 +1,1 @@
+"""Disturbed missions with time windows, lags, shifts, teams and relations."""

@@ -1,0 +1,15 @@
+"""Nothing is lost without a reason or done by too few; `make disturbances-timed` tries 2,000 missions."""
+
+from collections import Counter
+
+from tests.disturbances.timed.trial import trial
+
+PART = 60
+
+
+def test_missions_with_windows_and_teams_are_carried_out_whatever_happens():
+    reports = [trial(seed) for seed in range(PART)]
+    assert [f"seed {report.seed}: {failure}" for report in reports for failure in report.failures] == []
+    counts = sum((report.counts for report in reports), Counter())
+    for kind in ("work_broken_off", "window_missed", "robot_fails", "robot_silent", "new_task", "team tasks done"):
+        assert counts[kind] > 0, kind
