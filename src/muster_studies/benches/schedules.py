@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from random import Random
 
-from muster import core
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
@@ -75,17 +74,6 @@ def _done(seed: int) -> float:
 
 def _steps_per_second(seed: int) -> float:
     problem = Problem.compile(ordered_mission(2000, 20, seed)).ready()
-    search = core.ScheduleSearch(
-        problem.core,
-        [[] for _ in problem.robots],
-        seed,
-        removed=5.0,
-        longest_string=10,
-        blink=0.01,
-        greatest_share=0.8,
-        near=12,
-    )
-    steps, began_s = 500, time.process_time()
-    way = search.mean_way
-    search.anneal(steps, way, 0.1 * way)
+    steps, began_s = 1000, time.process_time()
+    ALLOCATORS["search"].solve(problem, Stop(iterations=steps), seed=seed)
     return steps / (time.process_time() - began_s)
