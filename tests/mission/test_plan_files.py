@@ -12,7 +12,7 @@ from tests.mission.strategies import examples, words
 from muster.mission.errors import PlanError
 from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.model import OBJECTIVES
-from muster.mission.plan import REASONS, Plan, Reason, Route, Unassigned, read_plan
+from muster.mission.plan import REASONS, Plan, Reason, Route, RouteStop, Unassigned, read_plan
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 10**6)
@@ -240,3 +240,36 @@ def test_all_that_is_wrong_with_a_plan_is_said_at_once(tmp_path):
         "routes[1]",
         "total_cost",
     ]
+
+
+def test_stops_are_written_and_read_back(tmp_path):
+    stops = (RouteStop("7", 1.5, 60.0, 90.0), RouteStop("8", 95.0, 95.0, 96.0))
+    plan = Plan(routes=(Route("r_0", ("7", "8"), 3.0, stops), Route("r_1", (), 0.0)))
+    plan.save(tmp_path / "plan.json")
+    assert read_plan(tmp_path / "plan.json") == plan
+    assert '"stops": [{"task": "7", "arrive_s": 1.5, "begin_s": 60.0, "end_s": 90.0}' in plan.text()
+    assert plan.text().count("stops") == 1  # a route without stops has no such key
+
+
+@pytest.mark.parametrize(
+    ("stops", "message"),
+    [
+        ("[]", None),
+        ("7", "routes[0].stops: 7; expected a list of 1, one for each of its tasks"),
+        ("[1, 2]", "routes[0].stops: [1, 2]; expected a list of 1"),
+        (
+            '[{"task": "9", "arrive_s": 0, "begin_s": 0, "end_s": 0}]',
+            'stops[0].task: "9"; expected "7"',
+        ),
+        ('[{"task": "7", "arrive_s": 0, "begin_s": 0}]', "stops[0].end_s: null; expected a finite number, in seconds"),
+    ],
+)
+def test_wrong_stops_are_named(stops, message, tmp_path):
+    file = tmp_path / "plan.json"
+    file.write_text(f'{{"schema": "muster-plan/1", "routes": [{{"robot": "r_0", "tasks": ["7"], "stops": {stops}}}]}}')
+    if message is None:
+        assert read_plan(file).routes[0].stops == ()
+    else:
+        with pytest.raises(PlanError) as error:
+            read_plan(file)
+        assert message in str(error.value)

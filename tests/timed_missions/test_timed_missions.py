@@ -7,7 +7,7 @@ from muster.mission.model import Lag, TeamPart
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import OBJECTIVES, RULES, ignored_in, timed_mission
-from tests.timed_missions.trial import trial
+from tests.timed_missions.trial import Report, Trial, trial
 
 MISSIONS, CHUNK = 90, 15
 
@@ -16,6 +16,18 @@ MISSIONS, CHUNK = 90, 15
 def test_judge_and_bounds_agree_with_every_plan(first):
     seeds = range(first, first + CHUNK)
     failures = {seed: report.failures for seed in seeds if (report := trial(seed, planned=False)).failures}
+    assert failures == {}
+
+
+@pytest.mark.parametrize("first", range(0, 30, 6))
+def test_the_exact_solver_finds_the_best_of_every_plan(first):
+    pytest.importorskip("ortools", reason="needs the extra exact")
+    failures = {}
+    for seed in range(first, first + 6):
+        report = Report(seed)
+        tried = Trial(report, timed_mission(seed), ignored_in(seed))
+        tried.exactly(tried.problem)
+        failures |= {seed: report.failures} if report.failures else {}
     assert failures == {}
 
 

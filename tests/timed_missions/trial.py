@@ -37,14 +37,14 @@ def trial(seed, *, planned=True):
     with report.trying():
         mission, ignored = timed_mission(seed), ignored_in(seed)
         report.story += [str(part) for part in (*mission.robots, *mission.tasks, mission.rules, ignored)]
-        tried = _Trial(report, mission, ignored)
+        tried = Trial(report, mission, ignored)
         tried.without_plans()
         if planned:
             tried.with_plans()
     return report
 
 
-class _Trial:
+class Trial:
     """What is known of the mission of one trial."""
 
     def __init__(self, report, mission, ignored):
@@ -68,7 +68,7 @@ class _Trial:
         self._reached(found[-1])
         self._plan(OTHERS[self.report.seed % len(OTHERS)], bound, may_refuse=True)
         if self.report.seed % EXACT_EVERY == 0:
-            self._exactly(self.problem)
+            self.exactly(self.problem)
 
     def _judge(self):
         """The judge accepts what the enumeration accepts, and nothing else; figures agree."""
@@ -163,7 +163,7 @@ class _Trial:
         else:
             self.report.counts["search finds the best of all plans"] += 1
 
-    def _exactly(self, problem):
+    def exactly(self, problem):
         """The exact solver finds the best of all plans and proves it."""
         exact = solve_exactly(problem, EXACT_S)
         number = [self.meaning.number[task.id] for task in problem.tasks]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
 from muster import core
+from muster.allocation.capabilities import NONE, refuse_what_is_not_kept
 from muster.allocation.explanations import unassigned_of_plan
 from muster.allocation.problem import Problem
 from muster.allocation.returned_routes import checked_routes
@@ -43,7 +44,8 @@ class Allocator:
 
     `anytime` tells whether it goes on until it is stopped. `parameters` is a frozen, keyword-only dataclass that checks
     itself when made and has the published defaults. `auctions` tells whether its plans have a book; `keeps_fixed`,
-    whether it leaves tasks where they are that are to stay.
+    whether it leaves tasks where they are that are to stay; `can`, which rules of time, teams and relations it
+    keeps (of `capabilities.ALL`).
     """
 
     name: str
@@ -53,6 +55,7 @@ class Allocator:
     algorithm: Algorithm
     auctions: bool = False
     keeps_fixed: bool = False
+    can: frozenset[str] = NONE
 
     def solve(
         self, problem: Problem, stop: Stop, *, seed: int = 0, params: Any = None, start: Plan | None = None
@@ -63,10 +66,12 @@ class Allocator:
         ------
         ParameterError
             if `start` is not an admissible plan of this problem or moves tasks that are to stay, the seed is out of
-            range, or the problem has tasks that are to stay and the allocator would move them.
+            range, the problem has tasks that are to stay and the allocator would move them, or it has rules that the
+            allocator cannot keep.
         """
         if not (isinstance(seed, int) and 0 <= seed < 2**64):
             raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
+        refuse_what_is_not_kept(problem, self.name, self.can)
         if problem.fixed and not self.keeps_fixed:
             raise ParameterError(f"fixed: with {self.name}, which would move tasks; expected search, greedy or auction")
         outcome = self.outcome(problem, stop, seed, params or self.parameters(), _first_routes(problem, start))

@@ -2,6 +2,7 @@
 
 [auction-thesis], chapter 4; [lagoudakis2005]. Deterministic. A robot that can
 do none of the tasks left makes no bid; a task is offered once its prerequisites are sold.
+Where times, teams or relations bind tasks, coalitions bid (`CoalitionAuction`).
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.auction_terms import Terms
 from muster.allocation.auctioneer import Auctioneer, OnRound
 from muster.allocation.book_keeper import book_of
+from muster.allocation.capabilities import ALL
+from muster.allocation.coalitions import CoalitionAuction, OnBids, coalition_book
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 
@@ -23,6 +26,8 @@ class Parameters(Terms):
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Sell all tasks that are not in the start plan's routes; without one, all but those that stay where they are."""
+    if problem.core.is_timed:
+        return _to_coalitions(problem, stop, params, start)
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
         auctioneer = Auctioneer(problem, params, start, on_round)
@@ -34,6 +39,18 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     return Outcome(held.routes, book_of(problem, held.round, held.sales, hold))
 
 
+def _to_coalitions(problem: Problem, stop: Stop, params: Parameters, start: Routes | None) -> Outcome:
+    """Sell units of work to coalitions of robots."""
+
+    def hold_again(on_bids: OnBids) -> None:
+        CoalitionAuction(problem, params, start).sell(Stop(), on_bids)
+
+    auction = CoalitionAuction(problem, params, start)
+    auction.sell(stop)
+    stop.improved(*problem.value(auction.routes))
+    return Outcome(auction.routes, coalition_book(problem, auction.sales, hold_again))
+
+
 AUCTION = Allocator(
     name="auction",
     summary="tasks sold one by one to the best bid; the auction thesis",
@@ -42,4 +59,5 @@ AUCTION = Allocator(
     algorithm=allocate,
     auctions=True,
     keeps_fixed=True,
+    can=ALL,
 )

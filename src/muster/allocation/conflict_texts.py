@@ -87,9 +87,9 @@ def _after(limits: Limits, i: int, a: int, b: int) -> str:
     end = begin + max(float(limits.work[i, b]), float(limits.shortest_work[b]))
     late = closed(problem, b, "begins at", ready) or too_late(problem, b, end)
     if late:
-        return f"after {first} {then} {late}"
+        return f"with {first} first, {then} {late}"
     late = beyond(problem, i, end + float(limits.home[i, b]))
-    return f"after {first} and then {then} {late}" if late else ""
+    return f"with {first} first and then {then}, {late}" if late else ""
 
 
 def _however(bounds: UsageBounds, robots: list[int], tasks: list[int], names: str) -> str:

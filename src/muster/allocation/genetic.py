@@ -6,6 +6,8 @@ Where the text leaves room: the worst share is found by rank, as no tournament's
 to 6, as step 2 would discard the population; tasks left out count as one more sequence that mutation may take from;
 crossover keeps both tasks that change places between their prerequisites and dependants; a random robot that has no
 capacity left is followed by the next that has.
+
+Where tasks are bound to times, teams or relations, the members are orders of units with their teams (`UnitPopulation`).
 """
 
 from __future__ import annotations
@@ -15,8 +17,10 @@ from dataclasses import dataclass
 from muster import core
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.bounds_of_mutation import RECEIVER, checked_bounds
+from muster.allocation.capabilities import ALL
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
+from muster.allocation.unit_population import UnitPopulation
 from muster.mission.errors import ParameterError
 
 
@@ -53,9 +57,19 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     return Outcome(evolve(first_population(problem, seed, params, start), stop, params))
 
 
-def first_population(problem: Problem, seed: int, params: Parameters, start: Routes | None) -> core.Population:
+AnyPopulation = core.Population | UnitPopulation
+
+
+def population_of(problem: Problem, size: int, seed: int, bounds: str) -> AnyPopulation:
+    """Plans to be changed; `bounds` are those of Algorithm 4, whose mutation knows no times, teams or relations."""
+    if problem.core.is_timed:
+        return UnitPopulation(problem, size, seed)
+    return core.Population(problem.core, size, seed, bounds)
+
+
+def first_population(problem: Problem, seed: int, params: Parameters, start: Routes | None) -> AnyPopulation:
     """Random admissible allocations; with a start plan it comes first, then its mutants (Algorithm 7, step 2)."""
-    population = core.Population(problem.core, params.population_size, seed, params.bounds)
+    population = population_of(problem, params.population_size, seed, params.bounds)
     for member in range(params.population_size):
         if start is None or member > params.start_mutants:
             population.set_random(member)
@@ -66,7 +80,7 @@ def first_population(problem: Problem, seed: int, params: Parameters, start: Rou
     return population
 
 
-def evolve(population: core.Population, stop: Stop, params: Parameters) -> Routes:
+def evolve(population: AnyPopulation, stop: Stop, params: Parameters) -> Routes:
     """Algorithm 3; steps carry its numbers. The best plan ever seen is kept apart, as members can be replaced."""
     best = Best(stop)
     best.note(population)
@@ -86,7 +100,7 @@ class Best:
         self._value: tuple[float, float] | None = None
         self.routes: Routes = []
 
-    def note(self, population: core.Population) -> None:
+    def note(self, population: AnyPopulation) -> None:
         """Keep the population's best member if it is the best so far."""
         member = population.best()
         value = -population.weight(member), population.objective(member)
@@ -102,4 +116,5 @@ GENETIC = Allocator(
     anytime=True,
     parameters=Parameters,
     algorithm=allocate,
+    can=ALL,
 )

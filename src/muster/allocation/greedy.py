@@ -9,8 +9,10 @@ from dataclasses import dataclass
 
 from muster import core
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.capabilities import ALL
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
+from muster.allocation.timed_greedy import append_units
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +22,10 @@ class Parameters:
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Algorithm 1; with a start plan it goes on from its routes. With the objective `total`: MinCost (3.27)."""
+    if problem.core.is_timed:
+        routes = append_units(problem, stop, start)
+        stop.improved(*problem.value(routes))
+        return Outcome(routes)
     greedy = core.Greedy(problem.core, balanced=problem.objective != "total")
     for robot, route in enumerate(start or ()):
         for task in route:
@@ -45,4 +51,5 @@ GREEDY = Allocator(
     parameters=Parameters,
     algorithm=allocate,
     keeps_fixed=True,
+    can=ALL,
 )

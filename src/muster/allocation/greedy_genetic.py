@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from muster.allocation import genetic, greedy
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.capabilities import ALL
 from muster.allocation.genetic import Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -24,4 +25,5 @@ GREEDY_GENETIC = Allocator(
     anytime=True,
     parameters=Parameters,
     algorithm=allocate,
+    can=ALL,
 )

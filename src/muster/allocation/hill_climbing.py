@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster import core
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.bounds_of_mutation import RECEIVER, checked_bounds
-from muster.allocation.genetic import Best
+from muster.allocation.capabilities import ALL
+from muster.allocation.genetic import Best, population_of
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 
@@ -33,7 +33,7 @@ class Parameters:
 
 def climb(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Algorithm 2: a population of one, where every iteration is one mutation; from a random plan or from `start`."""
-    climber = core.Population(problem.core, 1, seed, params.bounds)
+    climber = population_of(problem, 1, seed, params.bounds)
     if start is None:
         climber.set_random(0)  # 1
     else:
@@ -52,4 +52,5 @@ HILL_CLIMBING = Allocator(
     anytime=True,
     parameters=Parameters,
     algorithm=climb,
+    can=ALL,
 )

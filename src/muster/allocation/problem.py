@@ -366,7 +366,7 @@ class Problem:
 
     def value(self, routes: Sequence[Sequence[int]]) -> tuple[float, float]:
         """Weight completed and objective of routes."""
-        weight = sum(self.tasks[j].priority for j in sorted(j for route in routes for j in route))
+        weight = sum(self.tasks[j].priority for j in sorted({j for route in routes for j in route}))
         objective = core.Inspection(self.core, [list(route) for route in routes]).objective
         assert objective is not None, "the routes of an allocator do not deadlock"
         return weight, objective

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from muster.allocation.allocator import Allocator
+from muster.allocation.capabilities import offer
 from muster.allocation.function_allocator import AllocatingFunction, allocator_from
 from muster.mission.errors import ParameterError
 from muster.mission.plugins import Registry
@@ -44,6 +45,8 @@ ALLOCATORS: Registry[Allocator] = Registry(
     },
     _checked,
 )
+
+offer(lambda: {name: allocator.can for name, allocator in ALLOCATORS.usable().items()})
 
 
 def allocator_named(name: str) -> Allocator:

@@ -11,7 +11,7 @@ Routes = list[list[int]]
 
 
 def checked_routes(problem: Problem, returned: object, called: str) -> Routes:
-    """What a function returned, if it is a route for each robot and no task stands in two places.
+    """What a function returned, if it is a route for each robot and no task stands in two places, but for a team's.
 
     Raises
     ------
@@ -26,8 +26,8 @@ def checked_routes(problem: Problem, returned: object, called: str) -> Routes:
     routes: Routes = []
     for route in returned:
         routes.append(_checked_route(route, tasks, called))
-        for task in routes[-1]:
-            if task in seen:
+        for at, task in enumerate(routes[-1]):
+            if task in seen and (not problem.timed_rules.is_for_team(task) or task in routes[-1][:at]):
                 name = problem.tasks[task].id
                 raise ParameterError(f"allocator {called}: returned task {name} twice; expected each at most once")
             seen.add(task)

@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 from muster import core
 from muster.allocation import greedy
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.capabilities import ALL
 from muster.allocation.partition import improve_in_parts, number_of_parts
 from muster.allocation.problem import Problem
 from muster.allocation.ray_cluster import joined
@@ -165,4 +166,5 @@ SEARCH = Allocator(
     parameters=Parameters,
     algorithm=allocate,
     keeps_fixed=True,
+    can=ALL,
 )

@@ -39,7 +39,7 @@ def _print_bound(bound: float | None, verdict: Verdict, note: str = "") -> None:
     if bound is None or value is None:
         return
     off = gap(value, bound)
-    unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
+    unit = "s" if verdict.objective_name in ("makespan", "lateness") else verdict.usage_unit
     said = "the plan is optimal" if abs(off) < OPTIMAL else f"gap {100 * off:.2f} %"
     if off <= -OPTIMAL:
         said = "above the objective"
@@ -54,13 +54,15 @@ def _print_ignored(verdict: Verdict) -> None:
 def print_figures(verdict: Verdict) -> None:
     """Print the figures, one per line."""
     unit = verdict.usage_unit
-    own_unit = "s" if verdict.objective_name == "makespan" else unit
+    own_unit = "s" if verdict.objective_name in ("makespan", "lateness") else unit
     click.echo(f"objective         {number(verdict.value(), own_unit)}  ({verdict.objective_name})")
     click.echo(f"tasks completed   {verdict.tasks_completed} of {verdict.tasks_total}")
     click.echo(f"total cost        {number(verdict.total_cost, unit)}")
     click.echo(f"greatest usage    {number(verdict.max_usage, unit)}")
     click.echo(f"makespan          {number(verdict.makespan_s, 's')}")
     click.echo(f"waiting           {number(verdict.waiting_s, 's')}")
+    if verdict.lateness and verdict.objective_name != "lateness":
+        click.echo(f"lateness          {number(verdict.lateness, 's')}")
     click.echo(f"equality index    {number(verdict.equality_index)}")
 
 

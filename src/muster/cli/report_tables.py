@@ -139,7 +139,7 @@ def _is(row: Report, tag: Tag) -> bool:
 def _objective(objective: Report | None, unit: str) -> str:
     if objective is None:
         return "-"
-    unit = "s" if objective["name"] == "makespan" else unit
+    unit = "s" if objective["name"] in ("makespan", "lateness") else unit
     planned, flown = (number(objective[key]) for key in ("planned", "flown"))
     return f"{flown} {unit}, planned {planned} {unit}  ({objective['name']})"
 

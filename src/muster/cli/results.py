@@ -27,6 +27,7 @@ def show_plan(
 ) -> None:
     """Write, draw and print a plan that was judged."""
     from muster.cli.plan_tables import print_plan
+    from muster.cli.schedule_table import print_schedule
 
     if output is not None:
         plan.save(output)
@@ -35,6 +36,7 @@ def show_plan(
         click.echo(plan.text(), nl=False)
     else:
         print_plan(plan, verdict)
+        print_schedule(mission, verdict)
 
 
 def _draw(mission: Mission, plan: Plan, verdict: Verdict, plot: Path | None, gantt: Path | None) -> None:

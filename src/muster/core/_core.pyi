@@ -341,6 +341,11 @@ class Roster:
     def remove(self, unit: int) -> bool:
         """False: no schedule exists; then only `rollback` helps."""
 
+    def admissible(self) -> bool:
+        """
+        Whether the routes changed since the last `commit` are within the robots' capacities.
+        """
+
     def commit(self) -> None: ...
 
     def rollback(self) -> None:

@@ -90,6 +90,8 @@ void bind_roster(nb::module_& m) {
             return roster.settle();
           },
           "unit"_a, "False: no schedule exists; then only `rollback` helps.")
+      .def("admissible", &Roster::admissible,
+           "Whether the routes changed since the last `commit` are within the robots' capacities.")
       .def("commit", &Roster::commit)
       .def("rollback", &Roster::rollback, "Undo everything since the last `commit`.")
       .def_prop_ro("objective", [](Roster& roster) { return roster.value().objective; })

@@ -112,7 +112,7 @@ void Problem::check_times() const {
 }
 
 void Problem::find_units() {
-  const int units = data_.unit.empty() ? tasks_ : 1 + *std::ranges::max_element(data_.unit);
+  const int units = data_.unit.empty() || tasks_ == 0 ? tasks_ : 1 + *std::ranges::max_element(data_.unit);
   std::vector<std::vector<int>> tasks(units);
   for (int task = 0; task < tasks_; ++task) tasks[unit(task)].push_back(task);
   for (const auto& row : tasks) {

@@ -161,7 +161,7 @@ def shortened(name: str, longest: int = _LONGEST_NAME) -> str:
 def facts_of(verdict: Verdict, plan: Plan | None = None) -> list[str]:
     """The allocator, the objective with its value and unit, and the tasks done."""
     value = verdict.value()
-    unit = "s" if verdict.objective_name == "makespan" else verdict.usage_unit
+    unit = "s" if verdict.objective_name in ("makespan", "lateness") else verdict.usage_unit
     shown = "none" if value is None else f"{value:.2f} {unit}"
     done = f"tasks {verdict.tasks_completed}/{verdict.tasks_total}"
     by = [plan.allocator] if plan is not None and plan.allocator else []

@@ -10,6 +10,7 @@ from muster.report.canvas import add_legend, add_title, alarm_of, note_entries
 from muster.report.fonts import Names
 from muster.report.route_ground import drawn_prerequisites
 from muster.report.time_chart import Row, Span, TimeChart, Work, duration, lasting, new_chart_axes
+from muster.report.time_limits import draw_limits
 from muster.verification import RouteFigures, Verdict
 
 if TYPE_CHECKING:
@@ -20,8 +21,9 @@ def plot_gantt(mission: Mission, verdict: Verdict, *, ax: Axes | None = None) ->
     """Draw when each robot travels, works and waits.
 
     A row for each robot, in mission order from the top, in the colours of `plot_routes`. Work is a high bar with the
-    task's id, and a stroke where it takes no time; travel a thin bar; waiting a hatched one. The data is in seconds;
-    the labels of a long mission are in minutes or hours.
+    task's id, and a stroke where it takes no time; travel a thin bar; waiting a hatched one. Time windows are shaded,
+    deadlines and due times are strokes, lateness is red, and the bars of a team are linked. The data is in seconds; the
+    labels of a long mission are in minutes or hours, and clock times where the mission says when it starts.
 
     Raises
     ------
@@ -43,7 +45,7 @@ def plot_gantt(mission: Mission, verdict: Verdict, *, ax: Axes | None = None) ->
     )
     names = Names(mission)
     with names.fonts():
-        entries = chart.draw(ax, names)
+        entries = [*chart.draw(ax, names), *draw_limits(ax, mission, chart.rows)]
         facts = [f"makespan {duration(makespan_s)}", f"tasks {verdict.tasks_completed}/{verdict.tasks_total}"]
         add_title(ax, names.title(mission.name), facts, alarm_of(verdict))
         add_legend(ax, [*entries, *note_entries(names)])

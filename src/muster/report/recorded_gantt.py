@@ -11,6 +11,7 @@ from muster.report.record import Recording
 from muster.report.recorded_tracks import outcome
 from muster.report.route_ground import drawn_prerequisites
 from muster.report.time_chart import Row, TimeChart, Work, duration, lasting, new_chart_axes
+from muster.report.time_limits import draw_limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,7 +38,7 @@ def plot_flown_gantt(recording: Recording) -> Axes:
     )
     names = Names(recording.mission)
     with names.fonts():
-        entries = chart.draw(ax, names)
+        entries = [*chart.draw(ax, names), *draw_limits(ax, recording.mission, rows)]
         facts = [duration(until_s), *outcome(recording)]
         add_title(ax, names.title(recording.mission.name), facts, "" if recording.complete else "the record breaks off")
         add_legend(ax, [*entries, *note_entries(names)])

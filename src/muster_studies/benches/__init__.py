@@ -17,6 +17,7 @@ BENCHES: Mapping[str, str] = MappingProxyType(
         "greedy-large": "allocation:greedy_large",
         "auction-large": "allocation:auction_large",
         "search": "search_quality:search_quality",
+        "schedules": "schedules:schedules",
         "avoidance": "avoidance:avoidance",
         "start-up": "start_up:start_up",
         "path": "motion:across_a_grid",

@@ -47,7 +47,7 @@ class OneTask:
     Parameters
     ----------
     robot
-        the robot that does it; None: it is left out.
+        the robot that does it, of a team the first; None: it is left out.
     alternatives
         for each robot the effect of giving it the task.
     remedies
@@ -70,6 +70,11 @@ class OneTask:
         return self.verdict.value()
 
     @property
+    def team(self) -> tuple[str, ...]:
+        """The robots that do the task, in mission order."""
+        return tuple(route.robot for route in self.verdict.routes if self.task in route.tasks)
+
+    @property
     def route(self) -> RouteFigures | None:
         """The route that has the task."""
         return next((route for route in self.verdict.routes if route.robot == self.robot), None)
@@ -79,6 +84,7 @@ class OneTask:
         data = {
             "task": self.task,
             "robot": self.robot,
+            "team": list(self.team),
             "ignored": list(self.problem.ignored),
             "objective": self.objective,
             "alternatives": [asdict(other) for other in self.alternatives],

@@ -20,7 +20,8 @@ def place(found: OneTask) -> list[str]:
     if route is None:
         return [f"task {found.task} is left out"]
     number = route.tasks.index(found.task) + 1
-    said = [f"task {found.task} is done by {found.robot}, as number {number} of {len(route.tasks)}"]
+    with_others = f" with {', '.join(found.team[1:])}" if len(found.team) > 1 else ""
+    said = [f"task {found.task} is done by {found.robot}{with_others}, as number {number} of {len(route.tasks)}"]
     for visit in route.visits[number - 1 : number]:
         waits = visit.starts_s - visit.arrives_s
         waiting = f", waits {waits:.2f} s," if waits > 0 else ""

@@ -31,7 +31,7 @@ def words_on_task(found: OneTask) -> list[str]:
     said = [_sentence(line) for line in (*place(found), *ignored(found.problem))]
     if found.plan.book is not None and found.award is not None:
         said.append(_sentence(award_text(found.problem, found.plan.book, found.award)))
-    others = [other for other in found.alternatives if other.robot != found.robot]
+    others = [other for other in found.alternatives if other.robot not in found.team]
     said += _those_who_could(found, [other for other in others if other.reason is None])
     said += _those_who_could_not(others)
     if found.robot is None and (change := smallest_change(found.problem, found.remedies)):

@@ -117,4 +117,4 @@ def _smallest(problem: Problem, changes: Mapping[str, Remedy | None]) -> Table:
 
 
 def _named(found: OneTask, robot: str) -> str:
-    return f"{robot}  (now)" if robot == found.robot else robot
+    return f"{robot}  (now)" if robot in found.team else robot

@@ -61,7 +61,11 @@ def figures_of(plan: Mapping[str, Any], verdict: Mapping[str, Any] | None = None
 
 def objective_unit(plan: Mapping[str, Any]) -> str:
     """The unit of a plan's objective: seconds of a makespan, else that of usage."""
-    return "s" if (plan.get("objective") or {}).get("name") == "makespan" else str(plan.get("usage_unit") or "")
+    return (
+        "s"
+        if (plan.get("objective") or {}).get("name") in ("makespan", "lateness")
+        else str(plan.get("usage_unit") or "")
+    )
 
 
 def meaning_of(name: str) -> str:

@@ -1,0 +1,197 @@
+"""An auction in which units of work are sold to coalitions of robots, where times, teams and relations bind tasks.
+
+Sequential single-item auction with bids of coalitions, as coalitions are formed task by task in [shehory1998] and
+[vig2006]: in each round every coalition that is worth a look bids for every unit, and one unit is sold. A bid is what
+the schedule allows: the unit is put where its windows, deadlines, lags and what waits for it leave a place. Of a team's
+task the coalition that costs least bids, and beside it, for each of its members, the one that costs least without it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from muster import core
+from muster.allocation.auction_terms import Terms
+from muster.allocation.bids import lack_penalty
+from muster.allocation.problem import Problem
+from muster.allocation.skill_quality import skill_quality
+from muster.allocation.stop import Stop
+from muster.allocation.working_roster import Routes, WorkingRoster
+from muster.mission.auction_book import Award, Bid, Book, TakeBid
+from muster.mission.errors import ParameterError
+from muster.mission.plan import tie_order
+
+
+@dataclass(frozen=True)
+class CoalitionBid:
+    """What a coalition would take a unit for."""
+
+    insertion: core.UnitInsertion
+    price: float
+
+    @property
+    def unit(self) -> int:
+        return self.insertion.unit
+
+    def members(self, task: int) -> list[int]:
+        """The robots that would do one of the unit's tasks."""
+        return sorted(robot for j, robot, _ in self.insertion.members if j == task)
+
+
+@dataclass(frozen=True)
+class CoalitionSale:
+    """A unit that was sold in a round, and all bids for it, the best first."""
+
+    round: int
+    bids: list[CoalitionBid]
+
+    @property
+    def won(self) -> CoalitionBid:
+        return self.bids[0]
+
+
+OnBids = Callable[[int, list[CoalitionSale]], None]
+
+
+class CoalitionAuction:
+    """Sells units one by one: all that can follow are announced, coalitions bid, and one unit is assigned a round."""
+
+    def __init__(self, problem: Problem, terms: Terms, start: Routes | None = None) -> None:
+        bid = terms.bid or problem.objective
+        if bid == "average-as-printed":
+            raise ParameterError(f"bid: {bid}, with times, teams or relations; expected the name of an objective")
+        self._problem = problem if bid == problem.objective else replace(problem, objective=bid)
+        self._terms = terms
+        self._roster = WorkingRoster(self._problem, start)
+        self._quality = skill_quality(problem) if terms.quality_weight else np.empty((0, 0))
+        self.sales: list[CoalitionSale] = []
+
+    @property
+    def routes(self) -> Routes:
+        return self._roster.routes
+
+    def sell(self, stop: Stop, on_bids: OnBids | None = None) -> None:
+        """Sell until nobody bids any more."""
+        while not stop.interrupted:
+            offers = [
+                CoalitionSale(len(self.sales) + 1, bids) for unit in self._roster.ready() if (bids := self._bids(unit))
+            ]
+            sale = self._sold(offers)
+            if sale is None:
+                break
+            if on_bids is not None:
+                on_bids(len(self.sales), offers)
+            self.sales.append(sale)
+
+    def _sold(self, offers: list[CoalitionSale]) -> CoalitionSale | None:
+        """Assign the first unit that can be, the winner rule's choice first."""
+        key = _contest if self._terms.winner_rule == "least-contested" else _price
+        return next((sale for sale in sorted(offers, key=key) if self._roster.put(sale.won.insertion)), None)
+
+    def _bids(self, unit: int) -> list[CoalitionBid]:
+        """All bids for a unit, the best first."""
+        insertions = self._of_robots(unit) if self._alone(unit) else self._of_coalitions(unit)
+        return sorted((CoalitionBid(found, self._price(found)) for found in insertions), key=lambda bid: bid.price)
+
+    def _alone(self, unit: int) -> bool:
+        rules = self._problem.timed_rules
+        return len(rules.units[unit]) == 1 and not rules.is_for_team(rules.units[unit][0])
+
+    def _of_robots(self, unit: int) -> Iterator[core.UnitInsertion]:
+        (task,) = self._problem.timed_rules.units[unit]
+        for robot in range(len(self._problem.robots)):
+            if self._problem.may(robot, task) and (found := self._best(unit, [robot])) is not None:
+                yield found
+
+    def _of_coalitions(self, unit: int) -> Iterator[core.UnitInsertion]:
+        best = self._best(unit, None)
+        if best is None:
+            return
+        yield best
+        others, known = range(len(self._problem.robots)), {_team(best)}
+        for without in sorted({robot for _, robot, _ in best.members}):
+            found = self._best(unit, [robot for robot in others if robot != without])
+            if found is not None and _team(found) not in known:
+                known.add(_team(found))
+                yield found
+
+    def _best(self, unit: int, robots: list[int] | None) -> core.UnitInsertion | None:
+        return self._roster.best(unit, robots, append_only=self._terms.placement == "append")
+
+    def _price(self, insertion: core.UnitInsertion) -> float:
+        """What the objective grows by, made worse by the mean penalty of the members."""
+        penalty = float(np.mean([self._penalty(robot, task) for task, robot, _ in insertion.members]))
+        return insertion.score / (1.0 + penalty) if insertion.score < 0.0 else insertion.score * (1.0 + penalty)
+
+    def _penalty(self, robot: int, task: int) -> float:
+        terms, penalty = self._terms, 0.0
+        if terms.battery_weight:
+            usage = np.array([self._roster.core.usage(robot)])
+            penalty += terms.battery_weight * float(self._problem.drains.shares(usage, slice(robot, robot + 1))[0])
+        if terms.suitability_weight:
+            penalty += terms.suitability_weight * float(lack_penalty(self._problem.suitability[robot, task]))
+        if terms.quality_weight:
+            penalty += terms.quality_weight * float(lack_penalty(self._quality[robot, task]))
+        return penalty
+
+
+def _team(insertion: core.UnitInsertion) -> frozenset[tuple[int, int]]:
+    return frozenset((task, robot) for task, robot, _ in insertion.members)
+
+
+def _price(sale: CoalitionSale) -> float:
+    return sale.won.price
+
+
+def _contest(sale: CoalitionSale) -> float:
+    """The gap between the two best bids, the widest first; nobody contests a single one."""
+    return sale.won.price - sale.bids[1].price if len(sale.bids) > 1 else -math.inf
+
+
+def coalition_book(problem: Problem, sales: list[CoalitionSale], hold: Callable[[OnBids], None]) -> Book:
+    """The book of the auction; to tell every bid it is held again."""
+
+    def for_each_bid(take: TakeBid) -> None:
+        def tell(number: int, offers: list[CoalitionSale]) -> None:
+            won = sales[number].won
+            for offer in offers:
+                for bid in _entries(problem, offer):
+                    sold = offer.won.unit == won.unit
+                    take(replace(bid, winner=None, price=None) if not sold else bid)
+
+        hold(tell)
+
+    awards = tuple(award for sale in sales for award in _awards(problem, sale))
+    return Book(rounds=len(sales), awards=awards, for_each_bid=for_each_bid)
+
+
+def coalition_name(problem: Problem, robots: list[int]) -> str:
+    """The robots of a coalition, joined by a plus sign in the order that breaks ties."""
+    names = [problem.robots[robot].id for robot in robots]
+    return "+".join(names[k] for k in tie_order(names))
+
+
+def _awards(problem: Problem, sale: CoalitionSale) -> Iterator[Award]:
+    for task in problem.timed_rules.units[sale.won.unit]:
+        bids = _named(problem, sale, task)
+        robot = coalition_name(problem, sale.won.members(task))
+        yield Award.of(sale.round, problem.tasks[task].id, robot, sale.won.price, list(bids.items()))
+
+
+def _entries(problem: Problem, sale: CoalitionSale) -> Iterator[Bid]:
+    for task in problem.timed_rules.units[sale.won.unit]:
+        winner = coalition_name(problem, sale.won.members(task))
+        for robot, price in _named(problem, sale, task).items():
+            yield Bid(sale.round, problem.tasks[task].id, robot, price, winner, sale.won.price)
+
+
+def _named(problem: Problem, sale: CoalitionSale, task: int) -> dict[str, float]:
+    """The best bid of each coalition for one task of the unit."""
+    bids: dict[str, float] = {}
+    for bid in sale.bids:
+        bids.setdefault(coalition_name(problem, bid.members(task)), bid.price)
+    return bids

@@ -1,0 +1,50 @@
+"""Greedy task allocation where tasks are bound to times, teams and relations.
+
+[tcf-thesis], section 3.2.1, Algorithm 1, with units of work in place of tasks: each step appends the unit whose team
+has the least debit. A team's cost c is what its members pay together, and u the greatest usage among them (3.17). With
+the objectives `makespan` and `lateness` the debit is what the objective grows by, waiting included. The dependency
+coefficient (3.20) is left out, as lags say when a dependant can follow.
+"""
+
+from __future__ import annotations
+
+import math
+
+from muster import core
+from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
+from muster.allocation.working_roster import Routes, WorkingRoster
+
+_IN_TIME = ("makespan", "lateness")
+
+
+def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
+    """Append one unit after the other to routes, until none can follow."""
+    roster = WorkingRoster(problem, start)
+    refused: set[int] = set()
+    while not stop.interrupted:
+        chosen = _select(problem, roster, refused)
+        if chosen is None:
+            break
+        if roster.put(chosen):
+            refused.clear()
+        else:
+            refused.add(chosen.unit)
+    return roster.routes
+
+
+def _select(problem: Problem, roster: WorkingRoster, refused: set[int]) -> core.UnitInsertion | None:
+    """The matching of the least debit; of equal ones that of the first unit."""
+    chosen, least = None, math.inf
+    for unit in roster.ready():
+        insertion = None if unit in refused else roster.best(unit)
+        if insertion is not None and (debit := _debit(problem, roster, insertion)) < least:
+            chosen, least = insertion, debit
+    return chosen
+
+
+def _debit(problem: Problem, roster: WorkingRoster, insertion: core.UnitInsertion) -> float:
+    if problem.objective in _IN_TIME:
+        return insertion.score
+    balanced = problem.objective != "total"
+    return insertion.growth + (roster.usage(insertion) if balanced else 0.0)
