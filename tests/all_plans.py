@@ -5,7 +5,7 @@ from itertools import permutations
 
 from muster import core
 from muster.allocation.problem import Problem
-from muster.verification.measure import measured
+from muster.verification.measure import all_measured
 from muster.verification.travel import Travel
 
 ROUNDING = 1e-9
@@ -30,7 +30,7 @@ class AllPlans:
             robot = self.mission.robots[k]
             i, tasks = self.problem.robot_index[robot.id], self.problem.task_index
             by_id = {task.id: task for task in self.mission.tasks}
-            legs = measured(self.mission, self._travel, robot, [by_id[name] for name in route])
+            legs = all_measured(self.mission, self._travel, {robot.id: [by_id[name] for name in route]})[k]
             ways = [step.leg for step in legs.steps] + ([legs.last_leg] if legs.last_leg else [])
             allowed = all(self.problem.refusal(i, tasks[name]) is None for name in route)
             usage = legs.usage if allowed and all(way.exists for way in ways) else math.inf

@@ -197,7 +197,7 @@ def test_lines_are_not_too_long(shed, muster):
 def test_remedies_in_json(shed, muster):
     data = json.loads(muster("explain", *shed, "--task", "far", "--format", "json")[1])
     first, second = data["remedies"]
-    assert list(data) == ["task", "robot", "ignored", "objective", "alternatives", "remedies"]
+    assert list(data) == ["task", "robot", "team", "ignored", "objective", "alternatives", "remedies"]
     assert (first["suitability"]["score"], first["suitability"]["needed"]) == (0.5, 0.65)
     assert second["capacity"]["now"] == 20
     assert second["kinds"] == ["capacity"]
