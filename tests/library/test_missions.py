@@ -41,6 +41,7 @@ COUNTS = {  # robots, tasks
     "auction-3-seeded": (20, 50),
     "berlin52-5": (5, 51),
     "berlin52-5-thesis": (5, 56),
+    "collapsed-building": (6, 10),
     "depot": (5, 15),
     "eil51-3": (3, 50),
     "eil51-3-thesis": (3, 53),

@@ -37,7 +37,7 @@ def test_planner_judge_and_core_agree(robot, goal):
     assert muster.verify(mission, plan).makespan_s == pytest.approx(seconds + 1.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("robot", ROBOTS[:-1])
+@pytest.mark.parametrize("robot", ROBOTS)
 def test_the_profile_is_what_the_world_flies(robot):
     goal = (6.0, 0.0, 8.0) if robot.get("kind") == "air" else (10.0, 0.0, 0.0)
     mission = mission_of(robot, goal)

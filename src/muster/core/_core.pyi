@@ -674,9 +674,9 @@ class CrowdWorld:
         Upright faces (k, 6): x, y and x, y of the ends, lowest and highest z; and the flat ends of zones: corners, floor, ceiling; and the least height of a centre, or -inf. Returns the number of this set.
         """
 
-    def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int, law: str = 'profile', climb: float = 0.0) -> int:
+    def add(self, position: Sequence[float], heading: float, *, radius: float, speed: float, yaw_rate: float, acceleration: float, priority: float, faces_its_way: bool, flies: bool, walls: int, law: str = 'profile', climb: float = 0.0, climb_rate: float = float('inf')) -> int:
         """
-        Returns the number of the robot, from 0. `law`: profile, thesis or trajectory; `climb`: above 0 of one that climbs by (4.12).
+        Returns the number of the robot, from 0. `law`: profile, thesis or trajectory; `climb`: above 0 of one that climbs by (4.12); `climb_rate`: up and down of one that keeps to straight ways.
         """
 
     def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:

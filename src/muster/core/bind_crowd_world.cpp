@@ -4,6 +4,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+#include <limits>
 
 #include <stdexcept>
 #include <string>
@@ -119,16 +120,17 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           "add",
           [](CrowdWorld& w, Place position, double heading, double radius, double speed, double yaw_rate,
              double acceleration, double priority, bool faces_its_way, bool flies, int walls, const std::string& law,
-             double climb) {
-            return w.add(
-                {radius, speed, yaw_rate, acceleration, priority, faces_its_way, flies, walls, law_named(law), climb},
-                {position}, heading);
+             double climb, double climb_rate) {
+            return w.add({radius, speed, yaw_rate, acceleration, priority, faces_its_way, flies, walls, law_named(law),
+                          climb, climb_rate},
+                         {position}, heading);
           },
           "position"_a, "heading"_a, nb::kw_only(), "radius"_a, "speed"_a, "yaw_rate"_a, "acceleration"_a, "priority"_a,
           "faces_its_way"_a, "flies"_a, "walls"_a, "law"_a = "profile", "climb"_a = 0.0,
+          "climb_rate"_a = std::numeric_limits<double>::infinity(),
           "Returns the number of the robot, from 0. `law`: profile, thesis or trajectory; `climb`: above 0 of one that "
           "climbs by "
-          "(4.12).")
+          "(4.12); `climb_rate`: up and down of one that keeps to straight ways.")
       .def(
           "send",
           [](CrowdWorld& w, int robot, const Stops& stops, const std::vector<bool>& labelled, int order) {

@@ -1,6 +1,7 @@
 #include "course.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tracking.hpp"
 
@@ -18,6 +19,13 @@ Vec<3> leg(const CrowdRobot& robot, const Vec<3>& from, const Vec<3>& to) {
   Vec<3> way = to - from;
   if (robot.body.climb > 0.0) way[2] = 0.0;
   return way;
+}
+
+// The speed along a straight piece that keeps the limits of speed and of climb.
+double speed_on(const CrowdRobot& robot, const Vec<3>& piece) {
+  const double rise = std::abs(piece[2]);
+  const double climbing = rise > 0.0 ? robot.body.climb_rate * robot.slowed * norm(piece) / rise : robot.top_speed();
+  return std::min(robot.top_speed(), climbing);
 }
 
 // (4.12): the climb towards the height of the next way point.
@@ -41,22 +49,23 @@ double corner_speed(const CrowdRobot& robot, const Vec<3>& from, std::size_t k, 
                                [&](const Waypoint& point) { return !(point.at == way[k].at); });
   if (way[k].stops() || on == way.end() || waits_for_height(robot, k)) return 0.0;
   const Vec<3> in = leg(robot, from, way[k].at), out = leg(robot, way[k].at, on->at);
-  const double lengths = norm(in) * norm(out);
-  if (lengths == 0.0) return robot.top_speed();
+  const double lengths = norm(in) * norm(out), top = std::min(speed_on(robot, in), speed_on(robot, out));
+  if (lengths == 0.0) return top;
   const double turn = std::acos(std::clamp(dot(in, out) / lengths, -1.0, 1.0));
   if (robot.body.faces_its_way && turn > 0.5 * robot.body.yaw_rate * dt) return 0.0;
   const double half = std::sin(turn / 2.0), sine = dot(in, out) > 0.0 ? std::sin(turn) : 1.0;
-  if (half == 0.0) return robot.top_speed();
+  if (half == 0.0) return top;
   const double cut = tolerances.corner / (dt * sine), swerve = robot.body.acceleration * dt / (2.0 * half);
-  return std::min({robot.top_speed(), cut, swerve});
+  return std::min({top, cut, swerve});
 }
 
 double speed_along(const CrowdRobot& robot, const Tolerances& tolerances, double dt) {
   const Braking braking{dt, robot.body.acceleration};
-  const double top = robot.top_speed(), longest = braking.distance(top);
-  double most = top, ahead = 0.0;
+  const double longest = braking.distance(robot.top_speed());
+  double most = robot.top_speed(), ahead = 0.0;
   Vec<3> from = robot.position;
   for (std::size_t k = robot.next; k < robot.way.size() && ahead < longest; ++k) {
+    if (k == robot.next) most = speed_on(robot, leg(robot, from, robot.way[k].at));
     ahead += norm(leg(robot, from, robot.way[k].at));
     most = std::min(most, braking.speed(ahead + braking.distance(corner_speed(robot, from, k, tolerances, dt))));
     from = robot.way[k].at;
@@ -97,7 +106,7 @@ Vec<3> closest_on_piece(const Vec<3>& p, const Vec<3>& from, const Vec<3>& to) {
 Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt) {
   const Vec<3> way = place - robot.position;
   const double away = norm(way), speed = Braking{dt, robot.body.acceleration}.speed(away);
-  return away > 0.0 ? (std::min(speed, robot.top_speed()) / away) * way : Vec<3>{};
+  return away > 0.0 ? (std::min(speed, speed_on(robot, way)) / away) * way : Vec<3>{};
 }
 
 bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances, double dt) {

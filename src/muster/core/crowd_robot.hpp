@@ -28,6 +28,7 @@ struct Body {
   int walls;  // which set of walls stops it
   Law law = Law::profile;
   double climb = 0.0;  // above 0: it climbs at up to this speed, whatever its speed over ground, by (4.12)
+  double climb_rate = std::numeric_limits<double>::infinity();  // up and down along straight ways, else
 };
 
 struct Waypoint {

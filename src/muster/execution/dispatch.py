@@ -230,7 +230,8 @@ class Dispatch:
         slowest = max(state.work_s for state in team)
         for state in team:
             if state.work is not None:
-                state.send(now, Activity.WORKING, _delayed(state.work, state.delay_s + slowest - state.work_s))
+                work = _where_it_stands(state, state.work) if len(team) > 1 else state.work
+                state.send(now, Activity.WORKING, _delayed(work, state.delay_s + slowest - state.work_s))
                 state.work_s = slowest
 
     def _begin(self, task: str, team: Sequence[RobotState], now: float) -> None:
@@ -305,6 +306,13 @@ def _drive_s(state: RobotState, there: Sequence[Waypoint]) -> float:
 def _home_s(state: RobotState) -> float:
     """Seconds from the exit of the current task to where the route ends."""
     return state.home_usage if state.in_time else state.home_usage / state.robot.speed_mps
+
+
+def _where_it_stands(state: RobotState, work: Work) -> Work:
+    """Work at one place, done where the robot is: a team stands around the place, which has room for one body."""
+    if len(work.waypoints) > 1:
+        return work
+    return replace(work, waypoints=(replace(work.waypoints[0], position=state.position),))
 
 
 def _delayed(work: Work, by_s: float) -> list[Waypoint]:

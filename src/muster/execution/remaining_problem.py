@@ -133,8 +133,9 @@ def _past(rest: RemainingMission) -> dict[str, Task]:
     for snapshot in rest.crew:
         if snapshot.has_past:
             name = snapshot.task or f"{snapshot.robot.id} {SO_FAR}"
-            while name in names:
+            while name in names:  # as for all but the first of a team
                 name += "'"
+            names.add(name)
             past[snapshot.robot.id] = _past_task(rest, snapshot, name)
     return past
 

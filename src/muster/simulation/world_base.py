@@ -195,6 +195,8 @@ class WorldBase(SimulatedWorld, ABC):
             raise ParameterError(f"robot {robot.id}: {robot.position}; expected {self._dimensions} coordinates")
         limits, kinematics = self._limits(robot), kinematics_named(robot.kinematics)
         x, y, z = (*robot.position, 0.0)[:3]
+        thesis = self._law == THESIS and robot.kinematics == "quadcopter"
+        climbs = robot.kind == "air" and not thesis and limits.climb_mps is not None
         number = self._crowd.add(
             (x, y, z),
             math.radians(robot.heading_deg),
@@ -207,7 +209,8 @@ class WorldBase(SimulatedWorld, ABC):
             flies=robot.kind == "air",
             walls=self._walls_for(body_of(robot)),
             law=self._law_of(robot),
-            climb=limits.climb if self._law == THESIS and robot.kinematics == "quadcopter" else 0.0,
+            climb=limits.climb if thesis else 0.0,
+            climb_rate=limits.climb if climbs else math.inf,
         )
         self._numbers[robot.id] = number
         self._robots.append(robot)
