@@ -15,6 +15,7 @@ from muster.library import mission_names, mission_path
 from muster.mission.errors import MissingExtraError
 
 OTHERS = tuple(product(WINNERS, PLACEMENTS))
+UNTIMED = [name for name in mission_names() if name != "collapsed-building"]  # whose central auction has coalitions
 
 
 def cut_down(mission, tasks=60, robots=8):
@@ -39,7 +40,7 @@ def assert_like_central(problem, terms):
     }
 
 
-@pytest.mark.parametrize(("number", "name"), list(enumerate(mission_names())))
+@pytest.mark.parametrize(("number", "name"), list(enumerate(UNTIMED)))
 def test_on_every_shipped_mission(number, name):
     more = {"salesmen": 3} if mission_path(name).suffix == ".tsp" else {}
     try:
