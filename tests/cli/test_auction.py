@@ -327,3 +327,29 @@ def test_a_memory_of_something_else_is_refused(muster, three):
     assert "memory: auction: of another mission or other terms; expected " in muster("auction", three, *options)[2]
     Path("memory").write_text(json.dumps(other | {"robot": "b"}), encoding="utf-8")
     assert "memory: robot: b; expected a, or a new file\n" in muster("auction", three, *options)[2]
+
+
+TIMED = MISSION.replace("position: [9, 1]", "position: [9, 1], window_s: [5, 60], robots_needed: 2")
+
+
+@pytest.mark.parametrize("where", [(), ("--robot", "a"), ("--simulate-network", "1"), ("--method", "consensus-bundle")])
+def test_a_mission_on_which_they_cannot_agree_is_refused_by_name(where, muster):
+    Path("timed.yaml").write_text(TIMED, encoding="utf-8")
+    code, out, err = muster("auction", "timed.yaml", *where, "-o", "plan.json")
+    assert (code, out) == (2, "")
+    assert "task 2: window_s (window); task 2: robots_needed (team); expected a plan of greedy" in err
+    assert not Path("plan.json").exists()
+
+
+def test_rules_that_are_ignored_do_not_stand_in_the_way(muster):
+    Path("timed.yaml").write_text(TIMED, encoding="utf-8")
+    rules = ("--ignore", "window,team")
+    assert muster("auction", "timed.yaml", *rules, "--simulate-network", "1")[0] == 0
+
+
+def test_simulate_negotiate_refuses_it_before_a_record_is_begun(muster):
+    Path("timed.yaml").write_text(TIMED, encoding="utf-8")
+    code, _, err = muster("simulate", "timed.yaml", "--negotiate", "--record", "run.mcap", "--html", "run.html")
+    assert code == 2
+    assert "task 2: window_s (window); task 2: robots_needed (team); expected a plan of greedy" in err
+    assert not list(Path().glob("run.*"))

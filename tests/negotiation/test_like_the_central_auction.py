@@ -9,10 +9,12 @@ from tests.negotiation.networks import agree, line_mission, network
 import muster
 from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.capabilities import required
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.library import mission_names, mission_path
-from muster.mission.errors import MissingExtraError
+from muster.mission.errors import MissingExtraError, ParameterError
+from muster.negotiation.capabilities import refuse_what_is_not_agreed
 
 OTHERS = tuple(product(WINNERS, PLACEMENTS))
 UNTIMED = [name for name in mission_names() if name != "collapsed-building"]  # whose central auction has coalitions
@@ -47,6 +49,10 @@ def test_on_every_shipped_mission(number, name):
         problem = Problem.compile(cut_down(muster.load(name, **more))).ready()
     except MissingExtraError as error:
         pytest.skip(str(error))
+    if required(problem):  # of time or teams
+        with pytest.raises(ParameterError, match="without a centre"):
+            refuse_what_is_not_agreed(problem)
+        return
     for k, bid in enumerate(BIDS):
         winner, placement = OTHERS[(number + k) % len(OTHERS)]  # over all missions every three meet
         assert_like_central(problem, Parameters(bid=bid, winner=winner, placement=placement))

@@ -88,8 +88,14 @@ def _team(problem: Problem) -> str | None:
 
 def _relation(problem: Problem) -> str | None:
     rules = problem.timed_rules
-    same = _task(problem, "same_robot_as", lambda j: rules.same_robot[j])
-    return same or _task(problem, "other_robot_than", lambda j: rules.other_robot[j])
+    same = _related(problem, "same_robot_as", lambda j: rules.same_robot[j])
+    return same or _related(problem, "other_robot_than", lambda j: rules.other_robot[j])
+
+
+def _related(problem: Problem, key: str, has: Callable[[int], object]) -> str | None:
+    """The first task in a relation; where one is there, the first that states it, as the rules are symmetric."""
+    stated = _task(problem, key, lambda j: has(j) and getattr(problem.tasks[j], key))
+    return stated or _task(problem, key, has)
 
 
 def _starts_with(problem: Problem) -> str | None:

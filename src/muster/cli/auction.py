@@ -94,6 +94,7 @@ def command(
     --simulate-network SEED without a MISSION replays that run of `make campaign-auction`.
     """
     from muster.allocation.problem import Problem
+    from muster.negotiation.capabilities import refuse_what_is_not_agreed
     from muster.negotiation.methods import method_named
 
     if mission is None:
@@ -108,7 +109,9 @@ def command(
     chosen = method_named(method)
     terms = terms_of(chosen, others, settings)
     loaded = mission.load(verbose=verbose)
-    problem = Problem.compile(loaded, objective, ignore).ready()
+    problem = Problem.compile(loaded, objective, ignore)
+    refuse_what_is_not_agreed(problem)
+    problem = problem.ready()
     agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
     first = next(iter(agreement.views.values()))
     plan = chosen.plan(problem, terms, first, agreement.took_s)

@@ -180,7 +180,7 @@ def command(
     looks = _looks(loaded, world, found, cameras)
     planned: Plan | Negotiation
     if negotiate:
-        planned, speed = _negotiation(method, transport, options), speed or 1.0
+        planned, speed = _negotiation(loaded, method, transport, options), speed or 1.0
     elif plan is not None:
         planned = read_plan(plan)
         say_of_plan(planned, plan, loaded, options.ignore, quiet=quiet, verbose=verbose)
@@ -258,11 +258,14 @@ def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | Non
     return CameraPictures(cameras)
 
 
-def _negotiation(method: str, transport: str, options: PlanningOptions) -> Negotiation:
+def _negotiation(mission: Mission, method: str, transport: str, options: PlanningOptions) -> Negotiation:
+    """How robots agree; a mission on which they cannot is refused before any file is opened."""
     from muster import Negotiation
     from muster.allocation.allocator import make_parameters
+    from muster.negotiation.capabilities import refuse_mission
     from muster.negotiation.methods import method_named
 
+    refuse_mission(mission)
     terms = make_parameters(method_named(method).allocator, dict(options.parameters))
     return Negotiation(method=method, transport=transport, params=terms)
 

@@ -20,6 +20,7 @@ from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.fixed import admissible_part, with_past
 from muster.allocation.problem import Problem
 from muster.allocation.winners import WINNER_RULES, Floats, Indices, Sale
+from muster.negotiation.capabilities import refuse_what_is_not_agreed
 from muster.negotiation.messages import Bid, RoundBids, Sold
 from muster.negotiation.new_tasks import with_tasks
 
@@ -63,7 +64,10 @@ class Valuer(Protocol):
         ...
 
     def check(self, tasks: Sequence[bytes]) -> None:
-        """Raise MissionError unless these added or moved tasks, as `new_tasks.content_of` writes them, fit."""
+        """Raise MissionError unless these added or moved tasks, as `new_tasks.content_of` writes them, fit.
+
+        ParameterError if robots cannot agree on them (`capabilities`).
+        """
         ...
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
@@ -99,13 +103,14 @@ class TeamValuer(ABC):
     """
 
     def __init__(self, problem: Problem, robot: str) -> None:
+        refuse_what_is_not_agreed(problem)
         self._given = self._whole = self.problem = problem
         self._robots, self._tasks = problem.robot_index, problem.task_index
         self._me = self._robots[robot]
         self._added: tuple[bytes, ...] = ()
 
     def check(self, tasks: Sequence[bytes]) -> None:
-        with_tasks(self._given, tasks)
+        refuse_what_is_not_agreed(with_tasks(self._given, tasks))
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
         if opening.added != self._added:

@@ -57,7 +57,8 @@ def simulate(
     Raises
     ------
     ParameterError
-        if the plan names robots or tasks that the mission does not have; if a film of another world is asked for.
+        if the plan names robots or tasks that the mission does not have; if a film of another world is asked for; if a
+        negotiation is to keep time windows, deadlines, shifts, lags, teams, relations or lateness.
     InputError, RenderingError
         before the run, if a film cannot have that suffix, or nothing can draw it on this machine.
     MissingExtraError
@@ -94,8 +95,10 @@ def _runner(mission: Mission, plan: Plan | Negotiation) -> Callable[..., Report]
 
         return partial(carry_out, mission, plan)
     from muster.allocation.problem import Problem
+    from muster.negotiation.capabilities import refuse_mission
     from muster.running.negotiated.simulation import Negotiation, negotiate_and_carry_out
 
     if not isinstance(plan, Negotiation):
         raise ParameterError(f"plan: {shown(plan)}; expected a Plan or a Negotiation")
+    refuse_mission(mission)
     return partial(negotiate_and_carry_out, Problem.compile(mission).ready(), plan)

@@ -1,0 +1,92 @@
+"""Missions on which robots cannot agree without a centre are refused by name, wherever a user can ask for one."""
+
+from dataclasses import replace
+
+import pytest
+
+from muster import Event, Mission, Negotiation, Robot, Rules, Task, simulate
+from muster.allocation.capabilities import those_that_can
+from muster.allocation.problem import Problem
+from muster.mission.errors import ParameterError
+from muster.mission.model import Lag, TeamPart
+from muster.negotiation.capabilities import refuse_mission, refuse_what_is_not_agreed
+from muster.negotiation.methods import METHODS
+
+ROBOTS = tuple(Robot(id=name, position=(5.0 * k, 0.0), radius_m=0.3) for k, name in enumerate("ab"))
+PLAIN = Mission(robots=ROBOTS, tasks=(Task(id="s", position=(1.0, 5.0)), Task(id="t", position=(9.0, 5.0))))
+
+
+def with_task(**keys):
+    return replace(PLAIN, tasks=(PLAIN.tasks[0], replace(PLAIN.tasks[1], **keys)))
+
+
+REFUSED = {
+    "task t: window_s (window)": with_task(window_s=((50.0, 90.0),)),
+    "task t: deadline_s (deadline)": with_task(deadline_s=90.0),
+    "robot b: available_until_s (shift)": replace(
+        PLAIN, robots=(ROBOTS[0], replace(ROBOTS[1], available_until_s=80.0))
+    ),
+    "task t: prerequisites with after_s or within_s (lag)": with_task(
+        prerequisites=("s",), lags={"s": Lag(after_s=5.0)}
+    ),
+    "task t: robots_needed (team)": with_task(robots_needed=2),
+    "task t: team (team)": with_task(team=(TeamPart(count=2),)),
+    "task t: same_robot_as (relation)": with_task(same_robot_as=("s",)),
+    "task t: other_robot_than (relation)": with_task(other_robot_than=("s",)),
+    "starts_with (starts-with)": with_task(starts_with=("s",)),
+    "objective lateness (lateness)": replace(with_task(due_s=20.0), rules=Rules(objective="lateness")),
+}
+
+
+@pytest.mark.parametrize("where", REFUSED)
+def test_the_error_names_the_key_and_the_allocators_that_can(where):
+    word = where[where.rindex("(") + 1 : -1]
+    with pytest.raises(ParameterError) as refused:
+        refuse_mission(REFUSED[where])
+    assert f"{where}; expected a plan of {' or '.join(those_that_can([word]))}" in str(refused.value)
+    assert "auction" in str(refused.value)
+
+
+@pytest.mark.parametrize("where", REFUSED)
+def test_the_package_refuses_before_a_record_is_begun(where, tmp_path):
+    with pytest.raises(ParameterError, match="without a centre"):
+        simulate(REFUSED[where], Negotiation(), record=tmp_path / "run.mcap")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("where", REFUSED)
+@pytest.mark.parametrize("method", METHODS)
+def test_no_robot_of_any_method_takes_part(method, where):
+    chosen = METHODS[method]
+    problem = Problem.compile(REFUSED[where]).ready()
+    with pytest.raises(ParameterError, match="without a centre"):
+        chosen.negotiator(problem, chosen.allocator.parameters(), "a", incarnation=1)
+
+
+def test_robots_and_tasks_of_events_are_looked_at():
+    late = Event(at_s=5.0, new_task=Task(id="u", position=(3.0, 3.0), deadline_s=60.0))
+    joins = Event(at_s=5.0, robot_joins=Robot(id="c", position=(3.0, 3.0), available_until_s=60.0))
+    with pytest.raises(ParameterError, match="task u: deadline_s"):
+        refuse_mission(replace(PLAIN, events=(late,)))
+    with pytest.raises(ParameterError, match="robot c: available_until_s"):
+        refuse_mission(replace(PLAIN, events=(joins,)))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_robot_does_not_announce_a_task_on_which_they_cannot_agree(method):
+    chosen = METHODS[method]
+    robot = chosen.negotiator(Problem.compile(PLAIN).ready(), chosen.allocator.parameters(), "a", incarnation=1)
+    before = list(robot.facts)
+    with pytest.raises(ParameterError, match="task u: window_s"):
+        robot.announce(Task(id="u", position=(3.0, 3.0), window_s=((10.0, 20.0),)))
+    assert list(robot.facts) == before
+    robot.announce(Task(id="u", position=(3.0, 3.0)))
+    assert len(list(robot.facts)) == len(before) + 1
+
+
+def test_plain_missions_due_times_and_ignored_rules_are_accepted():
+    refuse_mission(PLAIN)
+    refuse_mission(with_task(due_s=20.0))
+    refuse_mission(with_task(prerequisites=("s",)))
+    for ignored, keys in {"window": {"window_s": ((5.0, 9.0),)}, "team": {"robots_needed": 2}}.items():
+        refuse_what_is_not_agreed(Problem.compile(with_task(**keys), None, (ignored,)))
