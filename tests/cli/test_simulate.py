@@ -71,7 +71,9 @@ def test_what_is_printed_for_programs(muster):
     assert list(data) == [
         "mission_time_s", "tasks_done", "tasks_lost", "contacts", "min_distance_m", "waiting_s", "reallocations",
         "robots", "starts_s", "ends_s",
-        "objective", "tasks", "done_twice", "found", "remarks",
+        "objective", "tasks", "done_twice", "found",
+        "waiting_by_cause_s", "lateness_s", "missed", "deadlines_missed_s", "within_exceeded_s", "shifts_exceeded_s",
+        "remarks",
     ]  # fmt: skip
     assert len(data["tasks_done"]) == 31
     assert data["tasks_lost"] == []

@@ -17,6 +17,7 @@ from muster.mission.errors import MissingExtraError, ParameterError
 from muster.negotiation.capabilities import refuse_what_is_not_agreed
 
 OTHERS = tuple(product(WINNERS, PLACEMENTS))
+UNTIMED = [name for name in mission_names() if name != "collapsed-building"]  # whose central auction has coalitions
 
 
 def cut_down(mission, tasks=60, robots=8):
@@ -41,7 +42,7 @@ def assert_like_central(problem, terms):
     }
 
 
-@pytest.mark.parametrize(("number", "name"), list(enumerate(mission_names())))
+@pytest.mark.parametrize(("number", "name"), list(enumerate(UNTIMED)))
 def test_on_every_shipped_mission(number, name):
     more = {"salesmen": 3} if mission_path(name).suffix == ".tsp" else {}
     try:
