@@ -180,9 +180,10 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
 
 
 def _stops(problem: Problem, inspection: core.Inspection) -> list[tuple[RouteStop, ...]]:
-    """By robot the times of the earliest schedule."""
+    """By robot the times of the earliest schedule; nothing where there is none, which is for the judge to say."""
     stops = inspection.stops
-    assert stops is not None, "the routes of an allocator have a schedule"
+    if stops is None:
+        return [() for _ in problem.robots]
     return [tuple(RouteStop(problem.tasks[j].id, *times) for j, *times in row) for row in stops]
 
 
