@@ -98,7 +98,7 @@ def test_data_frames(mission, plan, report):
     with pytest.raises(muster.ParameterError, match="of: stations; expected tasks or robots"):
         mission.to_frame("stations")
     stops = plan.to_frame()
-    assert list(stops.columns) == ["robot", "place", "task"]
+    assert list(stops.columns) == ["robot", "place", "task", "arrive_s", "begin_s", "end_s"]
     for route in plan.routes:
         assert tuple(stops[stops.robot == route.robot].sort_values("place").task) == route.tasks
     visits = muster.verify(mission, plan).to_frame()

@@ -16,7 +16,7 @@ CALLS = [
     (["explain", "yard.yaml", "plan.json"], READ_BOTH),
     (["explain", "yard.yaml", "plan.json", "--task", "open"], READ_BOTH),
     (["missions"], "missions in "),
-    (["init", "new"], "wrote new.yaml: a template, 15 lines\n"),
+    (["init", "new"], "wrote new.yaml: a template, 19 lines\n"),
     (["init", "new", "--from", "6T-2R"], "wrote new.yaml: a copy of 6T-2R, "),
 ]
 

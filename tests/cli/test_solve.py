@@ -130,7 +130,7 @@ def test_objective(objective, muster):
 def test_unknown_objective(muster):
     code, out, err = muster("solve", "yard.yaml", "--objective", "best")
     assert (code, out) == (2, "")
-    assert err == 'objective: "best"; expected total+max or total or max or average or makespan\n'
+    assert err == 'objective: "best"; expected total+max or total or max or average or makespan or lateness\n'
 
 
 def test_allocators(muster):

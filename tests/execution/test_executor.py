@@ -52,6 +52,7 @@ def kinds(executor):
 def test_shipped_missions_are_carried_out_as_planned(name):
     """Every task, in order, after its prerequisites, for the usage and in the time that the judge finds; no events."""
     mission = replace(muster.load(name), events=())
+    mission = replace(mission, rules=replace(mission.rules, timing="constant"))  # as the robots of this world drive
     plan = muster.solve(mission, "greedy")
     verdict = muster.verify(mission, plan)
     world, step = World(mission), verdict.makespan_s / 2000

@@ -340,29 +340,27 @@ class _Reading:
                 self._missing(f"routes[{k}].tasks", "a list of ids")
             tasks = self._names(route.get("tasks", []), f"routes[{k}].tasks")
             usage = self._number(route, "usage", f"routes[{k}].")
-            routes.append(Route(str(route["robot"]), tasks, usage, self._stops(route.get("stops"), tasks, k)))
+            routes.append(Route(str(route["robot"]), tasks, usage, self._stops(route.get("stops"), k)))
         return tuple(routes)
 
-    def _stops(self, data: object, tasks: Sequence[str], k: int) -> tuple[RouteStop, ...]:
-        """The stops of a route: none, or one for each of its tasks in their order."""
+    def _stops(self, data: object, k: int) -> tuple[RouteStop, ...]:
+        """The stops of a route; whether they are those of its tasks is for the judge to say."""
         if data is None or data == []:
             return ()
-        if not isinstance(data, list) or len(data) != len(tasks):
-            self._refuse(f"routes[{k}].stops", data, f"a list of {len(tasks)}, one for each of its tasks")
+        if not isinstance(data, list):
+            self._refuse(f"routes[{k}].stops", data, "a list of stops, one for each of its tasks")
             return ()
         before = len(self._found)
-        for n, (stop, task) in enumerate(zip(data, tasks, strict=True)):
-            self._check_stop(stop, task, f"routes[{k}].stops[{n}]")
+        for n, stop in enumerate(data):
+            self._check_stop(stop, f"routes[{k}].stops[{n}]")
         if len(self._found) > before:
             return ()
         return tuple(RouteStop(str(stop["task"]), *(float(stop[name]) for name in _TIMES)) for stop in data)
 
-    def _check_stop(self, stop: object, task: str, at: str) -> None:
+    def _check_stop(self, stop: object, at: str) -> None:
         if not isinstance(stop, dict) or not _is_id(stop.get("task")):
             self._refuse(at, stop, f"a mapping with task, {', '.join(_TIMES)}")
             return
-        if str(stop["task"]) != task:
-            self._refuse(f"{at}.task", stop["task"], f"{shown(task)}, as in its tasks")
         for name in _TIMES:
             if not _finite(stop.get(name)):
                 self._refuse(f"{at}.{name}", stop.get(name), "a finite number, in seconds")

@@ -67,6 +67,11 @@ def _stops(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation
     """Find stops whose times are not those of the earliest schedule."""
     visits = {(route.robot, visit.task): visit for route in verdict.routes for visit in route.visits}
     for route in plan.routes:
+        named = tuple(stop.task for stop in route.stops)
+        if named and named != route.tasks:
+            detail = f"the stops are those of {', '.join(named)}, not of the route's tasks"
+            yield Violation("stop", route.robot, None, detail)
+            continue
         for stop in route.stops:
             visit = visits.get((route.robot, stop.task))
             if visit is None:
