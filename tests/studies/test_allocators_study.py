@@ -7,8 +7,7 @@ import pytest
 import muster
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import run
-from muster.mission.model import OBJECTIVES
-from muster_studies.allocators.study import MISSIONS
+from muster_studies.allocators.study import MISSIONS, OBJECTIVES
 from muster_studies.effort import Effort
 from muster_studies.markdown import as_markdown
 from muster_studies.registry import study_named
