@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import muster
+from muster.mission.plan import Route, RouteStop
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +107,15 @@ def test_data_frames(mission, plan, report):
     assert dict(zip(report.to_frame().task, report.to_frame().ends_s, strict=True)) == report.ends_s
     empty = muster.Plan(routes=()).to_frame()
     assert list(empty.columns) == ["robot", "place", "task"]
+
+
+def test_a_data_frame_has_no_times_of_stops_that_are_not_the_routes_tasks():
+    pytest.importorskip("pandas")
+    stop = RouteStop("b", 1.0, 2.0, 3.0)
+    for stops in ((stop,), (stop, stop, stop)):
+        frame = muster.Plan(routes=(Route("r", ("a", "b"), stops=stops),)).to_frame()
+        assert frame.task.tolist() == ["a", "b"]
+        assert frame.begin_s.isna().all()
 
 
 def test_without_pandas_a_data_frame_says_what_to_install(plan, monkeypatch):

@@ -242,7 +242,6 @@ class Problem:
     @cached_property
     def _kind_keys(self) -> list[tuple[object, ...]]:
         columns = [kinds for rule in RULES if (kinds := rule.kinds(self)) is not None]
-        columns.append([self.timed_rules.in_team(i) for i in range(len(self.robots))])
         return list(zip(*columns, strict=True))
 
     def _allowed_row(self, i: int) -> Bools:

@@ -61,6 +61,7 @@ class TimedPlaces(InPlan):
         self.inspection = core.Inspection(problem.core, self.routes)
         self.done = {j for route in routes for j in route}
         self.outcome = cache(self._outcome)
+        self.without = cache(self._without)
 
     def members(self, j: int) -> Sequence[int]:
         return [i for i, route in enumerate(self.routes) if j in route]
@@ -107,16 +108,15 @@ class TimedPlaces(InPlan):
 
     def _refused(self, i: int, j: int, places: list[Place]) -> Outcome:
         """The first rule with which, beside those before it, no place is left."""
-        left = self._admissible(self._without(_RELAXED), places)
+        left = self._admissible(self.without(_RELAXED), places)
         if not left:
             return self._no_order(i, j, places)
         for at, word in enumerate(_RELAXED):
-            before, left = left, self._admissible(self._without(_RELAXED[at + 1 :]), [place for place, _ in left])
+            before, left = left, self._admissible(self.without(_RELAXED[at + 1 :]), [place for place, _ in left])
             if not left:
                 return Outcome(word=word, detail=self._detail(word, i, j, before))
         raise AssertionError("a place that keeps all rules is admissible")
 
-    @cache  # noqa: B019
     def _without(self, words: Sequence[str]) -> Problem:
         """The problem in which some rules do not hold."""
         problem = self.problem
@@ -126,7 +126,7 @@ class TimedPlaces(InPlan):
 
     def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
         """Why no place is left whatever the times and capacities."""
-        inspections = [core.Inspection(self._without(_RELAXED).core, place.routes) for place in places]
+        inspections = [core.Inspection(self.without(_RELAXED).core, place.routes) for place in places]
         if any(found.makespan is not None and math.isinf(found.usages[i]) for found in inspections):
             return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
         detail = "at every place in its route tasks would wait for each other in a circle, or longer than they may"

@@ -11,7 +11,8 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.model import Robot, Task, TeamPart
+from muster.mission.model import Robot, Task
+from muster.mission.task_relations import tied_by
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -81,8 +82,10 @@ class TimedRules:
     def units(self) -> list[list[int]]:
         """The tasks in sets that begin together."""
         members: dict[int, list[int]] = {}
-        for j, u in enumerate(self._joined):
-            members.setdefault(u, []).append(j)
+        tasks = self.problem.tasks
+        tied = tied_by("starts_with", tasks) if self.problem.holds("relation") else range(len(tasks))
+        for j, first in enumerate(tied):
+            members.setdefault(first, []).append(j)
         return list(members.values())
 
     @cached_property
@@ -96,15 +99,6 @@ class TimedRules:
         return [k for k in self.units[self.unit[j]] if k != j]
 
     @cached_property
-    def _joined(self) -> list[int]:
-        joined = list(range(len(self.problem.tasks)))
-        for j, task in enumerate(self.problem.tasks):
-            for k in self._related(task.starts_with):
-                old, new = joined[k], joined[j]
-                joined = [new if u == old else u for u in joined]
-        return joined
-
-    @cached_property
     def same_robot(self) -> list[list[int]]:
         """For each task those that the same robots do."""
         return self._both_ways([self._related(task.same_robot_as) for task in self.problem.tasks])
@@ -116,8 +110,11 @@ class TimedRules:
 
     @staticmethod
     def _both_ways(named: list[list[int]]) -> list[list[int]]:
-        pairs = {pair for j, others in enumerate(named) for k in others for pair in ((j, k), (k, j))}
-        return [sorted(k for first, k in pairs if first == j) for j in range(len(named))] if pairs else named
+        both: list[set[int]] = [set(others) for others in named]
+        for j, others in enumerate(named):
+            for k in others:
+                both[k].add(j)
+        return [sorted(others) for others in both]
 
     def _related(self, names: Sequence[str]) -> list[int]:
         return [self.problem.task_index[name] for name in names] if self.problem.holds("relation") else []
@@ -161,11 +158,8 @@ class TimedRules:
                     np.ones(len(self.problem.robots), np.bool_),
                 )
             ]
-        return [(part.count, self._fits(part)) for part in task.team]
-
-    def _fits(self, part: TeamPart) -> Bools:
-        skills = part.requires if self.problem.holds("skill") else ()
-        return np.array([_is_of(robot, part) and set(skills) <= set(robot.skills) for robot in self.problem.robots])
+        skills = self.problem.holds("skill")
+        return [(p.count, np.array([p.fits(r, skills=skills) for r in self.problem.robots])) for p in task.team]
 
     def places(self, u: int) -> tuple[list[int], Bools]:
         """The places of the teams of a unit, of `needs` one: the task of each, and (places, m) which robots fit."""
@@ -216,10 +210,6 @@ def _limit(value: float | None) -> float:
 
 def _ability(robot: Robot, name: str) -> float:
     return float((robot.abilities or {}).get(name, 0.0))
-
-
-def _is_of(robot: Robot, part: TeamPart) -> bool:
-    return part.type in (None, robot.type) and part.kind in (None, robot.kind)
 
 
 def _fewest(least: float, able: Floats) -> int:

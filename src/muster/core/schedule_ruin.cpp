@@ -2,16 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ruin_string.hpp"
 #include "schedule_search.hpp"
 
 namespace muster {
-
-namespace {
-
-constexpr double kSplit = 0.5;       // strings that leave a part in between where it is
-constexpr double kLongerGap = 0.01;  // how often that part is longer by one
-
-}  // namespace
 
 void ScheduleSearch::ruin() {
   removed_.clear();
@@ -81,24 +75,11 @@ void ScheduleSearch::ruin_at_once(int seed) {
   for (std::size_t k = 0; k < kept; ++k) take(nearest_[k].second);
 }
 
-// Takes `length` tasks around one out of a route, or all that may go, in one string, or in one with a gap.
 void ScheduleSearch::take_string(int robot, int at, int length) {
   const Timeline& timeline = roster_.timeline();
-  const int from = problem_.fixed(robot) + 1, size = timeline.tasks_in(robot), loose = size + 1 - from;
-  length = std::min(length, loose);
-  int gap = 0;
-  if (length < loose && length > 1 && random_.uniform() < kSplit) {
-    gap = 1;
-    while (length + gap < loose && random_.uniform() < kLongerGap) ++gap;
-  }
-  const int span = length + gap;
-  const int first_least = std::max(from, at - span + 1), first_most = std::min(at, size + 1 - span);
-  const int first = first_least + random_.below(first_most - first_least + 1);
-  const int gap_at = gap ? first + 1 + random_.below(length - 1) : first + span;
   std::vector<int> units;
-  for (int k = first; k < first + span; ++k) {
-    if (k < gap_at || k >= gap_at + gap) units.push_back(timeline.stop(robot, k).unit);
-  }
+  string_around(at, length, problem_.fixed(robot) + 1, timeline.tasks_in(robot) + 1, random_,
+                [&](int k) { units.push_back(timeline.stop(robot, k).unit); });
   for (const int unit : units) take(unit);
 }
 

@@ -6,18 +6,18 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ruin_string.hpp"
+
 namespace muster {
 
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kSplit = 0.5;       // strings that leave a part in between where it is
-constexpr double kLongerGap = 0.01;  // how often that part is longer by one
-constexpr double kTie = 1e-2;        // weight of the route's own growth where the objective does not see it
-constexpr int kAdjacent = 100;       // tasks that a ruin may spread to
-constexpr int kNearRobots = 4;       // robots whose starts are tried for a task
-constexpr int kFew = 200;            // tasks, up to which each is tried at every place, which costs little
-constexpr int kRetried = 20;         // tasks left out that a step tries again
+constexpr double kTie = 1e-2;   // weight of the route's own growth where the objective does not see it
+constexpr int kAdjacent = 100;  // tasks that a ruin may spread to
+constexpr int kNearRobots = 4;  // robots whose starts are tried for a task
+constexpr int kFew = 200;       // tasks, up to which each is tried at every place, which costs little
+constexpr int kRetried = 20;    // tasks left out that a step tries again
 
 // More than leaving out a task of weight 1 can ever save.
 double penalty_of(const Problem& problem, const Team& team) {
@@ -45,7 +45,6 @@ Search::Search(const Problem& problem, const Routes& start, std::uint64_t seed, 
       random_(seed),
       neighbours_(problem, kAdjacent, kNearRobots),
       everywhere_(problem.tasks() <= kFew),
-      sees_waiting_(problem.objective() == Objective::makespan && problem.has_prerequisites()),
       penalty_(0.0),
       team_(problem, start),
       ruined_(problem.robots(), 0) {
@@ -119,7 +118,7 @@ int Search::seed_task() {
   if (!absent.empty() && random_.uniform() < 0.5) return absent[random_.below(static_cast<int>(absent.size()))];
   const bool sees_greatest = problem_.objective() != Objective::total && problem_.objective() != Objective::average;
   if (sees_greatest && random_.uniform() < settings_.greatest_share) {
-    const int task = sees_waiting_ ? any_critical() : any_of(team_.route(greatest()));
+    const int task = any_of(team_.route(greatest()));
     if (task != Team::kAbsent) return task;
   }
   return random_.below(problem_.tasks());
@@ -129,29 +128,12 @@ int Search::any_of(const std::vector<int>& tasks) {
   return tasks.empty() ? Team::kAbsent : tasks[random_.below(static_cast<int>(tasks.size()))];
 }
 
-int Search::any_critical() {
-  team_.makespan();
-  return any_of(team_.critical());
-}
-
-// Takes `length` tasks around a task out of its route, or all that may go, in one string, or in one with a gap.
 void Search::take_string(int task, int length) {
-  const int robot = team_.robot_of(task), at = team_.at(task), from = problem_.fixed(robot);
-  const int size = static_cast<int>(team_.route(robot).size()), loose = size - from;
-  length = std::min(length, loose);
-  int gap = 0;
-  if (length < loose && length > 1 && random_.uniform() < kSplit) {
-    gap = 1;
-    while (length + gap < loose && random_.uniform() < kLongerGap) ++gap;
-  }
-  const int span = length + gap;
-  const int first_least = std::max(from, at - span + 1), first_most = std::min(at, size - span);
-  const int first = first_least + random_.below(first_most - first_least + 1);
-  const int gap_at = gap ? first + 1 + random_.below(length - 1) : first + span;
+  const int robot = team_.robot_of(task), from = problem_.fixed(robot);
+  const auto& route = team_.route(robot);
   const std::size_t before = removed_.size();
-  for (int k = first; k < first + span; ++k) {
-    if (k < gap_at || k >= gap_at + gap) removed_.push_back(team_.route(robot)[k]);
-  }
+  string_around(team_.at(task), length, from, static_cast<int>(route.size()), random_,
+                [&](int at) { removed_.push_back(route[at]); });
   for (std::size_t k = before; k < removed_.size(); ++k) team_.remove(removed_[k]);
 }
 
@@ -165,7 +147,7 @@ void Search::recreate() {
     for (int k = 0; k < kRetried; ++k) pending_.push_back(absent[random_.below(static_cast<int>(absent.size()))]);
   }
   order_pending();
-  peak_ = peak();
+  peak_ = load(greatest());
   const auto ready = [&](int task) {
     return std::ranges::all_of(problem_.prerequisites(task), [&](int before) { return team_.present(before); });
   };
@@ -210,7 +192,7 @@ bool Search::insert(int task) {
   }
   if (place_.robot == Team::kAbsent) return false;
   team_.insert(task, place_.robot, place_.at);
-  peak_ = sees_waiting_ ? peak() : std::max(peak_, load(place_.robot));
+  peak_ = std::max(peak_, load(place_.robot));
   return true;
 }
 
@@ -237,11 +219,11 @@ void Search::try_far(int task) {
   }
 }
 
-// The place where the route grows least; scores never fall with growth but for `average`, and where tasks wait.
+// The place where the route grows least; scores never fall with growth but for `average`.
 void Search::try_route(int robot, int task) {
   const auto& route = team_.route(robot);
   const int first = team_.earliest(robot), last = team_.latest(robot), size = static_cast<int>(route.size());
-  const bool every_place = problem_.objective() == Objective::average || sees_waiting_;
+  const bool every_place = problem_.objective() == Objective::average;
   const double work = problem_.work_usage(robot, task);
   double least = kNever;
   int best = -1;
@@ -310,7 +292,6 @@ double Search::score(int robot, int task, int at, double growth) const {
       return team_.later_arrivals(robot, task, at, growth);
     case Objective::makespan: {
       const double longer = team_.longer(robot, task, at);
-      if (sees_waiting_) return kTie * longer + std::max(0.0, team_.end_through(robot, task, at) - peak_);
       return kTie * longer + std::max(0.0, team_.cost(robot).done + longer - peak_);
     }
     case Objective::lateness:
@@ -330,14 +311,6 @@ void Search::drop_orphans() {
       gone.push_back(dependant);
     }
   }
-}
-
-// What the robots that do most come to; where tasks wait, when the mission ends.
-double Search::peak() {
-  if (!sees_waiting_) return load(greatest());
-  const double end = team_.makespan();
-  team_.measure_tails();
-  return end;
 }
 
 double Search::load(int robot) const {

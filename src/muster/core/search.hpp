@@ -39,7 +39,6 @@ class Search {
   void ruin();
   int seed_task();
   int any_of(const std::vector<int>& tasks);
-  int any_critical();
   void take_string(int task, int longest);
   void recreate();
   void order_pending();
@@ -55,7 +54,6 @@ class Search {
   void drop_orphans();
   int greatest() const;
   double load(int robot) const;
-  double peak();
   double objective();
   double cost();
   void note_best();
@@ -64,9 +62,8 @@ class Search {
   SearchSettings settings_;
   Random random_;
   Neighbours neighbours_;
-  bool everywhere_;    // whether a task is tried at every place
-  bool sees_waiting_;  // whether a place is judged by what the end of the mission waits for
-  double penalty_;     // of a unit of weight left out
+  bool everywhere_;  // whether a task is tried at every place
+  double penalty_;   // of a unit of weight left out
   Team team_;
   double current_;
   Routes best_;

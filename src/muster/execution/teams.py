@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+import numpy as np
+
+from muster.allocation.bottleneck import matched
 from muster.mission.model import Robot, Task, TeamPart
+from muster.mission.task_relations import tied_by
 
 _ROUNDING = 1e-9  # relative; by which abilities may be below what is needed
 
@@ -29,25 +33,11 @@ def _lacking_abilities(needs: Mapping[str, float], robots: Sequence[Robot]) -> I
 
 
 def _lacking_part(parts: Sequence[TeamPart], robots: Sequence[Robot]) -> str:
-    """The first part for which no robot is left: a matching by augmenting paths, robot for place."""
+    """The first part for which no robot is left."""
     places = [part for part in parts for _ in range(part.count)]
-    place_of: dict[str, int] = {}
-
-    def fill(place: int, tried: set[str]) -> bool:
-        for robot in robots:
-            if robot.id not in tried and _fits(robot, places[place]):
-                tried.add(robot.id)
-                if robot.id not in place_of or fill(place_of[robot.id], tried):
-                    place_of[robot.id] = place
-                    return True
-        return False
-
-    return next((f"one more {_words(part)}" for k, part in enumerate(places) if not fill(k, set())), "")
-
-
-def _fits(robot: Robot, part: TeamPart) -> bool:
-    right_type = part.type in (None, robot.type)
-    return right_type and part.kind in (None, robot.kind) and set(part.requires) <= set(robot.skills)
+    fits = np.array([[part.fits(robot) for robot in robots] for part in places], dtype=np.bool_)
+    filled = matched(fits.reshape(len(places), len(robots))).values()
+    return next((f"one more {_words(part)}" for k, part in enumerate(places) if k not in filled), "")
 
 
 def _words(part: TeamPart) -> str:
@@ -57,11 +47,9 @@ def _words(part: TeamPart) -> str:
 
 def units_of(tasks: Collection[Task]) -> dict[str, tuple[str, ...]]:
     """For each task all tasks that begin at the same moment, itself included, in the order given."""
-    tied: dict[str, set[str]] = {task.id: {task.id} for task in tasks}
-    for task in tasks:
-        for name in task.starts_with:
-            if name in tied and tied[name] is not tied[task.id]:
-                joined = tied[task.id] | tied[name]
-                tied |= dict.fromkeys(joined, joined)
-    place = {task.id: k for k, task in enumerate(tasks)}
-    return {name: tuple(sorted(unit, key=place.__getitem__)) for name, unit in tied.items()}
+    listed = list(tasks)
+    tied = tied_by("starts_with", listed)
+    units: dict[int, list[str]] = {}
+    for task, first in zip(listed, tied, strict=True):
+        units.setdefault(first, []).append(task.id)
+    return {task.id: tuple(units[first]) for task, first in zip(listed, tied, strict=True)}

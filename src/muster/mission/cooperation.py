@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.value_types import INVALID, Choice, Fault, JsonSchema, Many, Number, Path, Text, Whole, shown
+
+if TYPE_CHECKING:
+    from muster.mission.robots import Robot
 
 
 @record
@@ -62,3 +65,8 @@ class TeamPart(Checked):
     type: str | None = spec(Text(), "their type; without it any", default=None)
     kind: str | None = spec(Choice(("ground", "air")), "where they move; without it either", default=None)
     requires: tuple[str, ...] = spec(Many(Text()), "skills that each must have", default=())
+
+    def fits(self, robot: Robot, *, skills: bool = True) -> bool:
+        """Whether a robot may be one of them; without `skills` whatever its skills."""
+        is_of = self.type in (None, robot.type) and self.kind in (None, robot.kind)
+        return is_of and (not skills or set(self.requires) <= set(robot.skills))

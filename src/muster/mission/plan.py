@@ -159,16 +159,23 @@ class Plan:
     def to_frame(self) -> DataFrame:
         """A DataFrame with a row for each stop, in the order of the routes; needs the extra `frames`.
 
-        Its columns are robot, place in its route from 1, task, and where the plan has times arrive_s, begin_s, end_s.
+        Its columns are robot, place in its route from 1, task, and where the plan has times arrive_s, begin_s, end_s;
+        those of a route whose stops are not its tasks are empty.
         """
-        timed = [route.stops or [None] * len(route.tasks) for route in self.routes]
         rows = (
-            {"robot": route.robot, "place": place, "task": task} | ({} if stop is None else asdict(stop))
-            for route, stops in zip(self.routes, timed, strict=True)
-            for place, (task, stop) in enumerate(zip(route.tasks, stops, strict=True), 1)
+            {"robot": route.robot, "place": place, "task": task} | times
+            for route in self.routes
+            for place, (task, times) in enumerate(zip(route.tasks, _times_of(route), strict=True), 1)
         )
         has_times = any(route.stops for route in self.routes)
         return data_frame(rows, ("robot", "place", "task", *(_TIMES if has_times else ())))
+
+
+def _times_of(route: Route) -> list[dict[str, Any]]:
+    """For each task of a route its times; none where the stops are not those of its tasks."""
+    if tuple(stop.task for stop in route.stops) != route.tasks:
+        return [{} for _ in route.tasks]
+    return [asdict(stop) for stop in route.stops]
 
 
 def gap(value: float, bound: float) -> float:

@@ -15,6 +15,7 @@ from graphlib import CycleError, TopologicalSorter
 from itertools import groupby, pairwise
 
 from muster.mission.plan import tie_order
+from muster.mission.task_relations import tied_by
 from muster.mission.tasks import Task
 from muster.verification.measure import MeasuredRoute
 from muster.verification.verdict import Violation
@@ -97,13 +98,10 @@ class _Graph:
 
     def _units(self) -> dict[str, str]:
         """For each task the name of its node."""
-        unit = {name: name for name in self.task}
-        for name, task in self.task.items():
-            for other in task.starts_with if "relation" not in self.ignored else ():
-                if other in unit:
-                    old, new = unit[other], unit[name]
-                    unit = {each: new if of == old else of for each, of in unit.items()}
-        return unit
+        if "relation" in self.ignored:
+            return {name: name for name in self.task}
+        tasks = list(self.task.values())
+        return {task.id: tasks[k].id for task, k in zip(tasks, tied_by("starts_with", tasks), strict=True)}
 
     def _lags(self, task: Task) -> list[tuple[str, float, float]]:
         if "prerequisite" in self.ignored:
@@ -119,7 +117,7 @@ class _Graph:
         jumps, passes = self._windows_passed(), 0
         while True:
             for name in order:
-                self.begin[name] = self._earliest(self.nodes[name])
+                self.begin[name] = self._earliest(name)
             delayed = self._delay_prerequisites()
             if delayed is None:
                 break
@@ -149,11 +147,12 @@ class _Graph:
         before, _, seconds = leg
         return seconds + (0.0 if before is None else self._end(before))
 
-    def _earliest(self, node: _Node) -> float:
+    def _earliest(self, name: str) -> float:
         """The begin of a node from what comes before it, and at least what it is now."""
+        node = self.nodes[name]
         bounds = [self._arrival(leg) for leg in node.legs]
-        bounds += [self._end(name) + after for name, after, _ in node.awaited]
-        return self._open(node, max(self.begin[self.node_of[node.tasks[0].id]], *bounds))
+        bounds += [self._end(before) + after for before, after, _ in node.awaited]
+        return self._open(node, max(self.begin[name], *bounds))
 
     def _open(self, node: _Node, time: float) -> float:
         """The first time from `time` on that lies in a window of each task; `time` where none is left."""
@@ -181,10 +180,9 @@ class _Graph:
     def _delay_prerequisites(self) -> Violation | None:
         """Begin later what must not have ended too long before its dependant begins; the last such, if any."""
         found = None
-        for node in self.nodes.values():
-            begin = self.begin[self.node_of[node.tasks[0].id]]
+        for own, node in self.nodes.items():
             for name, _, within in node.awaited:
-                least = begin - within - self.work[name]
+                least = self.begin[own] - within - self.work[name]
                 if is_after(least, self.begin[self.node_of[name]]):
                     self.begin[self.node_of[name]] = least
                     task = next(t.id for t in node.tasks if name in t.prerequisites)

@@ -59,7 +59,7 @@ def _matched(places: Sequence[TeamPart], members: Sequence[Robot], skills: bool)
 
     def place(k: int, tried: set[int]) -> bool:
         for i, robot in enumerate(members):
-            if i in tried or not _fits(robot, places[k], skills):
+            if i in tried or not places[k].fits(robot, skills=skills):
                 continue
             tried.add(i)
             if i not in place_of or place(place_of[i], tried):
@@ -68,9 +68,3 @@ def _matched(places: Sequence[TeamPart], members: Sequence[Robot], skills: bool)
         return False
 
     return all(place(k, set()) for k in range(len(places)))
-
-
-def _fits(robot: Robot, part: TeamPart, skills: bool) -> bool:
-    if part.type not in (None, robot.type) or part.kind not in (None, robot.kind):
-        return False
-    return not skills or set(part.requires) <= set(robot.skills)
