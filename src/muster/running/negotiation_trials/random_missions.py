@@ -8,6 +8,8 @@ from muster.mission.model import OBJECTIVES, Mission, Robot, Rules, Task
 
 SIDE_M = 100.0
 SKILLS = ("camera", "gripper")
+# What robots can agree on without a centre.
+_AGREED = [objective for objective in OBJECTIVES if objective != "lateness"]
 
 
 def random_mission(random: Random, *, robots: int, tasks: int, once: float, free: bool = False) -> Mission:
@@ -17,7 +19,7 @@ def random_mission(random: Random, *, robots: int, tasks: int, once: float, free
     """
     linked, skilled, limited = (random.random() < share and not free for share in (0.5, 0.3, 0.5))
     return Mission(
-        rules=Rules(objective=random.choice(OBJECTIVES), return_to_start=random.random() < 0.3),
+        rules=Rules(objective=random.choice(_AGREED), return_to_start=random.random() < 0.3),
         robots=tuple(
             Robot(
                 id=f"r_{k}",
