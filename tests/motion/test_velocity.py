@@ -122,6 +122,18 @@ def test_a_robot_that_must_looks_where_it_drives(curve, limits, start):
     assert (ahead[moving] >= speed[moving] * math.cos(tolerance)).all()
 
 
+@pytest.mark.parametrize("yaw_acceleration", [1, 2, 4])
+def test_behind_a_bend_a_heading_hardly_swings_out(yaw_acceleration):
+    """However long the straight segment is, on which the yaw rate of the bend has to end."""
+    points = np.array([[0.0, 0], [0, 1], [25, 3]])
+    curve = smoothed(Path(points), lambda _: True, radii_m=(0.5,), keep=range(len(points))).curve
+    limits = Limits(speed_mps=0.25, yaw_acceleration_radps2=yaw_acceleration)
+    found, _, _ = moments(timed(curve, limits, faces_its_way=True))
+    over_ground = found.velocities[:, :2]
+    ahead = over_ground[:, 0] * np.cos(found.headings) + over_ground[:, 1] * np.sin(found.headings)
+    assert (ahead >= np.linalg.norm(over_ground, axis=1) * math.cos(0.06)).all()
+
+
 @given(
     length=st.floats(0.01, 100), speed=st.floats(0.1, 10), gain=st.floats(0.1, 10), faces=st.booleans(), d=st.just(2)
 )

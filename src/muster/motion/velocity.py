@@ -26,6 +26,7 @@ Indices = npt.NDArray[np.intp]
 _CORNER = 1e-6  # radians; a smaller turn between two segments is rounding
 _TURN_STEP = 0.05  # radians between two moments on a bend
 _LEAST_PIECES = 4  # of a bent segment
+_SWING = 0.05  # radians by which a heading may swing out on a straight segment, until the yaw rate of a bend is 0
 
 
 def timed(
@@ -131,6 +132,8 @@ def _driven(
     which, parts = _places(curve, leg, step_m)
     way = curve.arc_lengths(which, parts)
     turning = _turning(curve, which, parts, limits) if faces_its_way else np.zeros(len(way))
+    which, way, turning = _with_settling(curve.straight, which, way, turning)
+    parts = curve.parts_at(which, way)
     bend = np.abs(curve.curvature_at(which, parts))
     squares = _squares(way, bend, np.abs(turning), limits)
     which, way, squares, turning = _with_cruising(curve.straight, (which, way, squares, turning), limits)
@@ -174,6 +177,24 @@ def _turning(curve: Curve, which: Indices, parts: Floats, limits: Limits) -> Flo
         first = np.flatnonzero(np.diff(which))
         turning[first] = turning[first + 1] = (turning[first] + turning[first + 1]) / 2
     return turning
+
+
+def _with_settling(
+    straight: npt.NDArray[np.bool_], which: Indices, way: Floats, turning: Floats
+) -> tuple[Indices, Floats, Floats]:
+    """The same places, and on straight segments beside bends those between which the yaw rate is 0.
+
+    A heading that begins a straight segment with a yaw rate and ends it as it began swings out by 4 / 27 of the angle
+    that the rate alone would make, however long the segment is.
+    """
+    at: list[int] = []
+    more: list[float] = []
+    for k in np.flatnonzero(straight[which[:-1]] & (which[:-1] == which[1:])):
+        first, last = np.minimum(_ratio(_SWING * 27 / 4, np.abs(turning[k : k + 2])), (way[k + 1] - way[k]) / 3)
+        inside = [way[k] + first] * bool(turning[k]) + [way[k + 1] - last] * bool(turning[k + 1])
+        at += [int(k) + 1] * len(inside)
+        more += inside
+    return np.insert(which, at, which[np.array(at, dtype=np.intp)]), np.insert(way, at, more), np.insert(turning, at, 0)
 
 
 def _squares(way: Floats, bend: Floats, turning: Floats, limits: Limits) -> Floats:
