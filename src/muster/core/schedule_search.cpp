@@ -100,7 +100,7 @@ void ScheduleSearch::step(double temperature) {
   ruin();
   if (roster_.settle() && recreate(most)) {
     roster_.drop_orphans();
-    const bool possible = roster_.settle() && roster_.admissible();
+    const bool possible = roster_.settle_begins() && roster_.admissible();
     const double next = possible ? cost() : kNever;
     if (next < most) {
       current_ = next;
