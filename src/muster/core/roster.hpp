@@ -64,8 +64,10 @@ class Roster {
   // False: no schedule exists; then only `rollback` helps.
   bool insert(const UnitInsertion& insertion);
   void remove(int unit);
-  // Takes out, with everything that waits for it, what stands without its prerequisites.
-  void drop_orphans();
+  // Takes out what a plan cannot hold when nothing more comes to it: what stands without its prerequisites, with
+  // everything that waits for it. `trial` says where what is taken out may be tried again. False: no schedule exists
+  // for the rest.
+  bool finish(const Trial& trial = {});
   // Propagates removals, which `insert` and `best_insertion` do on their own.
   bool settle();
   // Whether the routes changed since the last commit are within the robots' capacities.
@@ -89,6 +91,7 @@ class Roster {
 
  private:
   friend class Placement;
+  void drop_orphans();
   struct Saved {
     int robot;
     double usage;
