@@ -62,7 +62,7 @@ def admissible_part(problem: Problem, routes: Routes) -> Routes:
     route above its capacity. If routes deadlock, only the fixed tasks are left. With rules about time, teams or
     relations tasks are removed with which there is no schedule, those that begin together all at once.
     """
-    if problem.timed_rules.are_any:
+    if problem.has_timed_rules:
         return _timed_part(problem, routes)
     least = [len(problem.beginning(i)) for i in range(len(problem.robots))]
     part = [[j for k, j in enumerate(route) if k < least[i] or problem.may(i, j)] for i, route in enumerate(routes)]

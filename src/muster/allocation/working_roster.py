@@ -49,6 +49,13 @@ class WorkingRoster:
         self.core.rollback()
         return False
 
+    def finish(self) -> None:
+        """Take out what the plan cannot hold as it is, as nothing more comes to it."""
+        if self.core.finish() and self.core.admissible():
+            self.core.commit()
+        else:
+            self.core.rollback()
+
     def usage(self, insertion: core.UnitInsertion) -> float:
         """The greatest usage among the members of the team, as it is."""
         return max(self.core.usage(robot) for _, robot, _ in insertion.members)

@@ -68,21 +68,6 @@ void Roster::remove(int unit) {
   moves_.emplace_back(unit, false);
 }
 
-void Roster::drop_orphans() {
-  if (!problem_.has_prerequisites() || absent_.empty()) return;
-  std::vector<int> gone = absent_;
-  for (std::size_t k = 0; k < gone.size(); ++k) {
-    for (const int task : problem_.tasks_of_unit(gone[k])) {
-      for (const int dependant : problem_.dependants(task)) {
-        const int unit = problem_.unit(dependant);
-        if (!present(unit)) continue;
-        remove(unit);
-        gone.push_back(unit);
-      }
-    }
-  }
-}
-
 bool Roster::settle() {
   measure_changed();
   return timeline_.settle();

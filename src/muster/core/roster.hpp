@@ -64,8 +64,10 @@ class Roster {
   // False: no schedule exists; then only `rollback` helps. Begins are propagated at once.
   bool insert(const UnitInsertion& insertion);
   void remove(int unit);
-  // Takes out, with everything that waits for it, what stands without its prerequisites.
-  void drop_orphans();
+  // Takes out what a plan cannot hold when nothing more comes to it: what stands without its prerequisites, with
+  // everything that waits for it. `trial` says where what is taken out may be tried again. False: no schedule exists
+  // for the rest. Begins are propagated, as by `settle_begins`.
+  bool finish(const Trial& trial = {});
   // Propagates removals, which `best_insertion` does on its own.
   bool settle();
   // The same for begins alone, on which objectives depend.
@@ -91,6 +93,7 @@ class Roster {
 
  private:
   friend class Placement;
+  void drop_orphans();
   struct Saved {
     int robot;
     double usage;
