@@ -25,7 +25,13 @@ def with_extras(extras, *calls):
 def test_every_verb_says_its_help_with_the_core_install_alone():
     verbs = [*VERBS, *other_verbs()]
     assert {"study", "bench"} <= set(verbs)
-    calls = [["--help"], *([verb, "--help"] for verb in verbs), ["bench", "peers", "--help"], ["bench", "peers-timed", "--help"], ["study", "--list"]]
+    calls = [
+        ["--help"],
+        *([verb, "--help"] for verb in verbs),
+        ["bench", "peers", "--help"],
+        ["bench", "peers-timed", "--help"],
+        ["study", "--list"],
+    ]
     for call, (code, out, err) in zip(calls, with_extras((), *calls), strict=True):
         assert (code, err) == (0, ""), call
         assert "cannot be loaded" not in out

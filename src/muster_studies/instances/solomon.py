@@ -81,7 +81,7 @@ def _customers(text: str) -> list[list[float]]:
         if not words or not words[0].isdecimal():
             continue
         if len(words) != _COLUMNS:
-            raise ParameterError(f"customer {words[0]}: {line.strip()!r}; expected {_COLUMN_NAMES}")
+            raise ParameterError(f"customer {words[0]}: {' '.join(words)!r}; expected {_COLUMN_NAMES}")
         rows.append([float(word) for word in words])
     if len(rows) <= 1:
         raise ParameterError(f"instance: no customers; expected lines of {_COLUMN_NAMES} after CUSTOMER")

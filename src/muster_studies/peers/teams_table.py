@@ -1,4 +1,4 @@
-"""Missions whose tasks need teams: the search beside the best plans known and published means [dai2024, dai2025]."""
+"""Missions whose tasks need teams: the search beside the best plans known and published means [dai2024] [dai2025]."""
 
 from __future__ import annotations
 
