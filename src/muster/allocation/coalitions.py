@@ -117,6 +117,14 @@ class CoalitionAuction:
         found = self._best(unit, robots)
         return None if found is None else CoalitionBid(found, self._price(found))
 
+    def added_usages(self, unit: int, robot: int) -> Iterator[tuple[int, float]]:
+        """The tasks of a unit that a robot may do, and what each adds to its usage at the place where that is least."""
+        inspection = core.Inspection(self._problem.core, self.routes)
+        for task in self._problem.timed_rules.units[unit]:
+            found = inspection.cheapest_insertion(robot, task) if self._problem.may(robot, task) else None
+            if found is not None and math.isfinite(found.usage):
+                yield task, found.usage
+
     def holds(self, bid: CoalitionBid) -> bool:
         """Whether the routes with what is bid for are admissible."""
         return self._roster.fits(bid.insertion)

@@ -8,11 +8,9 @@ those that bid ([shehory1998], [vig2006]); so a task is won only by robots that 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
-from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.auction_terms import Terms
 from muster.allocation.coalitions import (
@@ -89,14 +87,9 @@ class UnitSales:
 
     def _places(self, robot: int, units: Sequence[int]) -> Iterator[Bid]:
         """What the tasks of units for several robots add to the usage of one, wherever it may do them."""
-        if not units:
-            return
-        inspection = core.Inspection(self._problem.core, self.routes)
         for unit in units:
-            for task in self._problem.timed_rules.units[unit]:
-                found = inspection.cheapest_insertion(robot, task) if self._problem.may(robot, task) else None
-                if found is not None and math.isfinite(found.usage):
-                    yield self._problem.tasks[task].id, found.usage
+            for task, usage in self._auction.added_usages(unit, robot):
+                yield self._problem.tasks[task].id, usage
 
     def _offer(self, unit: int, bids: Sequence[RoundBids]) -> _Offer:
         """The bids for a unit."""
