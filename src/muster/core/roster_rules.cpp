@@ -54,7 +54,7 @@ void Roster::drop_orphans() {
 
 bool Roster::finish(const Trial&) {
   drop_orphans();
-  return settle();
+  return settle_begins();
 }
 
 }  // namespace muster
