@@ -32,7 +32,7 @@ def test_times():
     assert some.windows == [[(1, 2), (5, math.inf)], [], [], [], []]
     assert (some.deadline[0], some.due[0], some.available_until.tolist()) == (9, 4, [90, math.inf, math.inf])
     assert some.lags(1) == [(0, 2, math.inf)]
-    assert some.are_any
+    assert some.problem.has_timed_rules
 
 
 def test_teams():
@@ -58,4 +58,4 @@ def test_what_is_ignored_does_not_bind():
     assert len(rules("relation").units) == 5
     assert rules("prerequisite").lags(1) == []
     words = ("window", "deadline", "shift", "team", "relation", "prerequisite")
-    assert not TimedRules(Problem.compile(MISSION, ignored=words)).are_any
+    assert not Problem.compile(MISSION, ignored=words).has_timed_rules

@@ -13,7 +13,7 @@ from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.auction_terms import Terms
 from muster.allocation.auctioneer import Auctioneer, OnRound
 from muster.allocation.book_keeper import book_of
-from muster.allocation.capabilities import ALL
+from muster.allocation.capabilities import FOR_GOOD
 from muster.allocation.coalitions import CoalitionAuction, OnBids, coalition_book
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -59,5 +59,5 @@ AUCTION = Allocator(
     algorithm=allocate,
     auctions=True,
     keeps_fixed=True,
-    can=ALL,
+    can=FOR_GOOD,
 )

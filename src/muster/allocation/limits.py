@@ -138,7 +138,7 @@ def narrowed(
     none = np.empty((0, 0))
     nobody = np.zeros(len(problem.tasks))
     limits = Limits(problem, usage, problem.allowed, none, none, nobody, nobody, (None,) * len(problem.tasks))
-    if not (timed or problem.timed_rules.are_any):
+    if not (timed or problem.has_timed_rules):
         return replace(limits, usable=limits.possible())
     found = [ways(problem, i) for i in range(len(problem.robots))]
     limits = replace(limits, arrival=np.array([a for a, _ in found]), home=np.array([h for _, h in found]))

@@ -172,6 +172,11 @@ class Problem:
         return TimedRules(self)
 
     @cached_property
+    def has_timed_rules(self) -> bool:
+        """Whether anything but prerequisites depends on times, teams, relations or on what a whole route is."""
+        return self.objective == "lateness" or any(True for rule in RULES for _ in rule.asks(self))
+
+    @cached_property
     def dependants(self) -> list[list[int]]:
         """For each task the indices of the tasks that wait for it."""
         waiting: list[list[int]] = [[] for _ in self.tasks]
@@ -280,7 +285,7 @@ class Problem:
             exit=self._exits[0],
             table=measured.table,
             travel_class=measured.classes,
-            **timed_arrays(self.timed_rules, self.kinds, self.leg_times, self.mission),
+            **timed_arrays(self, self.leg_times),
         )
 
     @cached_property

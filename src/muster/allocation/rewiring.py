@@ -44,7 +44,7 @@ def rewire(problem: Problem, plan: Plan) -> Rewired:
         if the plan is not admissible, or the mission has rules about time windows, deadlines, shifts, lags, teams or
         relations, which re-wiring does not look at.
     """
-    if problem.timed_rules.are_any:
+    if problem.has_timed_rules:
         rules = "time windows, deadlines, shifts, lags, teams, relations or the objective lateness"
         raise ParameterError(f"rewire: the mission has {rules}; expected one without, which alone can be re-wired")
     before = admissible_routes(problem, plan, "plan")
@@ -68,7 +68,7 @@ def rewired(problem: Problem, routes: Routes) -> Routes:
 
     Routes of problems with time windows, deadlines, shifts, lags, teams or relations stay as they are.
     """
-    if problem.timed_rules.are_any:
+    if problem.has_timed_rules:
         return routes
     schedule = _Schedule(problem)
     routes, now = [list(route) for route in routes], schedule.waiting(routes)

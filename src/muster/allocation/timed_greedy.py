@@ -30,6 +30,7 @@ def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
             refused.clear()
         else:
             refused.add(chosen.unit)
+    roster.finish()
     return roster.routes
 
 

@@ -14,12 +14,13 @@ import numpy as np
 from muster import core
 from muster.allocation.bottleneck import fills
 from muster.allocation.problem import Problem
+from muster.allocation.rules import RULES
 from muster.allocation.rules.deadline import too_late
 from muster.allocation.rules.rule import ROUNDING, InPlan
 from muster.allocation.rules.shift import beyond
 from muster.allocation.rules.window import closed
 
-_RELAXED = ("window", "deadline", "shift", "capacity")
+_RELAXED = {rule.word: rule for rule in RULES if rule.lifted_late}
 """The rules that are looked at one after the other, in the order of rules."""
 
 _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
@@ -108,11 +109,12 @@ class TimedPlaces(InPlan):
 
     def _refused(self, i: int, j: int, places: list[Place]) -> Outcome:
         """The first rule with which, beside those before it, no place is left."""
-        left = self._admissible(self.without(_RELAXED), places)
+        words = tuple(_RELAXED)
+        left = self._admissible(self.without(words), places)
         if not left:
             return self._no_order(i, j, places)
-        for at, word in enumerate(_RELAXED):
-            before, left = left, self._admissible(self.without(_RELAXED[at + 1 :]), [place for place, _ in left])
+        for at, word in enumerate(words):
+            before, left = left, self._admissible(self.without(words[at + 1 :]), [place for place, _ in left])
             if not left:
                 return Outcome(word=word, detail=self._detail(word, i, j, before))
         raise AssertionError("a place that keeps all rules is admissible")
@@ -126,19 +128,20 @@ class TimedPlaces(InPlan):
 
     def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
         """Why no place is left whatever the times and capacities."""
-        inspections = [core.Inspection(self.without(_RELAXED).core, place.routes) for place in places]
-        if any(found.makespan is not None and math.isinf(found.usages[i]) for found in inspections):
+        free = self.without(tuple(_RELAXED)).core
+        usages = [core.Inspection(free, place.routes).usages for place in places]  # finite where tasks wait in a circle
+        if any(math.isinf(used[i]) for used in usages):
             return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
+        if any(map(math.isinf, itertools.chain.from_iterable(usages))):
+            return Outcome(word="unreachable", detail="there is no way for another robot of its team")
         detail = "at every place in its route tasks would wait for each other in a circle, or longer than they may"
         return Outcome(word="prerequisite", detail=detail)
 
     def _detail(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> str:
         """How a rule is broken at the place where it is broken least."""
-        if word == "capacity":
-            usage, unit = min(found.usages[i] for _, found in left), self.problem.usage_unit
-            if usage > self.problem.capacity[i]:
-                return f"at least {usage:.2f} {unit} with it, of {self.problem.capacity[i]:.2f} {unit}"
-            return "with its team one of the robots would need more than its capacity"
+        said = _RELAXED[word].broken_at(self.problem, i, [(place.routes, found) for place, found in left])
+        if said is not None:
+            return said
         if word == "shift":
             ends = (self._route_end(found, i, place.routes[i]) for place, found in left)
             own = beyond(self.problem, i, min(ends))
@@ -317,7 +320,7 @@ def stop_of(found: Any, i: int, at: int) -> tuple[float, float, float]:
 
 def in_plan(problem: Problem, routes: Sequence[Sequence[int]]) -> InPlan:
     """Routes, and what one more task in them would do."""
-    return TimedPlaces(problem, routes) if problem.timed_rules.are_any else InPlan(problem, routes)
+    return TimedPlaces(problem, routes) if problem.core.is_timed else InPlan(problem, routes)
 
 
 def _spread(gaps: list[int], most: int) -> list[int]:

@@ -27,8 +27,6 @@ class Question(Protocol):
     """What the rules are read from: a `Problem`."""
 
     @property
-    def objective(self) -> str: ...
-    @property
     def robots(self) -> tuple[Robot, ...]: ...
     @property
     def tasks(self) -> tuple[Task, ...]: ...
@@ -117,7 +115,9 @@ class TimedRules:
         return [sorted(others) for others in both]
 
     def _related(self, names: Sequence[str]) -> list[int]:
-        return [self.problem.task_index[name] for name in names] if self.problem.holds("relation") else []
+        """The named tasks that are in the problem: of a part of a mission not all are, and then nothing is tied."""
+        index = self.problem.task_index
+        return [index[name] for name in names if name in index] if self.problem.holds("relation") else []
 
     @cached_property
     def with_teams(self) -> bool:
@@ -181,19 +181,6 @@ class TimedRules:
             return None
         seats = tuple(bool(fits[i]) for j in tasks if self.is_for_team(j) for _, fits in self.parts(j))
         return seats, tuple(sorted((robot.abilities or {}).items()))
-
-    @cached_property
-    def are_any(self) -> bool:
-        """Whether anything of the mission depends on time, teams or relations, beside prerequisites."""
-        limits = (self.deadline, self.available_until)
-        return (
-            self.problem.objective == "lateness"
-            or self.with_teams
-            or any(self.windows)
-            or self.with_relations
-            or any(bool(np.isfinite(some).any()) for some in limits)
-            or any(after or math.isfinite(within) for j in range(len(self.unit)) for _, after, within in self.lags(j))
-        )
 
     def least_members(self, j: int) -> int:
         """How many robots a task needs at least."""

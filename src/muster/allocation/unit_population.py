@@ -151,6 +151,7 @@ class UnitPopulation:
             if left == waiting:
                 break
             waiting = left
+        roster.finish()
         member.routes, member.value = roster.routes, roster.value
         return member
 

@@ -41,6 +41,12 @@ class WorkingRoster:
         """The team, of these robots, and the places that cost least; None if there are none."""
         return self.core.best_insertion(unit, append_only=append_only, robots=None if robots is None else list(robots))
 
+    def fits(self, insertion: core.UnitInsertion) -> bool:
+        """Whether the routes with a unit would be admissible."""
+        holds = self.core.insert(insertion) and self.core.admissible()
+        self.core.rollback()
+        return holds
+
     def put(self, insertion: core.UnitInsertion) -> bool:
         """Put a unit into routes; False, and nothing is changed, if these would not be admissible."""
         if self.core.insert(insertion) and self.core.admissible():
@@ -48,6 +54,13 @@ class WorkingRoster:
             return True
         self.core.rollback()
         return False
+
+    def finish(self) -> None:
+        """Take out what the plan cannot hold as it is, as nothing more comes to it."""
+        if self.core.finish() and self.core.admissible():
+            self.core.commit()
+        else:
+            self.core.rollback()
 
     def usage(self, insertion: core.UnitInsertion) -> float:
         """The greatest usage among the members of the team, as it is."""

@@ -341,6 +341,11 @@ class Roster:
     def remove(self, unit: int) -> bool:
         """False: no schedule exists; then only `rollback` helps."""
 
+    def finish(self) -> bool:
+        """
+        Take out what a plan cannot hold when nothing more comes to it. False: no schedule exists for the rest.
+        """
+
     def admissible(self) -> bool:
         """
         Whether the routes changed since the last `commit` are within the robots' capacities.

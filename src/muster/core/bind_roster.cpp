@@ -90,6 +90,9 @@ void bind_roster(nb::module_& m) {
             return roster.settle();
           },
           "unit"_a, "False: no schedule exists; then only `rollback` helps.")
+      .def(
+          "finish", [](Roster& roster) { return roster.finish(); },
+          "Take out what a plan cannot hold when nothing more comes to it. False: no schedule exists for the rest.")
       .def("admissible", &Roster::admissible,
            "Whether the routes changed since the last `commit` are within the robots' capacities.")
       .def("commit", &Roster::commit)

@@ -151,30 +151,45 @@ void Placement::try_place(int robot, int task, int at) {
   if (overlooked()) return;
   const double work = problem_.work_time(robot, task);
   measure_alone(task, work);
-  if (problem_.objective() == Objective::makespan) {  // where the ways take no time
-    const double begin = std::max(ready_, timeline_.stop(robot, at).leave);
-    if (begin + std::max(tail_, work + timeline_.stop(robot, at + 1).tail) - peak_ >= best_.score) return;
-  }
+  const bool sees_usage = problem_.objective() != Objective::makespan;
+  if (!sees_usage && least_score(robot, task, at, work) >= best_.score) return;
   const int unit = problem_.unit(task);
-  const Offer there = offer(robot, task, at, work);
+  Offer there = offer(robot, task, at, work);
   const double begin = timeline_.open(unit, std::max(ready_, there.arrive));
   if (!timeline_.in_time(begin, latest_) || !timeline_.in_time(begin + work, there.latest)) return;
-  if (!problem_.fits(robot, there.usage + there.growth)) return;
+  if (sees_usage) measure_usage(there, task);
   InsertionScore score(problem_.objective(), peak_);
   score.add(there, begin, work);
   double late = 0.0;
   if (problem_.objective() == Objective::lateness) late = lateness(task, begin + work) + delays(there, begin + work);
   const double value = score.value(begin, tail_, late);
   if (value >= best_.score) return;
+  if (!sees_usage) measure_usage(there, task);
+  if (!problem_.fits(robot, there.usage + there.growth)) return;
   best_.score = value;
   best_.growth = there.growth;
   best_.members.assign(1, {task, robot, at});
 }
 
+// Of objective `makespan`: what a place costs if the way on took no time.
+double Placement::least_score(int robot, int task, int at, double work) const {
+  const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
+  if (std::max(ready_, last.leave) + std::max(tail_, work + next.tail) - peak_ >= best_.score) return kNever;
+  Offer offer;
+  offer.in = problem_.travel_time(robot, last.place, task);
+  offer.arrive = last.leave + offer.in;
+  offer.direct = next.in;
+  offer.onward = next.tail;
+  const double begin = std::max(ready_, offer.arrive);
+  InsertionScore score(Objective::makespan, peak_);
+  score.add(offer, begin, work);
+  return score.value(begin, tail_, 0.0);
+}
+
+// What a task between two stops takes of the robot's time.
 Offer Placement::offer(int robot, int task, int at, double work) const {
   const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
   const bool goes_on = next.unit >= 0 || problem_.must_end(robot);
-  const bool went_on = next.unit >= 0 || (last.unit >= 0 && problem_.must_end(robot));
   Offer offer;
   offer.robot = robot;
   offer.at = at;
@@ -182,16 +197,24 @@ Offer Placement::offer(int robot, int task, int at, double work) const {
   offer.in = problem_.travel_time(robot, last.place, task);
   offer.arrive = last.leave + offer.in;
   offer.out = goes_on ? problem_.travel_time(robot, task, next.place) : 0.0;
-  offer.direct = went_on ? problem_.travel_time(robot, last.place, next.place) : 0.0;
+  offer.direct = next.unit >= 0 || last.unit >= 0 ? next.in : 0.0;
   offer.latest = next.latest - offer.out;
   offer.onward = next.unit >= 0 || problem_.makespan_includes_return() ? offer.out + next.tail : 0.0;
   if (next.unit >= 0) offer.next = timeline_.begin_of(next.unit);
+  return offer;
+}
+
+// What it takes of what is limited by the robot's capacity.
+void Placement::measure_usage(Offer& offer, int task) const {
+  const int robot = offer.robot;
+  const Visit &last = timeline_.stop(robot, offer.at), &next = timeline_.stop(robot, offer.at + 1);
+  const bool goes_on = next.unit >= 0 || problem_.must_end(robot);
+  const bool went_on = next.unit >= 0 || (last.unit >= 0 && problem_.must_end(robot));
   offer.usage = roster_.usage(robot);
   offer.growth = problem_.travel_usage(robot, last.place, task) + problem_.work_usage(robot, task);
   if (goes_on) offer.growth += problem_.travel_usage(robot, task, next.place);
   if (went_on) offer.growth -= problem_.travel_usage(robot, last.place, next.place);
-  if (problem_.objective() == Objective::average) offer.late = later_arrivals(robot, task, at, offer.growth);
-  return offer;
+  if (problem_.objective() == Objective::average) offer.late = later_arrivals(robot, task, offer.at, offer.growth);
 }
 
 // --- Figures ---------------------------------------------------------------------------------------------------------

@@ -41,7 +41,9 @@ class Placement {
   double key_of(const Offer& offer, int key) const;
   void judge(int unit);
 
+  double least_score(int robot, int task, int at, double work) const;
   Offer offer(int robot, int task, int at, double work) const;
+  void measure_usage(Offer& offer, int task) const;
   bool overlooked() const { return trial_->blink > 0.0 && trial_->random->uniform() < trial_->blink; }
   double lateness(int task, double end) const;
   double delays(const Offer& offer, double end) const;

@@ -10,8 +10,9 @@ namespace muster {
 
 namespace {
 
-// Straight-line tables up to this many places (32 MB); beyond it distances are computed as they are asked for.
-constexpr int kMostPlacesInTable = 2048;
+// Straight-line tables up to this many places (2 MB); beyond it a distance is computed sooner than it comes from
+// memory.
+constexpr int kMostPlacesInTable = 512;
 
 Rows transposed(const Rows& rows) {
   Rows result;

@@ -58,7 +58,7 @@ bool Roster::insert(const UnitInsertion& insertion) {
   timeline_.insert(insertion.unit, insertion.members);
   appear(insertion.unit);
   moves_.emplace_back(insertion.unit, true);
-  return settle();
+  return settle_begins();
 }
 
 void Roster::remove(int unit) {
@@ -68,26 +68,9 @@ void Roster::remove(int unit) {
   moves_.emplace_back(unit, false);
 }
 
-void Roster::drop_orphans() {
-  if (!problem_.has_prerequisites() || absent_.empty()) return;
-  std::vector<int> gone = absent_;
-  for (std::size_t k = 0; k < gone.size(); ++k) {
-    for (const int task : problem_.tasks_of_unit(gone[k])) {
-      for (const int dependant : problem_.dependants(task)) {
-        const int unit = problem_.unit(dependant);
-        if (!present(unit)) continue;
-        remove(unit);
-        gone.push_back(unit);
-      }
-    }
-  }
-}
-
 bool Roster::settle() {
-  const bool possible = timeline_.settle();
-  for (const int robot : unmeasured_) measure(robot);
-  unmeasured_.clear();
-  return possible;
+  measure_changed();
+  return timeline_.settle();
 }
 
 bool Roster::admissible() {
@@ -96,6 +79,16 @@ bool Roster::admissible() {
 }
 
 // --- Figures ---------------------------------------------------------------------------------------------------------
+
+bool Roster::settle_begins() {
+  measure_changed();
+  return timeline_.settle_begins();
+}
+
+void Roster::measure_changed() {
+  for (const int robot : unmeasured_) measure(robot);
+  unmeasured_.clear();
+}
 
 void Roster::measure(int robot) {
   const auto& route = timeline_.route(robot);
@@ -236,8 +229,7 @@ std::vector<std::vector<StopTimes>> Roster::stops() const {
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     for (int at = 1; at <= timeline_.tasks_in(robot); ++at) {
       const Visit &last = timeline_.stop(robot, at - 1), &visit = timeline_.stop(robot, at);
-      const double arrive = last.leave + problem_.travel_time(robot, last.place, visit.place);
-      stops[robot].push_back({visit.place, arrive, timeline_.begin_of(visit.unit), visit.leave});
+      stops[robot].push_back({visit.place, last.leave + visit.in, timeline_.begin_of(visit.unit), visit.leave});
     }
   }
   return stops;

@@ -61,13 +61,17 @@ class Roster {
   // The team and the places at which an absent unit costs least; null where there are none. All that it waits for must
   // be present. The answer lasts until the next call.
   const UnitInsertion* best_insertion(int unit, const Trial& trial = {});
-  // False: no schedule exists; then only `rollback` helps.
+  // False: no schedule exists; then only `rollback` helps. Begins are propagated at once.
   bool insert(const UnitInsertion& insertion);
   void remove(int unit);
-  // Takes out, with everything that waits for it, what stands without its prerequisites.
-  void drop_orphans();
-  // Propagates removals, which `insert` and `best_insertion` do on their own.
+  // Takes out what a plan cannot hold when nothing more comes to it: what stands without its prerequisites, with
+  // everything that waits for it. `trial` says where what is taken out may be tried again. False: no schedule exists
+  // for the rest. Begins are propagated, as by `settle_begins`.
+  bool finish(const Trial& trial = {});
+  // Propagates removals, which `best_insertion` does on its own.
   bool settle();
+  // The same for begins alone, on which objectives depend.
+  bool settle_begins();
   // Whether the routes changed since the last commit are within the robots' capacities.
   bool admissible();
 
@@ -89,6 +93,7 @@ class Roster {
 
  private:
   friend class Placement;
+  void drop_orphans();
   struct Saved {
     int robot;
     double usage;
@@ -96,6 +101,7 @@ class Roster {
 
   std::vector<int> team_of(int task) const;
   void touch(int robot);
+  void measure_changed();
   void measure(int robot);
   void appear(int unit);
   void vanish(int unit);

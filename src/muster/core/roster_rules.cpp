@@ -1,4 +1,4 @@
-// What must hold of routes that others made.
+// What must hold of whole plans: of routes that others made, and of those that nothing more comes to.
 #include <algorithm>
 #include <vector>
 
@@ -35,6 +35,26 @@ bool Roster::keeps_rules() const {
     }
   }
   return true;
+}
+
+void Roster::drop_orphans() {
+  if (!problem_.has_prerequisites() || absent_.empty()) return;
+  std::vector<int> gone = absent_;
+  for (std::size_t k = 0; k < gone.size(); ++k) {
+    for (const int task : problem_.tasks_of_unit(gone[k])) {
+      for (const int dependant : problem_.dependants(task)) {
+        const int unit = problem_.unit(dependant);
+        if (!present(unit)) continue;
+        remove(unit);
+        gone.push_back(unit);
+      }
+    }
+  }
+}
+
+bool Roster::finish(const Trial&) {
+  drop_orphans();
+  return settle_begins();
 }
 
 }  // namespace muster

@@ -54,6 +54,11 @@ ScheduleSearch::ScheduleSearch(const Problem& problem, const Routes& start, std:
   best_value_.weight = -kNever;
   note_best();
   fill();
+  if (roster_.finish(trial_)) {
+    roster_.commit();
+  } else {
+    roster_.rollback();
+  }
   current_ = cost();
   note_best();
 }
@@ -99,8 +104,7 @@ void ScheduleSearch::step(double temperature) {
   const double most = current_ - temperature * std::log(random_.uniform() + 1e-300);
   ruin();
   if (roster_.settle() && recreate(most)) {
-    roster_.drop_orphans();
-    const bool possible = roster_.settle() && roster_.admissible();
+    const bool possible = roster_.finish(trial_) && roster_.admissible();
     const double next = possible ? cost() : kNever;
     if (next < most) {
       current_ = next;

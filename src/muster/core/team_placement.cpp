@@ -86,6 +86,7 @@ void Placement::make_offers(int unit, std::size_t candidate) {
     if (trial_->append_only && at_[candidate] < timeline_.tasks_in(robot)) continue;
     const double work = problem_.work_time(robot, tasks[k]);
     made = offer(robot, tasks[k], at_[candidate], work);
+    measure_usage(made, tasks[k]);
     if (!timeline_.in_time(std::max(ready_, made.arrive) + work, made.latest) ||
         !problem_.fits(robot, made.usage + made.growth)) {
       made.robot = -1;
@@ -118,7 +119,7 @@ void Placement::try_key(int unit, int key) {
   members_.clear();
   team_.clear();
   for (std::size_t k = 0; k < tasks.size(); ++k) {
-    const Offer* offers = &offers_[k * candidates_.size()];
+    const Offer* offers = offers_.data() + k * candidates_.size();
     keys_.resize(candidates_.size());
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       keys_[c] = offers[c].robot < 0 || busy_[candidates_[c]] ? kNever : key_of(offers[c], key);

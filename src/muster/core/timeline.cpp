@@ -13,6 +13,11 @@ namespace {
 // After so many placements for each present unit labels are put in order of time again.
 constexpr double kPlacementsPerUnit = 0.25;
 
+int place_in_unit(const Problem& problem, int task) {
+  const auto tasks = problem.tasks_of_unit(problem.unit(task));
+  return static_cast<int>(std::ranges::find(tasks, task) - tasks.begin());
+}
+
 }  // namespace
 
 Timeline::Timeline(const Problem& problem)
@@ -22,8 +27,6 @@ Timeline::Timeline(const Problem& problem)
       has_within_(false),
       has_tails_(problem.objective() == Objective::makespan),
       looks_back_(has_limits_ || has_tails_),
-      before_(problem.tasks()),
-      behind_(problem.tasks()),
       routes_(problem.robots()),
       nodes_(problem.units()),
       work_(problem.tasks(), 0.0),
@@ -43,19 +46,29 @@ Timeline::Timeline(const Problem& problem)
     last.latest = problem.available_until(robot);
     routes_[robot] = {robot, robots + robot};
     last.at = 1;
+    join(robot, robots + robot);
   }
 }
 
 void Timeline::build_arcs() {
+  std::vector<std::vector<Arc>> before(problem_.units()), behind(problem_.units());
   for (int task = 0; task < problem_.tasks(); ++task) {
+    const int unit = problem_.unit(task);
     const auto prerequisites = problem_.prerequisites(task);
     for (std::size_t k = 0; k < prerequisites.size(); ++k) {
+      const int earlier = prerequisites[k], other = problem_.unit(earlier);
       const double after = problem_.after(task, static_cast<int>(k)),
                    within = problem_.within(task, static_cast<int>(k));
-      before_[task].push_back({prerequisites[k], after, within});
-      behind_[prerequisites[k]].push_back({task, after, within});
+      before[unit].push_back({other, earlier, place_in_unit(problem_, task), after, within});
+      behind[other].push_back({unit, task, place_in_unit(problem_, earlier), after, within});
       has_within_ |= std::isfinite(within);
     }
+  }
+  for (int unit = 0; unit < problem_.units(); ++unit) {
+    const auto tasks = problem_.tasks_of_unit(unit);
+    if (tasks.size() == 1) nodes_[unit].task = tasks.front();
+    before_.add(before[unit]);
+    behind_.add(behind[unit]);
   }
 }
 
@@ -87,10 +100,8 @@ bool Timeline::begin(const Routes& routes) {
 
 double Timeline::ready(int unit) const {
   double ready = 0.0;
-  for (const int task : problem_.tasks_of_unit(unit)) {
-    for (const Arc& arc : before_[task]) {
-      if (present(problem_.unit(arc.task))) ready = std::max(ready, end_of(arc.task) + arc.after);
-    }
+  for (const Arc& arc : before_[unit]) {
+    if (present(arc.unit)) ready = std::max(ready, begin_of(arc.unit) + work_[arc.task] + arc.after);
   }
   return ready;
 }
@@ -100,30 +111,22 @@ double Timeline::latest_for(int unit, std::span<const double> work) const {
   if (!has_limits_) return latest;
   const auto tasks = problem_.tasks_of_unit(unit);
   for (std::size_t k = 0; k < tasks.size(); ++k) {
-    const int task = tasks[k];
-    double bound = problem_.deadline(task) - work[k];
-    for (const Arc& arc : behind_[task]) {
-      if (present(problem_.unit(arc.task)))
-        bound = std::min(bound, latest_of(problem_.unit(arc.task)) - arc.after - work[k]);
-    }
-    for (const Arc& arc : before_[task]) {
-      const int other = problem_.unit(arc.task);
-      if (present(other)) bound = std::min(bound, latest_of(other) + work_[arc.task] + arc.within);
-    }
-    latest = std::min(latest, problem_.last_begin(task, bound));
+    latest = std::min(latest, problem_.deadline(tasks[k]) - work[k]);
   }
-  return latest;
+  for (const Arc& arc : behind_[unit]) {
+    if (present(arc.unit)) latest = std::min(latest, latest_of(arc.unit) - arc.after - work[arc.own]);
+  }
+  for (const Arc& arc : before_[unit]) {
+    if (present(arc.unit)) latest = std::min(latest, latest_of(arc.unit) + work_[arc.task] + arc.within);
+  }
+  return last_open(unit, latest);
 }
 
 double Timeline::tail_after(int unit, std::span<const double> work) const {
   double tail = 0.0;
-  const auto tasks = problem_.tasks_of_unit(unit);
-  for (std::size_t k = 0; k < tasks.size(); ++k) {
-    tail = std::max(tail, work[k]);
-    for (const Arc& arc : behind_[tasks[k]]) {
-      const int other = problem_.unit(arc.task);
-      if (present(other)) tail = std::max(tail, work[k] + arc.after + tail_of(other));
-    }
+  for (const double each : work) tail = std::max(tail, each);
+  for (const Arc& arc : behind_[unit]) {
+    if (present(arc.unit)) tail = std::max(tail, work[arc.own] + arc.after + tail_of(arc.unit));
   }
   return tail;
 }
@@ -136,6 +139,12 @@ double Timeline::open(int unit, double earliest) const {
     if (tasks.size() == 1 || begin == earliest || begin == kNever) return begin;
     earliest = begin;
   }
+}
+
+double Timeline::last_open(int unit, double latest) const {
+  double begin = latest;
+  for (const int task : problem_.tasks_of_unit(unit)) begin = std::min(begin, problem_.last_begin(task, latest));
+  return begin;
 }
 
 int Timeline::new_visit(const Member& member, int unit) {
@@ -159,6 +168,8 @@ void Timeline::put(int number, int at) {
   auto& route = routes_[visits_[number].robot];
   route.insert(route.begin() + at, number);
   for (std::size_t k = at; k < route.size(); ++k) visits_[route[k]].at = static_cast<int>(k);
+  join(route[at - 1], number);
+  join(number, route[at + 1]);
 }
 
 void Timeline::take(int number) {
@@ -166,6 +177,17 @@ void Timeline::take(int number) {
   auto& route = routes_[visit.robot];
   route.erase(route.begin() + visit.at);
   for (std::size_t k = visit.at; k < route.size(); ++k) visits_[route[k]].at = static_cast<int>(k);
+  join(visit.last, visit.next);
+}
+
+// Makes one visit the next after another.
+void Timeline::join(int number, int next) {
+  const Visit& from = visits_[number];
+  Visit& to = visits_[next];
+  visits_[number].next = next;
+  to.last = number;
+  const bool goes_there = to.unit >= 0 || problem_.must_end(to.robot);
+  to.in = goes_there ? problem_.travel_time(to.robot, from.place, to.place) : 0.0;
 }
 
 // A team's task takes as long as for its slowest member.
@@ -231,6 +253,7 @@ void Timeline::save(int unit) {
 }
 
 void Timeline::commit() {
+  backward();
   free_.insert(free_.end(), taken_.begin(), taken_.end());
   taken_.clear();
   changes_.clear();

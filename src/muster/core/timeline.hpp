@@ -16,9 +16,12 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 // One robot at one task. Each route begins with a visit of the robot's start and closes with one of its end.
 struct Visit {
   int robot = -1;
-  int place = -1;  // of the problem: a task, a start or an end
-  int unit = -1;   // none: a start or an end
-  int at = 0;      // in the route, where the start is 0
+  int place = -1;   // of the problem: a task, a start or an end
+  int unit = -1;    // none: a start or an end
+  int at = 0;       // in the route, where the start is 0
+  int last = -1;    // the visit before it
+  int next = -1;    // the visit after it
+  double in = 0.0;  // the time of the way here from the visit before
   double label = 0.0;
   double leave = 0.0;      // when the robot can set out from here
   double latest = kNever;  // when it must begin here, for all that comes after to be in time
@@ -77,6 +80,8 @@ class Timeline {
   double tail_after(int unit, std::span<const double> work) const;
   // The first time from `earliest` on that the windows of all its tasks allow.
   double open(int unit, double earliest) const;
+  // The last time up to `latest` that they allow, each for itself.
+  double last_open(int unit, double latest) const;
   bool in_time(double begin, double latest) const {
     return begin <= latest + kRounding * (latest < 1.0 ? 1.0 : latest);
   }
@@ -87,6 +92,8 @@ class Timeline {
   void remove(int unit);
   // Propagates what was changed. False: no schedule exists; then only `rollback` helps.
   bool settle();
+  // The same for begins alone; latest begins and tails are those of before, until `settle` or `commit`.
+  bool settle_begins();
 
   // When the last task ends, or the last robot is at its end where that counts.
   double end() const;
@@ -98,13 +105,27 @@ class Timeline {
   void rollback();
 
  private:
+  // Between a task and one that has to wait for it, as one of the two units sees it.
   struct Arc {
-    int task;
+    int unit;  // the other one
+    int task;  // of the other one
+    int own;   // the unit's own task, as one of `tasks_of_unit`
     double after;
     double within;
   };
+  struct Arcs {  // of all units, one unit's after the other's
+    std::vector<int> first{0};
+    std::vector<Arc> all;
+
+    std::span<const Arc> operator[](int unit) const { return {all.data() + first[unit], all.data() + first[unit + 1]}; }
+    void add(const std::vector<Arc>& arcs) {
+      all.insert(all.end(), arcs.begin(), arcs.end());
+      first.push_back(static_cast<int>(all.size()));
+    }
+  };
   struct Node {
     std::vector<int> visits;
+    int task = -1;  // its only one, if it has only one
     double label = 0.0, begin = 0.0, latest = kNever, tail = 0.0;
     int saved = 0;    // the step in which its times were saved
     char queued = 0;  // bits: forward, backward
@@ -141,12 +162,9 @@ class Timeline {
   void measure_work(int unit);
   void restore(const Change& change);
 
-  double way(const Visit& from, const Visit& to) const {
-    if (to.unit < 0 && !problem_.must_end(to.robot)) return 0.0;
-    return problem_.travel_time(to.robot, from.place, to.place);
-  }
-  const Visit& before(const Visit& v) const { return visits_[routes_[v.robot][v.at - 1]]; }
-  const Visit& behind(const Visit& v) const { return visits_[routes_[v.robot][v.at + 1]]; }
+  void join(int number, int next);
+  const Visit& before(const Visit& v) const { return visits_[v.last]; }
+  const Visit& behind(const Visit& v) const { return visits_[v.next]; }
 
   void queue(int unit, Side side);
   int pop(std::vector<Entry>& heap, Side side);
@@ -157,9 +175,10 @@ class Timeline {
   bool forward();
   void backward();
   bool settle_cycles();
-  double earliest_begin(int unit) const;
+  double earliest_begin(int unit);
   double latest_begin(int unit);
-  double longest_tail(int unit) const;
+  double longest_tail(int unit);
+  std::span<const double> works_of(int unit);
   bool keeps_bounds(int unit) const;
   void set_begin(Node& node, double begin);
   void set_latest(Node& node, double latest, double tail);
@@ -169,8 +188,8 @@ class Timeline {
   const Problem& problem_;
   bool has_windows_, has_limits_, has_within_, has_tails_;
   bool looks_back_;
-  std::vector<std::vector<Arc>> before_, behind_;  // by task: prerequisites, dependants
-  std::vector<Visit> visits_;                      // starts, ends, then those of tasks
+  Arcs before_, behind_;       // by unit: prerequisites, dependants
+  std::vector<Visit> visits_;  // starts, ends, then those of tasks
   std::vector<int> free_;
   std::vector<std::vector<int>> routes_;
   std::vector<Node> nodes_;

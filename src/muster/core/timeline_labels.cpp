@@ -21,10 +21,10 @@ bool Timeline::label_topologically(const Routes& routes) {
   for (const auto& route : routes) {
     for (std::size_t k = 1; k < route.size(); ++k) arc(problem_.unit(route[k - 1]), problem_.unit(route[k]));
   }
-  for (int task = 0; task < problem_.tasks(); ++task) {
-    if (!done[problem_.unit(task)]) continue;
-    for (const Arc& each : before_[task]) {
-      if (done[problem_.unit(each.task)]) arc(problem_.unit(each.task), problem_.unit(task));
+  for (int unit = 0; unit < problem_.units(); ++unit) {
+    if (!done[unit]) continue;
+    for (const Arc& each : before_[unit]) {
+      if (done[each.unit]) arc(each.unit, unit);
     }
   }
   for (int unit = 0; unit < problem_.units(); ++unit) {
@@ -104,9 +104,7 @@ void Timeline::seek_labels(int unit, bool back, Labels& labels) {
   stack_.clear();
   const auto& arcs = back ? before_ : behind_;
   const auto go_on = [&](int from) {
-    for (const int task : problem_.tasks_of_unit(from)) {
-      for (const Arc& arc : arcs[task]) stack_.push_back(problem_.unit(arc.task));
-    }
+    for (const Arc& arc : arcs[from]) stack_.push_back(arc.unit);
   };
   go_on(unit);
   while (!stack_.empty()) {

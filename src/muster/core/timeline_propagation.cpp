@@ -32,57 +32,57 @@ void Timeline::queue_all() {
 }
 
 bool Timeline::settle() {
-  if (has_within_ && !(forward_.empty() && backward_.empty())) return settle_cycles();
-  if (!forward()) return false;
+  if (!settle_begins()) return false;
   backward();
   return true;
 }
 
-double Timeline::earliest_begin(int unit) const {
+bool Timeline::settle_begins() {
+  if (has_within_ && !(forward_.empty() && backward_.empty())) return settle_cycles();
+  return forward();
+}
+
+// How long its tasks take, with the robots that do them.
+std::span<const double> Timeline::works_of(int unit) {
+  if (const int task = nodes_[unit].task; task >= 0) return {&work_[task], 1};
+  works_.clear();
+  for (const int task : problem_.tasks_of_unit(unit)) works_.push_back(work_[task]);
+  return works_;
+}
+
+double Timeline::earliest_begin(int unit) {
   double begin = ready(unit);
   for (const int number : nodes_[unit].visits) {
     const Visit& visit = visits_[number];
-    const Visit& last = before(visit);
-    begin = std::max(begin, last.leave + problem_.travel_time(visit.robot, last.place, visit.place));
+    begin = std::max(begin, before(visit).leave + visit.in);
   }
   if (has_within_) {
-    for (const int task : problem_.tasks_of_unit(unit)) {
-      for (const Arc& arc : behind_[task]) {
-        const int other = problem_.unit(arc.task);
-        if (present(other)) begin = std::max(begin, begin_of(other) - arc.within - work_[task]);
-      }
+    const auto work = works_of(unit);
+    for (const Arc& arc : behind_[unit]) {
+      if (present(arc.unit)) begin = std::max(begin, begin_of(arc.unit) - arc.within - work[arc.own]);
     }
   }
   return open(unit, begin);
 }
 
 double Timeline::latest_begin(int unit) {
-  works_.clear();
-  for (const int task : problem_.tasks_of_unit(unit)) works_.push_back(work_[task]);
-  double latest = latest_for(unit, works_);
+  double latest = latest_for(unit, works_of(unit));
   for (const int number : nodes_[unit].visits) {
     const Visit& visit = visits_[number];
     const Visit& next = behind(visit);
-    const double bound = next.latest - way(visit, next) - work_[visit.place];
+    const double bound = next.latest - next.in - work_[visit.place];
     latest = std::min(latest, problem_.last_begin(visit.place, bound));
   }
   return latest;
 }
 
-double Timeline::longest_tail(int unit) const {
-  double tail = 0.0;
+double Timeline::longest_tail(int unit) {
+  double tail = tail_after(unit, works_of(unit));
   for (const int number : nodes_[unit].visits) {
     const Visit& visit = visits_[number];
     const Visit& next = behind(visit);
-    double on = next.tail;
-    if (next.unit >= 0 || problem_.makespan_includes_return()) on += way(visit, next);
-    tail = std::max(tail, work_[visit.place] + on);
-  }
-  for (const int task : problem_.tasks_of_unit(unit)) {
-    for (const Arc& arc : behind_[task]) {
-      const int other = problem_.unit(arc.task);
-      if (present(other)) tail = std::max(tail, work_[task] + arc.after + tail_of(other));
-    }
+    const bool counts = next.unit >= 0 || problem_.makespan_includes_return();
+    tail = std::max(tail, work_[visit.place] + (counts ? next.in : 0.0) + next.tail);
   }
   return tail;
 }
@@ -110,7 +110,7 @@ bool Timeline::keeps_bounds(int unit) const {
     const Visit& visit = visits_[number];
     if (!in_time(visit.leave, problem_.deadline(visit.place))) return false;
     const Visit& next = behind(visit);
-    if (next.unit < 0 && !in_time(visit.leave + way(visit, next), next.latest)) return false;
+    if (next.unit < 0 && !in_time(visit.leave + next.in, next.latest)) return false;
   }
   return true;
 }
@@ -119,14 +119,12 @@ void Timeline::queue_later(int unit) {
   for (const int number : nodes_[unit].visits) {
     if (const int next = behind(visits_[number]).unit; next >= 0) queue(next, kForward);
   }
-  for (const int task : problem_.tasks_of_unit(unit)) {
-    for (const Arc& arc : behind_[task]) {
-      if (present(problem_.unit(arc.task))) queue(problem_.unit(arc.task), kForward);
-    }
-    if (!has_within_) continue;
-    for (const Arc& arc : before_[task]) {
-      if (arc.within < kNever && present(problem_.unit(arc.task))) queue(problem_.unit(arc.task), kForward);
-    }
+  for (const Arc& arc : behind_[unit]) {
+    if (present(arc.unit)) queue(arc.unit, kForward);
+  }
+  if (!has_within_) return;
+  for (const Arc& arc : before_[unit]) {
+    if (arc.within < kNever && present(arc.unit)) queue(arc.unit, kForward);
   }
 }
 
@@ -134,14 +132,12 @@ void Timeline::queue_earlier(int unit) {
   for (const int number : nodes_[unit].visits) {
     if (const int last = before(visits_[number]).unit; last >= 0) queue(last, kBackward);
   }
-  for (const int task : problem_.tasks_of_unit(unit)) {
-    for (const Arc& arc : before_[task]) {
-      if (present(problem_.unit(arc.task))) queue(problem_.unit(arc.task), kBackward);
-    }
-    if (!has_within_) continue;
-    for (const Arc& arc : behind_[task]) {
-      if (arc.within < kNever && present(problem_.unit(arc.task))) queue(problem_.unit(arc.task), kBackward);
-    }
+  for (const Arc& arc : before_[unit]) {
+    if (present(arc.unit)) queue(arc.unit, kBackward);
+  }
+  if (!has_within_) return;
+  for (const Arc& arc : behind_[unit]) {
+    if (arc.within < kNever && present(arc.unit)) queue(arc.unit, kBackward);
   }
 }
 
@@ -211,7 +207,7 @@ double Timeline::end_of_route(int robot) const {
   const auto& route = routes_[robot];
   if (route.size() == 2) return 0.0;
   const Visit& last = visits_[route[route.size() - 2]];
-  return problem_.makespan_includes_return() ? last.leave + way(last, visits_[route.back()]) : last.leave;
+  return problem_.makespan_includes_return() ? last.leave + visits_[route.back()].in : last.leave;
 }
 
 double Timeline::end() const {
@@ -239,18 +235,16 @@ int Timeline::holder_of(int unit) const {
   for (const int number : nodes_[unit].visits) {
     const Visit& visit = visits_[number];
     const Visit& last = before(visit);
-    const double arrival = last.leave + problem_.travel_time(visit.robot, last.place, visit.place);
+    const double arrival = last.leave + visit.in;
     if (arrival > bound) {
       bound = arrival;
       holder = last.unit;
     }
   }
-  for (const int task : problem_.tasks_of_unit(unit)) {
-    for (const Arc& arc : before_[task]) {
-      if (!present(problem_.unit(arc.task)) || end_of(arc.task) + arc.after <= bound) continue;
-      bound = end_of(arc.task) + arc.after;
-      holder = problem_.unit(arc.task);
-    }
+  for (const Arc& arc : before_[unit]) {
+    if (!present(arc.unit) || end_of(arc.task) + arc.after <= bound) continue;
+    bound = end_of(arc.task) + arc.after;
+    holder = arc.unit;
   }
   return in_time(begin_of(unit), bound) ? holder : -1;
 }

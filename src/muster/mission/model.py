@@ -17,7 +17,7 @@ from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
 from muster.mission.html_tables import html_line, html_table
 from muster.mission.mission_data import SCHEMA, MissionData
-from muster.mission.records import findings, record
+from muster.mission.records import findings, record, shown_if_used
 from muster.mission.robots import Camera, Robot
 from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Landmark, Map, Origin, Point, Tag, TravelTable, Zone
@@ -106,11 +106,7 @@ class Mission(MissionData):
         return replace(self, events=(), tags=(), found=(), **changes)
 
 
-_SHOWN_IF_USED = (
-    *("available_from_s", "available_until_s", "abilities"),
-    *("window_s", "deadline_s", "due_s", "robots_needed", "team", "needs"),
-    *("same_robot_as", "other_robot_than", "starts_with"),
-)
+_SHOWN_IF_USED = (*shown_if_used(Robot), *shown_if_used(Task))
 
 
 def _html_table(title: str, items: Sequence[Robot] | Sequence[Task], columns: Sequence[str]) -> str:

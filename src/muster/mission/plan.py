@@ -22,11 +22,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 PLAN_SCHEMA = "muster-plan/1"
-REASONS = (
-    *("skill", "suitability", "lock", "capacity", "prerequisite"),
-    *("window", "deadline", "shift", "team", "relation"),
-    *("unreachable", "not-chosen"),
-)
+REASONS = (*IGNORABLE, "unreachable", "not-chosen")
 
 
 @dataclass(frozen=True)

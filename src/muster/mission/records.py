@@ -40,6 +40,7 @@ def spec(
     default: Any = MISSING,
     unit: str = "",
     instead: tuple[str, Kind, str] | None = None,
+    if_used: bool = False,
 ) -> Any:
     """A dataclass field whose values are of `kind`; without `default` it is required.
 
@@ -50,8 +51,11 @@ def spec(
     instead
         a key of files, its kind and description, that may stand for the field: places in degrees, clock times. They are
         replaced before; `Record` never gets to read the key.
+    if_used
+        whether tables show it only where some record has it.
     """
-    metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit} | ({"instead": instead} if instead else {})
+    metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit, "if_used": if_used}
+    metadata |= {"instead": instead} if instead else {}
     hashed = False if isinstance(kind, Table) else None  # a mapping has no hash
     if default is MISSING:
         return field(metadata=metadata, hash=hashed)
@@ -82,6 +86,11 @@ def _naming_unknown_fields(init: Callable[..., None], cls: type[Any]) -> Callabl
 def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
     """The fields of a model class that a file may hold, in order."""
     return tuple(f for f in fields(cls) if "kind" in f.metadata)
+
+
+def shown_if_used(cls: type[Any]) -> tuple[str, ...]:
+    """The names of the fields that tables show only where some record has them."""
+    return tuple(f.name for f in specified(cls) if f.metadata["if_used"])
 
 
 def required(f: Field[Any]) -> bool:

@@ -46,14 +46,19 @@ class Robot(Checked):
         Table(Number(minimum=0), "a mapping from abilities to amounts"),
         "what it can add to a team, for tasks with needs",
         default=None,
+        if_used=True,
     )
     speed_mps: float = spec(Number(above=0), "speed of travel", default=1.0)
     efficiency: float = spec(Number(above=0), "work of duration d takes d / efficiency (aging factor)", default=1.0)
     return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)
     end_position: Point | None = spec(Place(), "where its route ends; stronger than return_to_start", default=None)
-    available_from_s: float = spec(Number(minimum=0), "earliest time it can leave", default=0.0)
+    available_from_s: float = spec(Number(minimum=0), "earliest time it can leave", default=0.0, if_used=True)
     available_until_s: float | None = spec(
-        Number(minimum=0), "when its route, the way to its end included, must have ended", default=None, instead=SHIFT
+        Number(minimum=0),
+        "when its route, the way to its end included, must have ended",
+        default=None,
+        instead=SHIFT,
+        if_used=True,
     )
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)

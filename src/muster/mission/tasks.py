@@ -109,26 +109,40 @@ class Work(Checked):
         default=(),
     )
     window_s: tuple[Window, ...] = spec(
-        Windows(), "when work may begin: [from, until], or several such pairs", default=(), instead=WINDOW
+        Windows(), "when work may begin: [from, until], or several such pairs", default=(), instead=WINDOW, if_used=True
     )
-    deadline_s: float | None = spec(Number(minimum=0), "when it must have ended", default=None, instead=DEADLINE)
+    deadline_s: float | None = spec(
+        Number(minimum=0), "when it must have ended", default=None, instead=DEADLINE, if_used=True
+    )
     due_s: float | None = spec(
-        Number(minimum=0), "when it should have ended, for the objective lateness", default=None, instead=DUE
+        Number(minimum=0),
+        "when it should have ended, for the objective lateness",
+        default=None,
+        instead=DUE,
+        if_used=True,
     )
     requires: tuple[str, ...] = spec(Many(Text()), "skills a robot must have", default=())
-    robots_needed: int | None = spec(Whole(minimum=1), "how many robots do it together", default=None)
+    robots_needed: int | None = spec(Whole(minimum=1), "how many robots do it together", default=None, if_used=True)
     team: tuple[TeamPart, ...] = spec(
-        Many(Record(TeamPart, "a part of a team")), "the robots that do it together, by what they must be", default=()
+        Many(Record(TeamPart, "a part of a team")),
+        "the robots that do it together, by what they must be",
+        default=(),
+        if_used=True,
     )
     needs: Mapping[str, float] | None = spec(
         Table(Number(above=0), "a mapping from abilities to amounts"),
         "what the abilities of the robots that do it together must sum to",
         default=None,
+        if_used=True,
     )
-    same_robot_as: tuple[str, ...] = spec(OneOrMany(Text()), "ids of tasks that the same robot does", default=())
-    other_robot_than: tuple[str, ...] = spec(OneOrMany(Text()), "ids of tasks that another robot does", default=())
+    same_robot_as: tuple[str, ...] = spec(
+        OneOrMany(Text()), "ids of tasks that the same robot does", default=(), if_used=True
+    )
+    other_robot_than: tuple[str, ...] = spec(
+        OneOrMany(Text()), "ids of tasks that another robot does", default=(), if_used=True
+    )
     starts_with: tuple[str, ...] = spec(
-        OneOrMany(Text()), "ids of tasks that other robots begin at the same moment", default=()
+        OneOrMany(Text()), "ids of tasks that other robots begin at the same moment", default=(), if_used=True
     )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)

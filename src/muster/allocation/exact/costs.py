@@ -10,6 +10,7 @@ import numpy as np
 
 from muster.allocation.exact.scale import Scale, Whole
 from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.rules import RULES
 
 Routes = Sequence[Sequence[int]]
 
@@ -79,13 +80,12 @@ def _last(problem: Problem, i: int) -> Floats:
 def like_robots(problem: Problem, usable: Bools) -> list[list[int]]:
     """Robots in groups whose members could change places in any plan."""
     groups: dict[tuple[bytes, object], list[int]] = {}
-    rules, (first, between, work, last) = problem.timed_rules, real_costs(problem)
+    first, between, work, last = real_costs(problem)
     for i, robot in enumerate(problem.robots):
-        shift = robot.available_from_s, rules.available_until[i]
-        pace = robot.speed_mps, robot.efficiency, *shift, problem.capacity[i]
+        pace = robot.speed_mps, robot.efficiency, robot.available_from_s, problem.capacity[i]
         own = i if problem.beginning(i) else -1
         parts = [usable[i], first[i], between[i], work[i], last[i], np.array(pace), np.array(own)]
-        key = b"".join(part.tobytes() for part in parts), rules.in_team(i)
+        key = b"".join(part.tobytes() for part in parts), tuple(rule.of_robot(problem, i) for rule in RULES)
         groups.setdefault(key, []).append(i)
     return list(groups.values())
 

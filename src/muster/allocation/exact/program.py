@@ -69,7 +69,7 @@ class Program:
         self._done = self._circuits.done
         add_members(self._circuits)
         self._times: Times | None = None
-        if self._rules.are_any or problem.objective == "makespan":
+        if problem.has_timed_rules or problem.objective == "makespan":
             self._times = Times(self._circuits, sum(weights) if problem.objective == "lateness" else 1)
         self.scale = self._costs.scale
         self.per = 1.0

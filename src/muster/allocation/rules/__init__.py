@@ -13,7 +13,7 @@ from muster.allocation.rules.deadline import Deadline
 from muster.allocation.rules.lock import Lock
 from muster.allocation.rules.prerequisite import Prerequisite
 from muster.allocation.rules.relation import Relation
-from muster.allocation.rules.rule import Change, InPlan, Outlook, Rule
+from muster.allocation.rules.rule import Change, InPlan, Outlook, Question, Rule
 from muster.allocation.rules.shift import Shift
 from muster.allocation.rules.skill import Skill
 from muster.allocation.rules.suitability import Suitability
@@ -21,7 +21,7 @@ from muster.allocation.rules.team import Team
 from muster.allocation.rules.unreachable import Unreachable
 from muster.allocation.rules.window import Window
 
-__all__ = ["RULES", "Change", "InPlan", "Outlook", "Rule"]
+__all__ = ["RULES", "Change", "InPlan", "Outlook", "Question", "Rule"]
 
 RULES: tuple[Rule, ...] = (
     Skill(),

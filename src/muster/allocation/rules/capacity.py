@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Rule
+from muster import core
+from muster.allocation.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Routes, Rule
 
 
 class Capacity(Rule):
     """`u_i <= (1 - capacity_reserve) * work_capacity_i`. An ignored capacity is infinite."""
 
     word: ClassVar[str] = "capacity"
+    lifted_late = True
 
     def possible(self, limits: Limits) -> Bools:
         return np.asarray(limits.usage <= limits.problem.capacity[:, None] * (1 + ROUNDING))
@@ -33,6 +36,12 @@ class Capacity(Rule):
             return None
         unit = problem.usage_unit
         return f"at least {insertion.usage:.2f} {unit} with it, of {problem.capacity[i]:.2f} {unit}"
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+        usage, unit = min(found.usages[i] for _, found in places), problem.usage_unit
+        if usage > problem.capacity[i]:
+            return f"at least {usage:.2f} {unit} with it, of {problem.capacity[i]:.2f} {unit}"
+        return "with its team one of the robots would need more than its capacity"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule
+from muster.allocation.rules.rule import (
+    ROUNDING,
+    Bools,
+    Change,
+    InPlan,
+    Limits,
+    Outlook,
+    Question,
+    Rule,
+    first_task,
+    limits_array,
+)
 from muster.allocation.rules.times import known_least, longer, moments, span
 from muster.mission.model import Robot, Task
 
@@ -45,7 +57,17 @@ class Deadline(Rule):
     """The end of the work is at most `deadline_s`."""
 
     word: ClassVar[str] = "deadline"
+    asked = ("deadline",)
+    lifted_late = True
     key = "deadline"
+
+    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+        first = first_task(problem, "deadline_s", lambda j: np.isfinite(problem.timed_rules.deadline[j]))
+        if first is not None:
+            yield "deadline", first
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        return {"deadline": limits_array(problem.timed_rules.deadline)}
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:

@@ -2,17 +2,41 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, InPlan, Limits, Outlook, Question, Rule, listed
+from muster.allocation.rules.rule import (
+    Bools,
+    InPlan,
+    Limits,
+    Outlook,
+    Question,
+    Rule,
+    first_task,
+    limits_array,
+    listed,
+)
 
 
 class Prerequisite(Rule):
     """All prerequisites of a task are in the plan, and can be done before it."""
 
     word: ClassVar[str] = "prerequisite"
+    asked = ("lag",)
+
+    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+        lags = problem.timed_rules.lags
+        lagged = [any(after or np.isfinite(within) for _, after, within in lags(j)) for j in range(len(problem.tasks))]
+        first = first_task(problem, "prerequisites with after_s or within_s", lambda j: lagged[j])
+        if first is not None:
+            yield "lag", first
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        lags = [lag for j in range(len(problem.tasks)) for lag in problem.timed_rules.lags(j)]
+        after, within = np.array([lag[1] for lag in lags]), np.array([lag[2] for lag in lags])
+        return {"after": after if after.any() else np.empty(0), "within": limits_array(within)}
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.held_back:

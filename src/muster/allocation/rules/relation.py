@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from muster.allocation.bottleneck import on_some_matching
-from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
+from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
 from muster.mission.model import Robot, Task
 
 
@@ -46,7 +46,27 @@ class Relation(Rule):
 
     word: ClassVar[str] = "relation"
     about_one = False
+    asked = ("relation", "starts-with")
     key = "relation"
+
+    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+        rules = problem.timed_rules
+        same = _stated(problem, "same_robot_as", lambda j: rules.same_robot[j])
+        first = same or _stated(problem, "other_robot_than", lambda j: rules.other_robot[j])
+        if first is not None:
+            yield "relation", first
+        whole = len(rules.units) == len(problem.tasks)
+        together = None if whole else first_task(problem, "starts_with", rules.beginning_with)
+        if together is not None:
+            yield "starts-with", together
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        rules, alone = problem.timed_rules, len(problem.timed_rules.units) == len(problem.tasks)
+        return {
+            "unit": np.array([] if alone else rules.unit, dtype=np.int32),
+            "same_robot": rules.same_robot if any(rules.same_robot) else [],
+            "other_robot": rules.other_robot if any(rules.other_robot) else [],
+        }
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.rules.with_relations:
@@ -98,6 +118,12 @@ class Relation(Rule):
         if k in limits.rules.other_robot[j] and int(others.sum()) == 1:
             return ~others
         return np.ones_like(others)
+
+
+def _stated(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
+    """The first task in a relation; where one is there, the first that states it, as the rules are symmetric."""
+    stated = first_task(problem, key, lambda j: has(j) and getattr(problem.tasks[j], key))
+    return stated or first_task(problem, key, has)
 
 
 def _different(limits: Limits, unit: list[int]) -> dict[int, Bools]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Hashable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, Protocol
@@ -17,6 +17,7 @@ from muster.mission.model import Mission, Robot, Task
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
+Routes = list[list[int]]
 Scores = Mapping[str, Mapping[str, float]]
 
 ROUNDING = 2e-9
@@ -37,11 +38,15 @@ class Question(Protocol):
     @property
     def prerequisites(self) -> list[list[int]]: ...
     @property
+    def kinds(self) -> npt.NDArray[np.int32]: ...
+    @property
     def usage_unit(self) -> str: ...
     @property
     def core(self) -> core.Problem: ...
     @property
     def timed_rules(self) -> TimedRules: ...
+
+    def holds(self, rule: str) -> bool: ...
 
     def may(self, i: int, j: int) -> bool: ...
 
@@ -197,6 +202,11 @@ class Rule:
         whether it can be ignored.
     about_one
         whether it looks at one robot at a time; else at the teams that it can be in.
+    asked, for_good
+        what an allocator must be able to do to keep it, where not all can: words of `capabilities`; and whether one can
+        that never takes a task out of a route again.
+    lifted_late
+        whether reasons seek it among all places in a route, one such rule after the other in the order of rules.
     key, no_change
         of its change in the plain data of a remedy, and what stands there where no change is needed; no key: a robot
         is not changed for it, or not by it alone.
@@ -205,8 +215,23 @@ class Rule:
     word: ClassVar[str]
     ignorable: ClassVar[bool] = True
     about_one: ClassVar[bool] = True
+    asked: ClassVar[tuple[str, ...]] = ()
+    for_good: ClassVar[bool] = True
+    lifted_late: ClassVar[bool] = False
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
+
+    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+        """The words of `asked` that a problem asks for, each with the place that does so first."""
+        return iter(())
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        """What the core has to know of it: arguments of `core.Problem`; what is empty binds nothing."""
+        return {}
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        """What it depends on of robot i, beside the tasks that the robot may do: the same for robots that are alike."""
+        return None
 
     def kinds(self, problem: Question) -> Sequence[Hashable] | None:
         """For each robot what `refusal` depends on, beside the task; None: it refuses nobody."""
@@ -228,9 +253,24 @@ class Rule:
         """Why robot i does not do task j, which a plan leaves out; None if this rule does not keep it from it."""
         return self.refusal(plan.problem, i, j)
 
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+        """How routes with one more task for robot i break it, where they break it least; None: by their times."""
+        return None
+
     def change(self, problem: Question, robot: Robot, task: Task) -> Change | None:
         """The least change with which the rule does not refuse the pair; None if none is needed."""
         return None
+
+
+def first_task(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
+    """The first task that has something, named with the key; None: there is none."""
+    first = next((task.id for j, task in enumerate(problem.tasks) if has(j)), None)
+    return None if first is None else f"task {first}: {key}"
+
+
+def limits_array(limits: Floats) -> Floats:
+    """Limits for the core, which takes none for infinite ones."""
+    return limits if np.isfinite(limits).any() else np.empty(0)
 
 
 def listed(names: Collection[str]) -> str:

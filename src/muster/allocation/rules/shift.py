@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule
+from muster.allocation.rules.rule import (
+    ROUNDING,
+    Bools,
+    Change,
+    InPlan,
+    Limits,
+    Outlook,
+    Question,
+    Rule,
+    limits_array,
+)
 from muster.allocation.rules.times import known_least, longer, moments
 from muster.mission.model import Robot
 
@@ -49,7 +60,21 @@ class Shift(Rule):
     """The end of the route is at most `available_until_s`."""
 
     word: ClassVar[str] = "shift"
+    asked = ("shift",)
+    lifted_late = True
     key = "shift"
+
+    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+        until = problem.timed_rules.available_until
+        first = next((robot.id for robot, end in zip(problem.robots, until, strict=True) if np.isfinite(end)), None)
+        if first is not None:
+            yield "shift", f"robot {first}: available_until_s"
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        return {"available_until": limits_array(problem.timed_rules.available_until)}
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return float(problem.timed_rules.available_until[i])
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -42,7 +42,34 @@ class Team(Rule):
 
     word: ClassVar[str] = "team"
     about_one = False
+    asked = ("team",)
     key = "team"
+
+    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+        first = next(filter(problem.timed_rules.is_for_team, range(len(problem.tasks))), None)
+        if first is not None:
+            task = problem.tasks[first]
+            yield "team", f"task {task.id}: {'needs' if task.needs else 'team' if task.team else 'robots_needed'}"
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        rules, none = problem.timed_rules, np.empty(0)
+        if not rules.with_teams:
+            return {"parts": [], "abilities": none, "needs": none}
+        first_of_kind = np.unique(problem.kinds, return_index=True)[1]
+        tasks = range(len(problem.tasks))
+        parts = [
+            [(count, fits[first_of_kind].tolist()) for count, fits in rules.parts(j)] if rules.has_parts(j) else []
+            for j in tasks
+        ]
+        names = sorted({name for j in tasks for name in rules.needed(j)})
+        return {
+            "parts": parts,
+            "abilities": np.array([[(r.abilities or {}).get(name, 0.0) for name in names] for r in problem.robots]),
+            "needs": np.array([[rules.needed(j).get(name, 0.0) for name in names] for j in tasks]),
+        }
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return problem.timed_rules.in_team(i)
 
     def kinds(self, problem: Question) -> Sequence[Hashable] | None:
         if not problem.timed_rules.with_teams:

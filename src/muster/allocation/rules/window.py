@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule
+from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task
 from muster.allocation.rules.times import known_least, longer, moments, reaches, span
 from muster.mission.model import Robot, Task
 
@@ -50,7 +51,18 @@ class Window(Rule):
     """The begin of the work is in one of `window_s`. A robot that is too early waits for the next one."""
 
     word: ClassVar[str] = "window"
+    asked = ("window",)
+    lifted_late = True
     key = "window"
+
+    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+        first = first_task(problem, "window_s", lambda j: problem.timed_rules.windows[j])
+        if first is not None:
+            yield "window", first
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        windows = problem.timed_rules.windows
+        return {"windows": windows if any(windows) else []}
 
     def possible(self, limits: Limits) -> Bools | None:
         return np.isfinite(limits.pair_begin) if limits.is_timed else None

@@ -11,6 +11,7 @@ from nicegui import background_tasks, ui
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import OBJECTIVES, Robot, Rules, Task
 from muster.mission.records import specified
+from muster.mission.value_types import Number, Whole
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import warn, words_of
 from muster.server.pages.plan.cell_texts import text_of, value_of
@@ -36,8 +37,11 @@ _TASKS = (
 )
 _ROBOT_TIMES = (
     Column("shift", "clock spans", hint="as 08:00 to 16:00, beside starts_at"),
-    Column("available_from_s", "number"),
-    Column("available_until_s", "number"),
+    *(
+        Column(f.name, "number")
+        for f in specified(Robot)
+        if f.metadata["if_used"] and isinstance(f.metadata["kind"], Number | Whole)
+    ),
     Column("abilities", "amounts", hint="as lift_kg 20, water_l 3"),
 )
 _TASK_TIMES = (
