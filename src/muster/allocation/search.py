@@ -32,7 +32,10 @@ from muster.mission.errors import ParameterError
 _Search = core.Search | core.ScheduleSearch
 
 _EXCHANGES = 20  # how often threads take over the best plan, in a whole run
-_BATCH = 400_000  # tasks and robots times steps, between two looks at the clock: some milliseconds
+# Tasks and robots times steps, between two looks at the clock: some milliseconds.
+_BATCH = 400_000
+_BATCH_ON_SCHEDULE = 40_000
+_BATCH_OF_TEAMS = 4_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +108,7 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
     hot = max(params.cold, params.hot or (1.0 if few else 5.0))
     exchanged, known = 0, None
     with ThreadPoolExecutor(params.threads) as pool:
-        for steps in stop.batches(max(20, min(1000, _BATCH // (len(problem.tasks) + len(problem.robots))))):
+        for steps in stop.batches(_steps_at_once(problem)):
             temperature = way * hot * (params.cold / hot) ** stop.share
             annealing = [pool.submit(search.anneal, steps, temperature, temperature) for search in searches]
             for one in annealing:
@@ -125,6 +128,13 @@ def exchange(searches: Sequence[_Search], best: _Search) -> None:
     for search in searches:
         if search is not best:
             search.go_on_from(best.best)
+
+
+def _steps_at_once(problem: Problem) -> int:
+    batch = _BATCH_ON_SCHEDULE if _on_schedule(problem) else _BATCH
+    if problem.holds("team") and any(task.is_for_team for task in problem.tasks):
+        batch = _BATCH_OF_TEAMS
+    return max(20, min(1000, batch // (len(problem.tasks) + len(problem.robots))))
 
 
 def _on_schedule(problem: Problem) -> bool:
