@@ -129,7 +129,10 @@ class TimedPlaces(InPlan):
     def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
         """Why no place is left whatever the times and capacities."""
         inspections = [core.Inspection(self.without(tuple(_RELAXED)).core, place.routes) for place in places]
-        if any(found.makespan is not None and math.isinf(found.usages[i]) for found in inspections):
+        no_way = [math.isinf(found.usages[i]) for found in inspections]
+        if all(no_way) or any(
+            none and found.makespan is not None for none, found in zip(no_way, inspections, strict=True)
+        ):
             return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
         detail = "at every place in its route tasks would wait for each other in a circle, or longer than they may"
         return Outcome(word="prerequisite", detail=detail)
