@@ -66,6 +66,7 @@ help:
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
 	@echo "make campaign-times  5,000 small missions with windows, lags, teams and relations, against every plan of each"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
+	@echo "                       (CAMPAIGN_FLAGS='--timed 2000': of missions with rules of time)"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
 	@echo "make campaign-api  many more requests, made from the description of mission control's API, than the tests make"
 	@echo "make network-figures  time robots in network namespaces, through loss and a cut (root; NETWORK_FLAGS='--robots 20')"

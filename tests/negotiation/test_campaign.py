@@ -7,18 +7,37 @@ from tests.negotiation.campaign.mutants import plant
 from tests.negotiation.campaign.trial import trial
 from tests.negotiation.networks import line_mission, settled_team
 
+from muster.allocation.capabilities import required
+from muster.allocation.problem import Problem
+from muster.negotiation.capabilities import AGREED
 from muster.negotiation.negotiator import Negotiator
 from muster.running.negotiation_trials import replay
 from muster.running.negotiation_trials.observer import Observer
 from muster.running.negotiation_trials.scenario import scenario_of
 
-RUNS, CHUNK = 1000, 50
+RUNS, TIMED_RUNS, CHUNK = 1000, 200, 50
 
 
 @pytest.mark.parametrize("first", range(0, RUNS, CHUNK))
 def test_nothing_fails(first):
     failures = {seed: what for seed in range(first, first + CHUNK) if (what := trial(seed).failures)}
     assert failures == {}
+
+
+@pytest.mark.parametrize("first", range(0, TIMED_RUNS, CHUNK))
+def test_nothing_fails_with_rules_of_time(first):
+    failures = {seed: what for seed in range(first, first + CHUNK) if (what := trial(seed, timed=True).failures)}
+    assert failures == {}
+
+
+def test_missions_with_rules_of_time_have_all_of_them():
+    words = Counter(
+        word for seed in range(60) for word in required(Problem.compile(scenario_of(seed, timed=True).mission))
+    )
+    assert all(words[word] > 5 for word in AGREED)
+    assert {task.id for task in scenario_of(3, timed=True).mission.tasks} == {
+        task.id for task in scenario_of(3).mission.tasks
+    }
 
 
 def test_a_run_is_the_same_each_time():

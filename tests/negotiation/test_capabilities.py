@@ -9,11 +9,15 @@ from muster.allocation.capabilities import those_that_can
 from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
 from muster.mission.model import Lag, TeamPart
-from muster.negotiation.capabilities import refuse_mission, refuse_what_is_not_agreed
+from muster.negotiation.capabilities import AGREED, refuse_mission, refuse_what_is_not_agreed
 from muster.negotiation.methods import METHODS
 
 ROBOTS = tuple(Robot(id=name, position=(5.0 * k, 0.0), radius_m=0.3) for k, name in enumerate("ab"))
 PLAIN = Mission(robots=ROBOTS, tasks=(Task(id="s", position=(1.0, 5.0)), Task(id="t", position=(9.0, 5.0))))
+
+
+def word_of(where):
+    return where[where.rindex("(") + 1 : -1]
 
 
 def with_task(**keys):
@@ -38,25 +42,32 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("where", REFUSED)
-def test_the_error_names_the_key_and_the_allocators_that_can(where):
-    word = where[where.rindex("(") + 1 : -1]
+CASES = [(method, where) for method, chosen in METHODS.items() for where in REFUSED if word_of(where) not in chosen.can]
+
+
+def test_the_auction_agrees_on_times_and_bundles_on_none():
+    assert METHODS["auction"].can == {"window", "deadline", "shift", "lag", "lateness"}
+    assert METHODS["consensus-bundle"].can == set()
+
+
+@pytest.mark.parametrize(("method", "where"), CASES)
+def test_the_error_names_the_key_and_what_can(method, where):
+    word = word_of(where)
     with pytest.raises(ParameterError) as refused:
-        refuse_mission(REFUSED[where])
-    assert f"{where}; expected a plan of {' or '.join(those_that_can([word]))}" in str(refused.value)
-    assert "auction" in str(refused.value)
+        refuse_mission(REFUSED[where], METHODS[method].can)
+    able = "the method auction or " if word in AGREED else ""
+    assert f"{where}; expected {able}a plan of {' or '.join(those_that_can([word]))}" in str(refused.value)
 
 
-@pytest.mark.parametrize("where", REFUSED)
-def test_the_package_refuses_before_a_record_is_begun(where, tmp_path):
+@pytest.mark.parametrize(("method", "where"), CASES)
+def test_the_package_refuses_before_a_record_is_begun(method, where, tmp_path):
     with pytest.raises(ParameterError, match="without a centre"):
-        simulate(REFUSED[where], Negotiation(), record=tmp_path / "run.mcap")
+        simulate(REFUSED[where], Negotiation(method=method), record=tmp_path / "run.mcap")
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("where", REFUSED)
-@pytest.mark.parametrize("method", METHODS)
-def test_no_robot_of_any_method_takes_part(method, where):
+@pytest.mark.parametrize(("method", "where"), CASES)
+def test_no_robot_takes_part(method, where):
     chosen = METHODS[method]
     problem = Problem.compile(REFUSED[where]).ready()
     with pytest.raises(ParameterError, match="without a centre"):
@@ -66,27 +77,46 @@ def test_no_robot_of_any_method_takes_part(method, where):
 def test_robots_and_tasks_of_events_are_looked_at():
     late = Event(at_s=5.0, new_task=Task(id="u", position=(3.0, 3.0), deadline_s=60.0))
     joins = Event(at_s=5.0, robot_joins=Robot(id="c", position=(3.0, 3.0), available_until_s=60.0))
+    none = METHODS["consensus-bundle"].can
     with pytest.raises(ParameterError, match="task u: deadline_s"):
-        refuse_mission(replace(PLAIN, events=(late,)))
+        refuse_mission(replace(PLAIN, events=(late,)), none)
     with pytest.raises(ParameterError, match="robot c: available_until_s"):
-        refuse_mission(replace(PLAIN, events=(joins,)))
+        refuse_mission(replace(PLAIN, events=(joins,)), none)
+    refuse_mission(replace(PLAIN, events=(late, joins)), METHODS["auction"].can)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_a_robot_does_not_announce_a_task_on_which_they_cannot_agree(method):
+def test_a_bid_rule_that_sees_no_times_is_refused_with_them():
+    chosen = METHODS["auction"]
+    terms = chosen.allocator.parameters(bid="average-as-printed")
+    with pytest.raises(ParameterError, match="average-as-printed, with times"):
+        chosen.negotiator(Problem.compile(with_task(deadline_s=90.0)).ready(), terms, "a", incarnation=1)
+    robot = chosen.negotiator(Problem.compile(PLAIN).ready(), terms, "a", incarnation=1)
+    with pytest.raises(ParameterError, match="average-as-printed, with times"):
+        robot.announce(Task(id="u", position=(3.0, 3.0), deadline_s=20.0))
+
+
+@pytest.mark.parametrize(
+    ("method", "keys", "named"),
+    [
+        ("auction", {"robots_needed": 2}, "task u: robots_needed"),
+        ("consensus-bundle", {"window_s": ((10.0, 20.0),)}, "task u: window_s"),
+    ],
+)
+def test_a_robot_does_not_announce_a_task_on_which_they_cannot_agree(method, keys, named):
     chosen = METHODS[method]
     robot = chosen.negotiator(Problem.compile(PLAIN).ready(), chosen.allocator.parameters(), "a", incarnation=1)
     before = list(robot.facts)
-    with pytest.raises(ParameterError, match="task u: window_s"):
-        robot.announce(Task(id="u", position=(3.0, 3.0), window_s=((10.0, 20.0),)))
+    with pytest.raises(ParameterError, match=named):
+        robot.announce(Task(id="u", position=(3.0, 3.0), **keys))
     assert list(robot.facts) == before
     robot.announce(Task(id="u", position=(3.0, 3.0)))
     assert len(list(robot.facts)) == len(before) + 1
 
 
 def test_plain_missions_due_times_and_ignored_rules_are_accepted():
-    refuse_mission(PLAIN)
-    refuse_mission(with_task(due_s=20.0))
-    refuse_mission(with_task(prerequisites=("s",)))
+    none = METHODS["consensus-bundle"].can
+    refuse_mission(PLAIN, none)
+    refuse_mission(with_task(due_s=20.0), none)
+    refuse_mission(with_task(prerequisites=("s",)), none)
     for ignored, keys in {"window": {"window_s": ((5.0, 9.0),)}, "team": {"robots_needed": 2}}.items():
-        refuse_what_is_not_agreed(Problem.compile(with_task(**keys), None, (ignored,)))
+        refuse_what_is_not_agreed(Problem.compile(with_task(**keys), None, (ignored,)), none)

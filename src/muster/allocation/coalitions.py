@@ -9,7 +9,7 @@ task the coalition that costs least bids, and beside it, for each of its members
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -54,6 +54,20 @@ class CoalitionSale:
         return self.bids[0]
 
 
+def bid_of(problem: Problem, terms: Terms) -> str:
+    """The objective by which coalitions bid.
+
+    Raises
+    ------
+    ParameterError
+        if the bid rule of the terms is none.
+    """
+    bid = terms.bid or problem.objective
+    if bid == "average-as-printed":
+        raise ParameterError(f"bid: {bid}, with times, teams or relations; expected the name of an objective")
+    return bid
+
+
 OnBids = Callable[[int, list[CoalitionSale]], None]
 
 
@@ -61,9 +75,7 @@ class CoalitionAuction:
     """Sells units one by one: all that can follow are announced, coalitions bid, and one unit is assigned a round."""
 
     def __init__(self, problem: Problem, terms: Terms, start: Routes | None = None) -> None:
-        bid = terms.bid or problem.objective
-        if bid == "average-as-printed":
-            raise ParameterError(f"bid: {bid}, with times, teams or relations; expected the name of an objective")
+        bid = bid_of(problem, terms)
         self._problem = problem if bid == problem.objective else replace(problem, objective=bid)
         self._terms = terms
         self._roster = WorkingRoster(self._problem, start)
@@ -74,12 +86,14 @@ class CoalitionAuction:
     def routes(self) -> Routes:
         return self._roster.routes
 
+    def ready(self) -> list[int]:
+        """The units that can be sold: in no route, and all that they wait for is in routes."""
+        return self._roster.ready()
+
     def sell(self, stop: Stop, on_bids: OnBids | None = None) -> None:
         """Sell until nobody bids any more."""
         while not stop.interrupted:
-            offers = [
-                CoalitionSale(len(self.sales) + 1, bids) for unit in self._roster.ready() if (bids := self._bids(unit))
-            ]
+            offers = [CoalitionSale(len(self.sales) + 1, bids) for unit in self.ready() if (bids := self.bids(unit))]
             sale = self._sold(offers)
             if sale is None:
                 break
@@ -89,37 +103,64 @@ class CoalitionAuction:
 
     def _sold(self, offers: list[CoalitionSale]) -> CoalitionSale | None:
         """Assign the first unit that can be, the winner rule's choice first."""
-        key = _contest if self._terms.winner_rule == "least-contested" else _price
-        return next((sale for sale in sorted(offers, key=key) if self._roster.put(sale.won.insertion)), None)
+        ranked = sorted(offers, key=lambda sale: rank([bid.price for bid in sale.bids], self._terms))
+        return next((sale for sale in ranked if self.assign(sale.won)), None)
 
-    def _bids(self, unit: int) -> list[CoalitionBid]:
-        """All bids for a unit, the best first."""
-        insertions = self._of_robots(unit) if self._alone(unit) else self._of_coalitions(unit)
+    def bids(self, unit: int, robots: Sequence[int] | None = None) -> list[CoalitionBid]:
+        """All bids of these robots (of all by default) for a unit, the best first."""
+        robots = range(len(self._problem.robots)) if robots is None else robots
+        insertions = self._of_robots(unit, robots) if self.is_alone(unit) else self._of_coalitions(unit, robots)
         return sorted((CoalitionBid(found, self._price(found)) for found in insertions), key=lambda bid: bid.price)
 
-    def _alone(self, unit: int) -> bool:
+    def best_bid(self, unit: int, robots: Sequence[int]) -> CoalitionBid | None:
+        """The best bid for a unit that these robots can make; None: none."""
+        found = self._best(unit, robots)
+        return None if found is None else CoalitionBid(found, self._price(found))
+
+    def added_usages(self, unit: int, robot: int) -> Iterator[tuple[int, float]]:
+        """The tasks of a unit that a robot may do, and what each adds to its usage at the place where that is least."""
+        inspection = core.Inspection(self._problem.core, self.routes)
+        for task in self._problem.timed_rules.units[unit]:
+            found = inspection.cheapest_insertion(robot, task) if self._problem.may(robot, task) else None
+            if found is not None and math.isfinite(found.usage):
+                yield task, found.usage
+
+    def holds(self, bid: CoalitionBid) -> bool:
+        """Whether the routes with what is bid for are admissible."""
+        return self._roster.fits(bid.insertion)
+
+    def assign(self, bid: CoalitionBid) -> bool:
+        """Put a unit into the routes of those that bid; False, and nothing is changed, if it does not hold."""
+        return self._roster.put(bid.insertion)
+
+    def settle(self) -> None:
+        """Make the bids that follow depend on the routes alone, not on how they came about."""
+        self._roster = WorkingRoster(self._problem, self._roster.routes)
+
+    def is_alone(self, unit: int) -> bool:
+        """Whether a unit is one task for one robot."""
         rules = self._problem.timed_rules
         return len(rules.units[unit]) == 1 and not rules.is_for_team(rules.units[unit][0])
 
-    def _of_robots(self, unit: int) -> Iterator[core.UnitInsertion]:
+    def _of_robots(self, unit: int, robots: Sequence[int]) -> Iterator[core.UnitInsertion]:
         (task,) = self._problem.timed_rules.units[unit]
-        for robot in range(len(self._problem.robots)):
+        for robot in robots:
             if self._problem.may(robot, task) and (found := self._best(unit, [robot])) is not None:
                 yield found
 
-    def _of_coalitions(self, unit: int) -> Iterator[core.UnitInsertion]:
-        best = self._best(unit, None)
+    def _of_coalitions(self, unit: int, others: Sequence[int]) -> Iterator[core.UnitInsertion]:
+        best = self._best(unit, others)
         if best is None:
             return
         yield best
-        others, known = range(len(self._problem.robots)), {_team(best)}
+        known = {_team(best)}
         for without in sorted({robot for _, robot, _ in best.members}):
             found = self._best(unit, [robot for robot in others if robot != without])
             if found is not None and _team(found) not in known:
                 known.add(_team(found))
                 yield found
 
-    def _best(self, unit: int, robots: list[int] | None) -> core.UnitInsertion | None:
+    def _best(self, unit: int, robots: Sequence[int]) -> core.UnitInsertion | None:
         return self._roster.best(unit, robots, append_only=self._terms.placement == "append")
 
     def _price(self, insertion: core.UnitInsertion) -> float:
@@ -143,13 +184,14 @@ def _team(insertion: core.UnitInsertion) -> frozenset[tuple[int, int]]:
     return frozenset((task, robot) for task, robot, _ in insertion.members)
 
 
-def _price(sale: CoalitionSale) -> float:
-    return sale.won.price
+def rank(prices: Sequence[float], terms: Terms) -> float:
+    """By what a winner rule ranks a unit with these bids, the best first; the least wins.
 
-
-def _contest(sale: CoalitionSale) -> float:
-    """The gap between the two best bids, the widest first; nobody contests a single one."""
-    return sale.won.price - sale.bids[1].price if len(sale.bids) > 1 else -math.inf
+    It is the best bid, or the gap to the second one, the widest first; nobody contests a single one.
+    """
+    if terms.winner_rule != "least-contested":
+        return prices[0]
+    return prices[0] - prices[1] if len(prices) > 1 else -math.inf
 
 
 def coalition_book(problem: Problem, sales: list[CoalitionSale], hold: Callable[[OnBids], None]) -> Book:
@@ -157,16 +199,20 @@ def coalition_book(problem: Problem, sales: list[CoalitionSale], hold: Callable[
 
     def for_each_bid(take: TakeBid) -> None:
         def tell(number: int, offers: list[CoalitionSale]) -> None:
-            won = sales[number].won
-            for offer in offers:
-                for bid in _entries(problem, offer):
-                    sold = offer.won.unit == won.unit
-                    take(replace(bid, winner=None, price=None) if not sold else bid)
+            for bid in bids_of_round(problem, offers, sales[number].won.unit):
+                take(bid)
 
         hold(tell)
 
-    awards = tuple(award for sale in sales for award in _awards(problem, sale))
+    awards = tuple(award for sale in sales for award in awards_of(problem, sale))
     return Book(rounds=len(sales), awards=awards, for_each_bid=for_each_bid)
+
+
+def bids_of_round(problem: Problem, offers: Iterable[CoalitionSale], sold: int) -> Iterator[Bid]:
+    """Every bid of a round in which this unit was sold."""
+    for offer in offers:
+        for bid in _entries(problem, offer):
+            yield bid if offer.won.unit == sold else replace(bid, winner=None, price=None)
 
 
 def coalition_name(problem: Problem, robots: list[int]) -> str:
@@ -175,7 +221,8 @@ def coalition_name(problem: Problem, robots: list[int]) -> str:
     return "+".join(names[k] for k in tie_order(names))
 
 
-def _awards(problem: Problem, sale: CoalitionSale) -> Iterator[Award]:
+def awards_of(problem: Problem, sale: CoalitionSale) -> Iterator[Award]:
+    """How the tasks of a unit came to their robots."""
     for task in problem.timed_rules.units[sale.won.unit]:
         bids = _named(problem, sale, task)
         robot = coalition_name(problem, sale.won.members(task))

@@ -41,6 +41,12 @@ class WorkingRoster:
         """The team, of these robots, and the places that cost least; None if there are none."""
         return self.core.best_insertion(unit, append_only=append_only, robots=None if robots is None else list(robots))
 
+    def fits(self, insertion: core.UnitInsertion) -> bool:
+        """Whether the routes with a unit would be admissible."""
+        holds = self.core.insert(insertion) and self.core.admissible()
+        self.core.rollback()
+        return holds
+
     def put(self, insertion: core.UnitInsertion) -> bool:
         """Put a unit into routes; False, and nothing is changed, if these would not be admissible."""
         if self.core.insert(insertion) and self.core.admissible():

@@ -110,7 +110,7 @@ def command(
     terms = terms_of(chosen, others, settings)
     loaded = mission.load(verbose=verbose)
     problem = Problem.compile(loaded, objective, ignore)
-    refuse_what_is_not_agreed(problem)
+    refuse_what_is_not_agreed(problem, chosen.can)
     problem = problem.ready()
     agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
     first = next(iter(agreement.views.values()))

@@ -265,8 +265,9 @@ def _negotiation(mission: Mission, method: str, transport: str, options: Plannin
     from muster.negotiation.capabilities import refuse_mission
     from muster.negotiation.methods import method_named
 
-    refuse_mission(mission)
-    terms = make_parameters(method_named(method).allocator, dict(options.parameters))
+    chosen = method_named(method)
+    refuse_mission(mission, chosen.can)
+    terms = make_parameters(chosen.allocator, dict(options.parameters))
     return Negotiation(method=method, transport=transport, params=terms)
 
 

@@ -1,37 +1,33 @@
-"""What robots cannot agree on without a centre: rules of time, teams and relations. Such missions are refused.
-
-Bids and the base of an epoch respect routes, capacities and the order of prerequisites. They do not keep the times of
-other robots, which windows, lags and teams depend on; so a plan with such rules could be wrong.
-"""
+"""What rules of time, teams and relations robots can agree on without a centre; missions with others are refused."""
 
 from __future__ import annotations
 
-from muster.allocation.capabilities import required
+from muster.allocation.capabilities import required, those_that_can
 from muster.allocation.problem import Problem
-from muster.allocation.registry import ALLOCATORS
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 
+AGREED = frozenset({"window", "deadline", "shift", "lag", "lateness"})
+"""What the auction agrees on."""
 
-def refuse_what_is_not_agreed(problem: Problem) -> None:
-    """Refuse a problem with rules that robots cannot keep without a centre.
+
+def refuse_what_is_not_agreed(problem: Problem, can: frozenset[str]) -> None:
+    """Refuse a problem with rules that robots cannot keep without a centre, by a method that keeps some of them.
 
     Raises
     ------
     ParameterError
-        with the keys, their tasks or robots, and the central allocators that can do all that the problem asks for.
+        with the keys, their tasks or robots, and what can do all that the problem asks for.
     """
     asked = required(problem)
-    if asked:
-        places = "; ".join(f"{where} ({word})" for word, where in asked.items())
-        usable = ALLOCATORS.usable().items()
-        able = " or ".join(name for name, allocator in usable if asked.keys() <= allocator.can)
-        raise ParameterError(
-            f"robots without a centre cannot agree on {places}; expected a plan of {able or 'an allocator that can'}"
-        )
+    lacking = [f"{where} ({word})" for word, where in asked.items() if word not in can]
+    if lacking:
+        method = ["the method auction"] if asked.keys() <= AGREED else []
+        able = " or ".join([*method, f"a plan of {' or '.join(those_that_can(asked)) or 'an allocator that can'}"])
+        raise ParameterError(f"robots without a centre cannot agree on {'; '.join(lacking)}; expected {able}")
 
 
-def refuse_mission(mission: Mission) -> None:
+def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
     """Refuse a mission as `refuse_what_is_not_agreed`, also for robots and tasks that its events bring.
 
     Raises
@@ -42,4 +38,4 @@ def refuse_mission(mission: Mission) -> None:
     joining = [event.robot_joins for event in mission.events if event.robot_joins is not None]
     new = [event.new_task for event in mission.events if event.new_task is not None]
     whole = mission.at_once(robots=(*mission.robots, *joining), tasks=(*mission.tasks, *new))
-    refuse_what_is_not_agreed(Problem.compile(whole))
+    refuse_what_is_not_agreed(Problem.compile(whole), can)

@@ -161,8 +161,9 @@ class Epoch:
         owned = self.base.routes[self.own.robot]
         claims = {claim.task: claim for claim in owned if not claim.begun}
         for number, sold in enumerate(self.sales, self.base.rounds + 1):
-            if sold.robot == self.own.robot:
-                claims[sold.task] = Claim(sold.task, sold.price, number)
+            for robot, task in sold.assignments:
+                if robot == self.own.robot:
+                    claims[task] = Claim(task, sold.price, number)
         ahead = (claims[task] for task in self.valuer.route(self.own.robot) if task in claims)
         return (*(claim for claim in owned if claim.begun), *ahead)
 

@@ -94,11 +94,20 @@ class RoundBids:
 
 @dataclass(frozen=True, slots=True)
 class Sold:
-    """The result of a round: a task went to a robot at a price."""
+    """The result of a round: a task went to a robot at a price.
+
+    `others`: the other robots, with their tasks, where several robots won a task, or tasks that begin together.
+    """
 
     robot: str
     task: str
     price: float
+    others: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def assignments(self) -> tuple[tuple[str, str], ...]:
+        """All robots that won, each with its task."""
+        return ((self.robot, self.task), *self.others)
 
 
 @dataclass(frozen=True, slots=True)

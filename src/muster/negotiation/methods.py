@@ -13,9 +13,11 @@ from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan
+from muster.negotiation.bundles import BundleValuer
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import bundler_of, negotiator_of, plan_of_bundles, plan_of_view
 from muster.negotiation.robot_view import View
+from muster.negotiation.valuation import AuctionValuer
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +34,8 @@ class Method:
         makes a robot's negotiator, as `participation.negotiator_of`.
     plan
         makes the plan of a view, as `participation.plan_of_view`.
+    can
+        what rules of time, teams and relations it agrees on.
     """
 
     name: str
@@ -39,6 +43,7 @@ class Method:
     allocator: Allocator
     negotiator: Callable[..., Negotiator]
     plan: Callable[[Problem, Any, View, float | None], Plan]
+    can: frozenset[str]
 
 
 _IMPLEMENTATIONS = (
@@ -48,6 +53,7 @@ _IMPLEMENTATIONS = (
         allocator=AUCTION,
         negotiator=negotiator_of,
         plan=plan_of_view,
+        can=AuctionValuer.can,
     ),
     Method(
         name="consensus-bundle",
@@ -55,6 +61,7 @@ _IMPLEMENTATIONS = (
         allocator=CONSENSUS_BUNDLE,
         negotiator=bundler_of,
         plan=plan_of_bundles,
+        can=BundleValuer.can,
     ),
 )
 

@@ -10,23 +10,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from muster.allocation.auction_terms import Terms
-from muster.allocation.auctioneer import Auctioneer
-from muster.allocation.book_keeper import bids_of_round
 from muster.allocation.consensus import neighbours, score
 from muster.allocation.consensus_bundle import Parameters
 from muster.allocation.problem import Problem
-from muster.allocation.winners import Sale
 from muster.mission.auction_book import Award, Book, TakeBid
 from muster.negotiation.bundles import BundleValuer
-from muster.negotiation.messages import Claim
+from muster.negotiation.messages import Claim, Sold
 from muster.negotiation.robot_view import EpochAuction, View
+from muster.negotiation.task_sales import TaskSales
+from muster.negotiation.unit_sales import UnitSales
 from muster.negotiation.valuation import AuctionValuer
 
-OnSale = Callable[[Problem, Auctioneer, Sale, Sequence[int]], None]
-"""Called before a sold task is assigned, with the problem, the auctioneer, the sale and the robots that could bid."""
+OnSale = Callable[[TaskSales | UnitSales, int, Sold, Sequence[int]], None]
+"""Called before what was sold is assigned, with the sales so far, the round's number, and the robots that could bid."""
 
 
 def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
@@ -39,8 +36,8 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
     auctions = view.auctions
 
     def for_each_bid(take: TakeBid) -> None:
-        def tell(problem: Problem, auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
-            for bid in bids_of_round(problem, auctioneer, sale, members):
+        def tell(sales: TaskSales | UnitSales, number: int, sold: Sold, members: Sequence[int]) -> None:
+            for bid in sales.booked_bids(number, sold, members):
                 take(bid)
 
         _hold_again(problem, terms, auctions, tell)
@@ -63,8 +60,7 @@ def _hold_again(problem: Problem, terms: Terms, auctions: Sequence[EpochAuction]
         valuer.begin(held.opening)
         members = [problem.robot_index[robot] for robot in held.members]
         for number, sold in enumerate(held.sales, held.rounds + 1):
-            valuer.auctioneer.round = number
-            on_sale(valuer.problem, valuer.auctioneer, valuer.sale_of(sold), members)
+            on_sale(valuer.sales, number, sold, members)
             valuer.award(sold)
 
 
@@ -74,12 +70,9 @@ def _awards(
     """How each task came to the robot that owns it, in the order of rounds."""
     seen: dict[tuple[str, str, int], Award] = {}
 
-    def note(problem: Problem, auctioneer: Auctioneer, sale: Sale, members: Sequence[int]) -> None:
-        bids = auctioneer.bids_for(sale.task)
-        bidders = [i for i in members if np.isfinite(bids[i])]
-        named = [(problem.robots[i].id, float(bids[i])) for i in sorted(bidders, key=lambda i: bids[i])]
-        robot, task = problem.robots[sale.robot].id, problem.tasks[sale.task].id
-        seen[robot, task, auctioneer.round] = Award.of(auctioneer.round, task, robot, sale.price, named)
+    def note(sales: TaskSales | UnitSales, number: int, sold: Sold, members: Sequence[int]) -> None:
+        awards = {award.task: award for award in sales.awards(number, sold, members)}
+        seen.update({(robot, task, number): awards[task] for robot, task in sold.assignments})
 
     _hold_again(problem, terms, auctions, note)
     awards = [
@@ -87,7 +80,7 @@ def _awards(
         for robot, owned in claims.items()
         for c in owned
     ]
-    return sorted(awards, key=lambda award: award.round)
+    return sorted({id(award): award for award in awards}.values(), key=lambda award: award.round)
 
 
 def book_of_bundles(problem: Problem, params: Parameters, view: View) -> Book:

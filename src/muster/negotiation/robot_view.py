@@ -113,5 +113,6 @@ def _held(epoch: Epoch) -> EpochAuction | None:
 def _claims(base: Base, epoch: Epoch) -> dict[str, tuple[Claim, ...]]:
     claims = {robot: list(owned) for robot, owned in base.routes.items()}
     for number, sold in enumerate(epoch.sales, base.rounds + 1):
-        claims[sold.robot].append(Claim(sold.task, sold.price, number))
+        for robot, task in sold.assignments:
+            claims[robot].append(Claim(task, sold.price, number))
     return {robot: tuple(owned) for robot, owned in claims.items()}

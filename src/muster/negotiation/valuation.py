@@ -10,19 +10,19 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
-
-import numpy as np
+from typing import ClassVar, Protocol
 
 from muster.allocation.allocator import Routes
 from muster.allocation.auction_terms import Terms
-from muster.allocation.auctioneer import Auctioneer
+from muster.allocation.capabilities import NONE
+from muster.allocation.coalitions import bid_of
 from muster.allocation.fixed import admissible_part, with_past
 from muster.allocation.problem import Problem
-from muster.allocation.winners import WINNER_RULES, Floats, Indices, Sale
-from muster.negotiation.capabilities import refuse_what_is_not_agreed
+from muster.negotiation.capabilities import AGREED, refuse_what_is_not_agreed
 from muster.negotiation.messages import Bid, RoundBids, Sold
 from muster.negotiation.new_tasks import with_tasks
+from muster.negotiation.task_sales import TaskSales
+from muster.negotiation.unit_sales import UnitSales
 
 
 @dataclass(frozen=True)
@@ -100,17 +100,24 @@ class TeamValuer(ABC):
         the same for all robots; from `begin` on with added tasks and past work.
     robot
         the robot whose bids are computed.
+
+    Attributes
+    ----------
+    can
+        what rules of time, teams and relations the method agrees on.
     """
 
+    can: ClassVar[frozenset[str]] = NONE
+
     def __init__(self, problem: Problem, robot: str) -> None:
-        refuse_what_is_not_agreed(problem)
+        refuse_what_is_not_agreed(problem, self.can)
         self._given = self._whole = self.problem = problem
         self._robots, self._tasks = problem.robot_index, problem.task_index
         self._me = self._robots[robot]
         self._added: tuple[bytes, ...] = ()
 
     def check(self, tasks: Sequence[bytes]) -> None:
-        refuse_what_is_not_agreed(with_tasks(self._given, tasks))
+        refuse_what_is_not_agreed(with_tasks(self._given, tasks), self.can)
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
         if opening.added != self._added:
@@ -140,66 +147,40 @@ class TeamValuer(ABC):
 
 
 class AuctionValuer(TeamValuer):
-    """The auction of `allocation`, run by one of its robots; `terms` are the same for all."""
+    """The auction of `allocation`, run by one of its robots; `terms` are the same for all.
 
+    Where times, teams or relations bind tasks, units of work are sold (`unit_sales`), else tasks (`task_sales`).
+    """
+
+    can = AGREED
     sales_suffice = True
 
     def __init__(self, problem: Problem, terms: Terms, robot: str) -> None:
         super().__init__(problem, robot)
         self.terms = terms
+        self._refuse_bid(problem)
+
+    def check(self, tasks: Sequence[bytes]) -> None:
+        super().check(tasks)
+        self._refuse_bid(with_tasks(self._given, tasks))
 
     def _open(self, routes: Routes, closed: Collection[int]) -> None:
-        self.auctioneer = Auctioneer(self.problem, self.terms)
-        self.auctioneer.restore(routes, {}, closed)
+        kind = UnitSales if self.problem.core.is_timed else TaskSales
+        self.sales: TaskSales | UnitSales = kind(self.problem, self.terms, routes, closed)
 
     def bids(self, refused: Collection[str] = ()) -> tuple[Bid, ...]:
-        if not self._tasks:
-            return ()
-        bids = self.auctioneer.bids(self._me)
-        if refused:
-            bids[[j for task, j in self._tasks.items() if task in refused]] = np.inf
-        if self.terms.winner == "lowest":
-            j = int(np.argmin(bids))
-            return ((self.problem.tasks[j].id, float(bids[j])),) if np.isfinite(bids[j]) else ()
-        return tuple((self.problem.tasks[j].id, float(bids[j])) for j in np.flatnonzero(np.isfinite(bids)).tolist())
+        return self.sales.bids(self._me, refused) if self._tasks else ()
 
     def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
-        if not any(said.bids for said in bids):
-            return Resolution(over=True)
-        rule = WINNER_RULES[self.terms.winner](_Heard(self._robots, self._tasks, bids))
-        rule.note(range(len(self._robots)))
-        sale = rule.winner()
-        return Resolution(over=True) if sale is None else Resolution((self._sold(sale),))
+        sold = self.sales.winner(bids) if any(said.bids for said in bids) else None
+        return Resolution(over=True) if sold is None else Resolution((sold,))
 
     def award(self, sold: Sold) -> None:
-        self.auctioneer.assign(self.sale_of(sold))
+        self.sales.award(sold)
 
     def route(self, robot: str) -> list[str]:
-        return [self.problem.tasks[j].id for j in self.auctioneer.routes[self._robots[robot]]]
+        return [self.problem.tasks[j].id for j in self.sales.routes[self._robots[robot]]]
 
-    def sale_of(self, sold: Sold) -> Sale:
-        """The same by index."""
-        return Sale(self._robots[sold.robot], self._tasks[sold.task], sold.price)
-
-    def _sold(self, sale: Sale) -> Sold:
-        return Sold(self.problem.robots[sale.robot].id, self.problem.tasks[sale.task].id, sale.price)
-
-
-class _Heard:
-    """The bids of a round, in the form that a winner rule needs; robots that are not members bid for nothing."""
-
-    def __init__(self, robots: Mapping[str, int], tasks: Mapping[str, int], bids: Sequence[RoundBids]) -> None:
-        self.shape = (len(robots), len(tasks))
-        self._bids = {robots[said.robot]: [(bid, tasks[task]) for task, bid in said.bids] for said in bids if said.bids}
-
-    def bids(self, robot: int) -> Floats:
-        bids = np.full(self.shape[1], np.inf)
-        for bid, task in self._bids.get(robot, ()):
-            bids[task] = bid
-        return bids
-
-    def lowest_bids(self) -> tuple[Indices, Floats]:
-        tasks, lowest = np.zeros(self.shape[0], dtype=np.int64), np.full(self.shape[0], np.inf)
-        for robot, bids in self._bids.items():
-            lowest[robot], tasks[robot] = min(bids)
-        return tasks, lowest
+    def _refuse_bid(self, problem: Problem) -> None:
+        if problem.core.is_timed:
+            bid_of(problem, self.terms)

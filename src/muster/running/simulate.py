@@ -96,9 +96,10 @@ def _runner(mission: Mission, plan: Plan | Negotiation) -> Callable[..., Report]
         return partial(carry_out, mission, plan)
     from muster.allocation.problem import Problem
     from muster.negotiation.capabilities import refuse_mission
+    from muster.negotiation.methods import method_named
     from muster.running.negotiated.simulation import Negotiation, negotiate_and_carry_out
 
     if not isinstance(plan, Negotiation):
         raise ParameterError(f"plan: {shown(plan)}; expected a Plan or a Negotiation")
-    refuse_mission(mission)
+    refuse_mission(mission, method_named(plan.method).can)
     return partial(negotiate_and_carry_out, Problem.compile(mission).ready(), plan)

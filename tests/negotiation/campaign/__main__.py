@@ -1,6 +1,10 @@
-"""Run the campaign: `python -m tests.negotiation.campaign [SEEDS] [--first SEED] [--processes N]`, or one seed."""
+"""Run the campaign: `python -m tests.negotiation.campaign [SEEDS] [--first SEED] [--processes N]`, or one seed.
+
+With `--timed` the missions have rules of time.
+"""
 
 import sys
+from functools import partial
 
 from tests.negotiation.campaign.trial import trial
 from tests.trials import parser_of, run
@@ -14,4 +18,6 @@ def sum_up(took):
 
 
 if __name__ == "__main__":
-    sys.exit(run(parser_of("tests.negotiation.campaign", __doc__), trial, sum_up))
+    parser = parser_of("tests.negotiation.campaign", __doc__)
+    parser.add_argument("--timed", action="store_true", help="missions with rules of time")
+    sys.exit(run(parser, partial(trial, timed=parser.parse_args().timed), sum_up))

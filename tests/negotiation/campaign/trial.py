@@ -6,11 +6,11 @@ from muster.running.negotiation_trials import replay
 from muster.running.negotiation_trials.observer import PROMISED_NEVER
 
 
-def trial(seed):
-    """Run the trial of a seed and check all guarantees."""
+def trial(seed, *, timed=False):
+    """Run the trial of a seed, of a mission with times if `timed`, and check all guarantees."""
     report = Report(seed)
     with report.trying():
-        played = replay(seed)
+        played = replay(seed, timed=timed)
         report.story += played.scenario.described()
         report.failures, report.figures = played.failures, [(played.took_s, played.share)]
         report.counts.update(dict.fromkeys(PROMISED_NEVER, 0))

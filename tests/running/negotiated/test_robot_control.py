@@ -6,7 +6,7 @@ import pytest
 from tests.running.negotiated.simulated_team import SimulatedTeam
 
 from muster import Event, Mission, Robot, Task
-from muster.mission.model import MovedTask
+from muster.mission.model import Lag, MovedTask
 from muster.negotiation.messages import Fact, Message, Stage
 from muster.negotiation.new_tasks import content_of
 
@@ -276,6 +276,37 @@ def test_a_robot_that_is_out_asks_for_no_new_epoch_whenever_it_hears_of_somethin
     team.controls["r_0"]._executor.plan_again("heard", {})
     team.run(team.world.time_s + 2.0)
     assert team.net.nodes["r_1"].stage.epoch == before
+
+
+def test_they_wait_for_windows_and_lags_and_end_by_deadlines():
+    tasks = (
+        Task(id="early", position=(10, 0), duration_s=2.0, deadline_s=30.0),
+        Task(id="late", position=(20, 0), duration_s=2.0, window_s=((40.0, 60.0),)),
+        Task(
+            id="after",
+            position=(15, 5),
+            prerequisites=("early",),
+            lags={"early": Lag(after_s=15.0, within_s=40.0)},
+        ),
+    )
+    robots = tuple(Robot(id=name, position=(0, y), available_until_s=100.0) for name, y in (("a", 0), ("b", 8)))
+    team = SimulatedTeam(Mission(robots=robots, tasks=tasks), delay_s=0.02)
+    assert ends(team) == {"early": 1, "late": 1, "after": 1}
+    began = {data["task"]: at_s for at_s, _, kind, data in team.told if kind == "starts"}
+    ended = {data["task"]: at_s for at_s, _, kind, data in team.told if kind == "ends"}
+    assert 40.0 <= began["late"] <= 60.0
+    assert ended["early"] <= 30.0
+    assert 15.0 - 1e-6 <= began["after"] - ended["early"] <= 40.0
+    assert {data["cause"] for _, _, kind, data in team.told if kind == "waits"} >= {"window"}
+
+
+def test_what_can_never_begin_any_more_is_cancelled_with_its_reason():
+    far = Task(id="far", position=(30, 0), window_s=((0.0, 40.0),))
+    team = SimulatedTeam(Mission(robots=(Robot(id="a", position=(0, 0)),), tasks=(far,)), delay_s=0.02)
+    team.run(10.0)
+    team.controls["a"].take_event(Event(at_s=0, new_task=Task(id="near", position=(0, 0), window_s=((0.0, 12.0),))))
+    assert ends(team) == {"far": 1}
+    assert team.times("window_missed") + team.times("task_refused") == {"near": 1}
 
 
 def test_a_robot_that_comes_late_takes_tasks():

@@ -34,6 +34,10 @@ _ITS_OWN = {
     "robot_runs_low",
     "robot_stuck",
     "task_refused",
+    "waits",
+    "window_missed",
+    "deadline_missed",
+    "within_missed",
 }
 """Events that nobody else knows of."""
 
@@ -165,6 +169,8 @@ class RobotControl:
         for task, robots in rest.refusals.items():
             if robot in robots and task in self._wanted and not (task in begun and task in once):
                 self._negotiator.release(task)
+        for task in rest.expired.keys() & set(self._wanted):  # no robot can begin it any more
+            self._negotiator.cancel(task)
         if not rest.crew:
             for task in begun - once:
                 self._negotiator.release(task)

@@ -16,6 +16,7 @@ from muster.mission.yaml_writer import plain
 from muster.motion.port import Telemetry
 from muster.verification import verify
 
+_MISSED = ("window_missed", "deadline_missed", "within_missed")
 _OF_A_TASK = ("cancel_task", "move_task", "delay_task")
 
 
@@ -76,6 +77,8 @@ class TeamLog:
         elif kind == "robot_stuck":
             self._lose(robot, f"did not get on at {at_s:g} s")
             self._causes.append({"kind": kind, "robot": robot})
+        elif kind in _MISSED and data["next_s"] is None:
+            self.ledger.expire(task, str(data["reason"]))
         self.tell(at_s, kind, data)
 
     def note_usage(self, task: str, usage: tuple[float, float]) -> None:
@@ -140,7 +143,8 @@ class TeamLog:
         reasons = (
             {item.task: reasons_in_one_line(item.reasons) for item in self._plans[-1].unassigned} if self._plans else {}
         )
-        return self.ledger.lost(lambda task: reasons.get(task) or "not done", self._out)
+        missed = self.ledger.expired
+        return self.ledger.lost(lambda task: missed.get(task) or reasons.get(task) or "not done", self._out)
 
     @property
     def account(self) -> Account:

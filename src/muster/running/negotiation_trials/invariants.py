@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from muster.allocation.problem import Problem
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Task
 from muster.mission.plan import Plan, Route
 from muster.negotiation.epoch import opening_of
 from muster.negotiation.knowledge import in_order
@@ -72,18 +72,22 @@ class Invariants:
         past = {fact.task for fact in node.facts if fact.done} | set(self._observer.begun)
         mission = _as_it_is(self._scenario.mission, node, past)
         before = Plan(routes=tuple(Route(r, tuple(t for t in tasks if t in past)) for r, tasks in routes.items()))
-        spent = {v.robot for v in verify(mission, before).violations if v.kind == "capacity"}
+        spent = {(v.kind, v.robot) for v in verify(mission, before).violations if v.kind in ("capacity", "shift")}
         plan = Plan(routes=tuple(Route(robot, tuple(tasks)) for robot, tasks in routes.items()))
         for violation in verify(mission, plan).violations:
-            if not (violation.kind == "capacity" and violation.robot in spent):
+            if (violation.kind, violation.robot) not in spent:
                 yield f"judge: {violation}"
 
 
 def _as_it_is(mission: Mission, node: Negotiator, past: Collection[str]) -> Mission:
-    """The mission with announced tasks; tasks already begun have no prerequisites."""
+    """The mission with announced tasks; tasks already begun have no prerequisites and no times."""
     added = [task_of(fact.content) for fact in in_order(node.facts) if fact.kind == "added"]
     tasks = (*mission.tasks, *added)
-    return replace(mission, tasks=tuple(t.waiting_for(()) if t.id in past else t for t in tasks))
+    return replace(mission, tasks=tuple(_begun(task) if task.id in past else task for task in tasks))
+
+
+def _begun(task: Task) -> Task:
+    return replace(task.waiting_for(()), window_s=(), deadline_s=None)
 
 
 def _begun_for_good(facts: Collection[Fact]) -> Iterator[Fact]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 
-from muster.mission.model import OBJECTIVES, Mission, Robot, Rules, Task
+from muster.mission.model import OBJECTIVES, Lag, Mission, Robot, Rules, Task
 
 SIDE_M = 100.0
 SKILLS = ("camera", "gripper")
@@ -40,6 +41,35 @@ def random_mission(random: Random, *, robots: int, tasks: int, once: float, free
             )
             for k in range(tasks)
         ),
+    )
+
+
+def with_times(mission: Mission, random: Random) -> Mission:
+    """The mission with windows, deadlines, due times, lags and shifts."""
+    rules = replace(mission.rules, objective=random.choice(OBJECTIVES))
+    robots = tuple(
+        replace(robot, available_until_s=random.uniform(150, 500)) if random.random() < 0.3 else robot
+        for robot in mission.robots
+    )
+    return replace(
+        mission, rules=rules, robots=robots, tasks=tuple(_with_times(task, random) for task in mission.tasks)
+    )
+
+
+def _with_times(task: Task, random: Random) -> Task:
+    opens = random.uniform(0, 200)
+    closes = random.choice((None, opens + random.uniform(20, 150)))
+    lags = {
+        before: Lag(after_s=random.choice((0.0, 30.0)), within_s=random.choice((None, random.uniform(60, 200))))
+        for before in task.prerequisites
+        if random.random() < 0.5
+    }
+    return replace(
+        task,
+        window_s=((opens, closes),) if random.random() < 0.4 else (),
+        deadline_s=random.uniform(80, 400) if random.random() < 0.3 else None,
+        due_s=random.uniform(20, 300) if random.random() < 0.4 else None,
+        lags={before: lag for before, lag in lags.items() if lag != Lag()},
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from itertools import permutations
 from random import Random
 from typing import Any
@@ -16,7 +16,7 @@ from muster.negotiation.members import Timeouts
 from muster.negotiation.memory_network import LinkConditions
 from muster.running.negotiation_trials.faults import Incident, Links, incidents
 from muster.running.negotiation_trials.moving_partitions import moving_partitions
-from muster.running.negotiation_trials.random_missions import random_mission
+from muster.running.negotiation_trials.random_missions import random_mission, with_times
 
 MOVING_PARTITIONS = 0.3
 """The share of scenarios with moving partitions."""
@@ -77,11 +77,22 @@ class Scenario:
             yield f"{what.at_s:8.3f} s {what.kind} {what.robot}{groups}{links} {task}".rstrip()
 
 
-def scenario_of(seed: int) -> Scenario:
-    """The scenario of a seed."""
+def scenario_of(seed: int, *, timed: bool = False) -> Scenario:
+    """The scenario of a seed; `timed`: the same faults, of a mission whose tasks are bound to times."""
     random = Random(f"negotiation {seed}")
     make = _with_moving_partitions if random.random() < MOVING_PARTITIONS else _with_random_faults
-    return make(seed, random)
+    scenario = make(seed, random)
+    return _timed(scenario, Random(f"times {seed}")) if timed else scenario
+
+
+def _timed(scenario: Scenario, random: Random) -> Scenario:
+    """The same, of a mission on which robots agree by the auction alone."""
+    terms = Parameters(
+        bid=random.choice((None, *(bid for bid in BIDS if bid != "average-as-printed"))),
+        placement=random.choice(PLACEMENTS),
+        winner=random.choice(WINNERS),
+    )
+    return replace(scenario, mission=with_times(scenario.mission, random), method="auction", terms=terms)
 
 
 def _with_random_faults(seed: int, random: Random) -> Scenario:

@@ -49,9 +49,9 @@ class Report:
         yield from self.failures or ["nothing failed"]
 
 
-def replay(seed: int) -> Report:
-    """Run the trial of a seed; it is deterministic."""
-    return Trial(scenario_of(seed)).run()
+def replay(seed: int, *, timed: bool = False) -> Report:
+    """Run the trial of a seed, of a mission with times if `timed`; it is deterministic."""
+    return Trial(scenario_of(seed, timed=timed)).run()
 
 
 class Trial:

@@ -1,0 +1,159 @@
+"""The sales of units of work in an epoch, as each robot computes them, where times, teams and relations bind tasks.
+
+The rules of `allocation.coalitions`, for one robot. All robots keep all routes, so all know the earliest schedule that
+follows from them, and a bid is what that schedule allows. For one robot's task a robot bids what it would take it for.
+Of a team's task it bids for a place: what the task adds to its usage. The members then compute the same coalitions of
+those that bid ([shehory1998], [vig2006]); so a task is won only by robots that each have bid for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+
+from muster.allocation.allocator import Routes
+from muster.allocation.auction_terms import Terms
+from muster.allocation.coalitions import (
+    CoalitionAuction,
+    CoalitionBid,
+    CoalitionSale,
+    awards_of,
+    bids_of_round,
+    rank,
+)
+from muster.allocation.problem import Problem
+from muster.mission.auction_book import Award
+from muster.mission.auction_book import Bid as BookedBid
+from muster.negotiation.messages import Bid, RoundBids, Sold
+
+
+class UnitSales:
+    """What was sold since these routes; units of which no task is in them or closed are for sale."""
+
+    def __init__(self, problem: Problem, terms: Terms, routes: Routes, closed: Collection[int]) -> None:
+        self._problem, self._terms, self._closed = problem, terms, closed
+        self._auction = CoalitionAuction(problem, terms, routes)
+
+    @property
+    def routes(self) -> Routes:
+        return self._auction.routes
+
+    def bids(self, robot: int, refused: Collection[str]) -> tuple[Bid, ...]:
+        """What a robot bids, as the winner rule needs it; none for units with tasks that it has refused."""
+        units = [unit for unit in self._for_sale() if not any(task in refused for task in self._names(unit))]
+        own = sorted(
+            (bid for unit in units if self._auction.is_alone(unit) for bid in self._auction.bids(unit, [robot])),
+            key=lambda bid: bid.price,
+        )
+        held = (bid for bid in own if self._auction.holds(bid))
+        chosen = list(held) if self._terms.winner_rule == "least-contested" else [b for b in (next(held, None),) if b]
+        prices = tuple((self._names(bid.unit)[0], bid.price) for bid in chosen)
+        return (*prices, *self._places(robot, [unit for unit in units if not self._auction.is_alone(unit)]))
+
+    def winner(self, bids: Sequence[RoundBids]) -> Sold | None:
+        """The sale of a round with these bids of all members; None: there is none."""
+        offers = [offer for unit in self._for_sale() if (offer := self._offer(unit, bids)).bids]
+        ranked = sorted(offers, key=lambda offer: rank([bid.price for bid in offer.bids], self._terms))
+        return next((sold for offer in ranked if (sold := self._sold(offer)) is not None), None)
+
+    def award(self, sold: Sold) -> None:
+        """Put a unit into the routes of its winners."""
+        bid = self._bid_of(sold)
+        if not self._auction.assign(bid):
+            raise ValueError(f"{sold}; expected a unit that the schedule holds")
+        self._auction.settle()
+
+    def booked_bids(self, number: int, sold: Sold, members: Sequence[int]) -> Iterator[BookedBid]:
+        """Every bid of the members in the round of this number, in which this is going to be sold."""
+        unit = self._unit(sold)
+        offers = [self._sale(number, other, members) for other in self._for_sale() if other != unit]
+        offers.append(self._won(number, sold, members))
+        ordered = sorted((offer for offer in offers if offer.bids), key=lambda offer: offer.won.unit)
+        return bids_of_round(self._problem, ordered, unit)
+
+    def awards(self, number: int, sold: Sold, members: Sequence[int]) -> Iterator[Award]:
+        """How the unit that is going to be sold in the round of this number comes to its robots."""
+        return awards_of(self._problem, self._won(number, sold, members))
+
+    def _for_sale(self) -> list[int]:
+        units = self._problem.timed_rules.units
+        return [unit for unit in self._auction.ready() if not any(task in self._closed for task in units[unit])]
+
+    def _names(self, unit: int) -> list[str]:
+        return [self._problem.tasks[task].id for task in self._problem.timed_rules.units[unit]]
+
+    def _unit(self, sold: Sold) -> int:
+        return self._problem.timed_rules.unit[self._problem.task_index[sold.task]]
+
+    def _places(self, robot: int, units: Sequence[int]) -> Iterator[Bid]:
+        """What the tasks of units for several robots add to the usage of one, wherever it may do them."""
+        for unit in units:
+            for task, usage in self._auction.added_usages(unit, robot):
+                yield self._problem.tasks[task].id, usage
+
+    def _offer(self, unit: int, bids: Sequence[RoundBids]) -> _Offer:
+        """The bids for a unit."""
+        heard = self._heard(unit, bids)
+        if self._auction.is_alone(unit):
+            return _Offer(
+                unit, [_Winners(price, (robot,)) for price, robot in sorted((p, r) for r, p in heard.items())]
+            )
+        coalitions = self._auction.bids(unit, sorted(heard)) if heard else []
+        return _Offer(unit, [_Winners(bid.price, _robots(bid)) for bid in coalitions])
+
+    def _heard(self, unit: int, bids: Sequence[RoundBids]) -> dict[int, float]:
+        """For each robot that bids for a unit its bid."""
+        names, number = set(self._names(unit)), self._problem.robot_index
+        return {number[said.robot]: price for said in bids for task, price in said.bids if task in names}
+
+    def _sold(self, offer: _Offer) -> Sold | None:
+        """The sale to the best bid for a unit; None: the schedule does not hold it."""
+        best = offer.bids[0]
+        if self._auction.is_alone(offer.unit):
+            return Sold(self._problem.robots[best.robots[0]].id, self._names(offer.unit)[0], best.price)
+        bid = self._auction.best_bid(offer.unit, best.robots)
+        if bid is None or not self._auction.holds(bid):
+            return None
+        (robot, task), *others = self._assignments(bid)
+        return Sold(robot, task, bid.price, tuple(others))
+
+    def _assignments(self, bid: CoalitionBid) -> list[tuple[str, str]]:
+        """Robots and their tasks, in tie order."""
+        found = sorted((task, robot) for task, robot, _ in bid.insertion.members)
+        return [(self._problem.robots[robot].id, self._problem.tasks[task].id) for task, robot in found]
+
+    def _bid_of(self, sold: Sold) -> CoalitionBid:
+        robots = sorted({self._problem.robot_index[robot] for robot, _ in sold.assignments})
+        bid = self._auction.best_bid(self._unit(sold), robots)
+        if bid is None:
+            raise ValueError(f"{sold}; expected a unit that these robots can do")
+        return bid
+
+    def _sale(self, number: int, unit: int, members: Sequence[int]) -> CoalitionSale:
+        return CoalitionSale(number, self._auction.bids(unit, members))
+
+    def _won(self, number: int, sold: Sold, members: Sequence[int]) -> CoalitionSale:
+        """The sale with all bids for its unit, that of the winners first."""
+        won = self._bid_of(sold)
+        others = [bid for bid in self._auction.bids(won.unit, members) if _robots(bid) != _robots(won)]
+        return CoalitionSale(number, [won, *others])
+
+
+@dataclass(frozen=True)
+class _Winners:
+    """Robots that would do a unit, and what for."""
+
+    price: float
+    robots: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class _Offer:
+    """A unit and the bids for it, the best first."""
+
+    unit: int
+    bids: list[_Winners]
+
+
+def _robots(bid: CoalitionBid) -> tuple[int, ...]:
+    return tuple(sorted({robot for _, robot, _ in bid.insertion.members}))
