@@ -169,13 +169,13 @@ def _other_ends(places, word, name, time, deadline):
 
 
 def _uses(places, word, usage, _, capacity, __):
-    least = min(used for _, used in places.usages(word))
+    least = min(used for _, used in places.usages(*LIMITS[LIMITS.index(word) :]))
     return near(usage, least) and near(capacity, places.meaning._capacity(places.mission.robots[places.i]))
 
 
 def _too_few(places, word, name, count, least):
     i = next(i for i, robot in enumerate(places.mission.robots) if robot.id == name)
-    counts = {len(routes[i]) for routes in places.left(word)}
+    counts = {len(routes[i]) for routes in places.left(*LIMITS[LIMITS.index(word) :])}
     return int(count) in counts and 0 < int(count) < int(least) == places.mission.robots[i].min_tasks
 
 
