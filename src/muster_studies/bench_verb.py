@@ -1,4 +1,4 @@
-"""`muster bench`: speed on this machine; `muster bench peers`: quality against other solvers at equal time."""
+"""`muster bench`: speed on this machine; `muster bench peers` and `peers-timed`: quality against other solvers."""
 
 from __future__ import annotations
 
@@ -71,6 +71,25 @@ def peers(ctx: click.Context, /, **options: Any) -> int:
     All have the same time, and run one after the other. This is `muster study peers`; it needs the extra `studies`.
     """
     return int(ctx.invoke(study_verb.command, name="peers", **options))
+
+
+@command.command("peers-timed")
+@click.option("--tables", metavar="N,N", help="Only these tables: windows, ordered, teams.")
+@click.option("--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]")
+@click.option("--quick", is_flag=True, help="One or two missions a table and short time limits.")
+@format_option
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
+)
+@quiet_option
+@click.pass_context
+def peers_timed(ctx: click.Context, /, **options: Any) -> int:
+    """Compare search with others on missions with time windows, prerequisites and teams.
+
+    Time windows beside PyVRP, OR-Tools and VROOM; windows with prerequisites beside greedy, auction, CP-SAT and
+    OR-Tools; teams beside the best plans known. This is `muster study peers-timed`; it needs the extra `studies`.
+    """
+    return int(ctx.invoke(study_verb.command, name="peers-timed", **options))
 
 
 def _figure(value: float) -> str:

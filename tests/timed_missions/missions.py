@@ -153,7 +153,8 @@ def _relate(random, tasks, has, robots):
         j = random.randrange(k)
         if "relation" in has and random.random() < 0.4:
             key = random.choice(("same_robot_as", "other_robot_than"))
-            tasks[k] = replace(tasks[k], **{key: (str(j),)})
+            related = [*tasks[:k], replace(tasks[k], **{key: (str(j),)}), *tasks[k + 1 :]]
+            tasks[:] = tasks if _is_contradictory(related) else related
     if "starts-with" in has and robots > 1 and len(tasks) > 1:
         k = random.randrange(1, len(tasks))
         apart = _unordered(tasks, k)
@@ -168,8 +169,25 @@ def _unordered(tasks, k):
     def ancestors(name):
         return {name}.union(*(ancestors(other) for other in by_id[name].prerequisites))
 
-    related = {*by_id[str(k)].same_robot_as}
-    return [str(j) for j in range(k) if str(j) not in ancestors(str(k)) | related]
+    related = ancestors(str(k)) | _by_one_robot(tasks, str(k))
+    return [str(j) for j in range(k) if str(j) not in related]
+
+
+def _by_one_robot(tasks, name):
+    """The tasks that the robot of a task does too, by way of others as well."""
+    found, waiting = {name}, [name]
+    while waiting:
+        one = waiting.pop()
+        tied = {task.id for task in tasks if one in task.same_robot_as}
+        tied.update(*(task.same_robot_as for task in tasks if task.id == one))
+        waiting += tied - found
+        found |= tied
+    return found
+
+
+def _is_contradictory(tasks):
+    """Whether the robot of a task must do it and must not."""
+    return any(_by_one_robot(tasks, task.id).intersection(task.other_robot_than) for task in tasks)
 
 
 def wrong_routes(mission, random):

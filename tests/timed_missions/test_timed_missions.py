@@ -3,17 +3,24 @@
 import pytest
 
 from muster import Mission, Robot, Rules, Task
+from muster.allocation.remedy import Remedy
+from muster.allocation.rules.capacity import CapacityChange
+from muster.allocation.rules.window import LongerWindow
 from muster.mission.model import Lag, TeamPart
+from muster.mission.plan import Reason, Route, Unassigned
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import OBJECTIVES, RULES, ignored_in, timed_mission
+from tests.timed_missions.places import LIMITS, Places
+from tests.timed_missions.possibilities import Possibilities
+from tests.timed_missions.remedied import Remedied
 from tests.timed_missions.trial import Report, Trial, trial
 
 MISSIONS, CHUNK = 90, 15
 
 
 @pytest.mark.parametrize("first", range(0, MISSIONS, CHUNK))
-def test_judge_and_bounds_agree_with_every_plan(first):
+def test_judge_bounds_reasons_and_remedies_agree_with_every_plan(first):
     seeds = range(first, first + CHUNK)
     failures = {seed: report.failures for seed in seeds if (report := trial(seed, planned=False)).failures}
     assert failures == {}
@@ -37,6 +44,34 @@ def test_a_trial_that_goes_wrong_is_a_failure(monkeypatch):
     assert any("quick bound" in failure for failures in failing for failure in failures)
     monkeypatch.setattr("tests.timed_missions.trial.lower_bound", lambda problem: 1 / 0)
     assert trial(0, planned=False).failures == ["ZeroDivisionError: division by zero"]
+
+
+def test_false_sentences_are_found():
+    late = Task(id="a", position=(10, 0), duration_s=5, window_s=((0, 6),), deadline_s=30)
+    mission = Mission(rules=Rules(timing="constant"), robots=(Robot(id="r_0", position=(0, 0)),), tasks=(late,))
+    places = Places(mission, (), ((),), 0, 0)
+    assert [word for word in ("not-chosen", *LIMITS, "prerequisite", "team", "lock") if places.is_true(word)] == [
+        "window"
+    ]
+    said = "arrives at {} s at the earliest, its window closes at {} s"
+    said = {times: said.format(*times) for times in ((10, 6), (9, 6), (10, 7))}
+    assert [places.sentence_holds("window", sentence) for sentence in said.values()] == [True, False, False]
+    possible = Possibilities(mission, (), EveryPlan(places.meaning))
+    wrong = {
+        times: [*possible.wrong_alone([Unassigned("a", (Reason("r_0", "window", sentence),))])]
+        for times, sentence in said.items()
+    }
+    assert [bool(found) for found in wrong.values()] == [False, False, True]  # 9 s is a bound, though not the best
+
+
+@pytest.mark.parametrize(("until", "least", "wrong"), [(10, 10, 0), (10, None, 0), (9, None, 1), (12, 12, 1)])
+def test_remedies_that_promise_too_much_are_found(until, least, wrong):
+    late = Task(id="a", position=(10, 0), duration_s=5, window_s=((0, 6),))
+    mission = Mission(rules=Rules(timing="constant"), robots=(Robot(id="r_0", position=(0, 0)),), tasks=(late,))
+    changes = {"window": LongerWindow(6, until, least)}
+    routes = (Route("r_0", ("a",)),)
+    remedy = Remedy(robot="r_0", changes=changes, capacity=CapacityChange(now=None), enough=True, routes=routes)
+    assert len(list(Remedied(mission, (), ((),), 0, 0, remedy).wrong())) == wrong
 
 
 def test_the_missions_have_every_rule():

@@ -5,17 +5,25 @@ from random import Random
 
 import muster
 from muster.allocation.bounds import lower_bound
+from muster.allocation.conflicts import together
 from muster.allocation.exact import solve_exactly
+from muster.allocation.explanations import unassigned
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
+from muster.allocation.remedies import remedies
+from muster.mission.clock import VirtualClock
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan, Route
+from muster.planning.explaining.explanations import admits
 from muster.verification import verify
 from tests import trials
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import ignored_in, timed_mission, wrong_routes
+from tests.timed_missions.places import Places
+from tests.timed_missions.possibilities import Possibilities
+from tests.timed_missions.remedied import Remedied
 
 FOR_ALL_RULES = ("greedy", "greedy+genetic", "auction", "search")  # allocators that take every mission
 OTHERS = tuple(name for name in ALLOCATORS if name not in FOR_ALL_RULES)
@@ -23,6 +31,8 @@ ITERATIONS, LONGER = 200, 5000
 EXACT_S = 30.0
 JUDGED, MOST_PLANS = 12, 30_000
 EXACT_EVERY = 2
+EXPLAINED, REMEDIED = 2, 2  # plans, and tasks left out of each
+TOGETHER_S, READING_S = 1.0, 1e-3  # of a clock that goes on when it is read
 CLOSE = 1e-7
 
 
@@ -142,6 +152,7 @@ class Trial:
         self.report.check(not faults, f"{name}: {routes} breaks {faults}")
         if faults:
             return None
+        self._reasons(routes, plan.unassigned)
         value = self.meaning.value(routes)
         self.report.check(not _better(value, self.best), f"{name}: {value} is better than the best, {self.best}")
         self.report.check(_near(plan.objective_value, value[1]), f"{name}: {plan.objective_value} is said, not {value}")
@@ -181,14 +192,61 @@ class Trial:
         self.report.check(least <= self.best[1] + CLOSE * (1 + least), f"exact: {self.best} is below the bound {least}")
 
     def _impossible(self, problem):
-        """No admissible plan does a task that is said to be impossible."""
+        """What is said of tasks that no plan does, alone and together, is true."""
         if not self.every.complete:
             return
-        possible = frozenset[int]().union(*self.every.done())
-        said = {self.meaning.number[item.task] for item in impossible(problem)}
-        self.report.counts["tasks that no plan does"] += len(self.mission.tasks) - len(possible)
+        said, possible = impossible(problem), Possibilities(self.mission, self.ignored, self.every)
+        clock = VirtualClock(step_s=READING_S)
+        found = together(problem, admits, time_limit=TOGETHER_S, clock=clock)
+        done = frozenset[int]().union(*self.every.done())
+        self.report.counts["tasks that no plan does"] += len(self.mission.tasks) - len(done)
         self.report.counts["tasks said to be impossible"] += len(said)
-        self.report.check(not said & possible, f"said to be impossible, but done: {said & possible}")
+        self.report.counts["conflicts"] += found.conflict is not None
+        self.report.counts["conflicts: smallest ones"] += found.conflict is not None and found.conflict.minimal
+        self.report.counts["all together: unknown"] += found.unknown
+        self._none(f"alone: {wrong}" for wrong in possible.wrong_alone(said))
+        self._none(f"together: {wrong}" for wrong in possible.wrong_together(found, {item.task for item in said}))
+
+    def _none(self, wrong):
+        """Nothing is wrong."""
+        found = list(wrong)
+        self.report.counts["checks"] += 1
+        self.report.failures += found
+
+    def explained(self):
+        """The reasons for tasks left out of some admissible plans are true, and remedies keep what they promise."""
+        admissible = self.every.admissible
+        for routes in self.random.sample(admissible, min(EXPLAINED, len(admissible))):
+            self._reasons(routes, unassigned(self.problem, self._compiled(routes)))
+            missing = [j for j in range(len(self.mission.tasks)) if not any(j in route for route in routes)]
+            for j in self.random.sample(missing, min(REMEDIED, len(missing))):
+                self._remedies(routes, j)
+
+    def _compiled(self, routes):
+        """Routes as those of the problem."""
+        index, compiled = self.problem.task_index, [[] for _ in routes]
+        for robot, route in zip(self.mission.robots, routes, strict=True):
+            compiled[self.problem.robot_index[robot.id]] = [index[self.mission.tasks[j].id] for j in route]
+        return compiled
+
+    def _reasons(self, routes, left_out):
+        """Each reason is true in the plan, and what it names; the judge refuses none of them."""
+        robot = {robot.id: i for i, robot in enumerate(self.mission.robots)}
+        for item in left_out:
+            for one in item.reasons:
+                places = Places(self.mission, self.ignored, routes, robot[one.robot], self.meaning.number[item.task])
+                self.report.counts[f"reason {one.reason}"] += 1
+                said = f"{routes}: {item.task} {one}"
+                self.report.check(places.is_true(one.reason), f"{said}: a false reason")
+                self.report.check(places.sentence_holds(one.reason, one.detail), f"{said}: a false sentence")
+
+    def _remedies(self, routes, j):
+        index = self.problem.task_index[self.mission.tasks[j].id]
+        for i, remedy in enumerate(remedies(self.problem, self._compiled(routes), index, admits)):
+            self.report.counts["remedies"] += 1
+            self.report.counts["remedies: a plan was found"] += remedy.enough
+            wrong = Remedied(self.mission, self.ignored, routes, i, j, remedy).wrong()
+            self._none(f"remedy: {routes}, robot {i}, task {j}: {one}" for one in wrong)
 
 
 def _near(a, b):

@@ -25,7 +25,7 @@ _NEAR_ENOUGH = 1e-3  # relative
 
 def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Remedy, ...]:
     """For every robot, in mission order, the remedy with which it can do task j."""
-    if problem.has_timed_rules:
+    if problem.core.is_timed:
         order = [problem.robot_index[robot.id] for robot in problem.mission.robots]
         return tuple(timed_remedy(problem, routes, i, j, judge) for i in order)
     first = dict(_needs_as_is(problem, routes, j))
@@ -47,7 +47,7 @@ def smallest_as_is(problem: Problem, routes: Routes, j: int, judge: Judge) -> Re
 
     Where prerequisites are left out they would have to be done first: such a change is never said to be enough.
     """
-    if problem.has_timed_rules:
+    if problem.core.is_timed:
         robots = range(len(problem.robots))
         return smallest([timed_remedy(problem, routes, i, j, judge, searched=False) for i in robots])
     first = dict(_needs_as_is(problem, routes, j))
@@ -222,9 +222,7 @@ def least_beside(bounds: UsageBounds, i: int, j: int, tasks: Sequence[int]) -> f
     problem = bounds.problem
     others = [k for k in range(len(problem.robots)) if k != i]
     few, reached = list(tasks), [0]
-    if problem.has_timed_rules:
-        few = [j]  # others may do all else, as far as usage tells
-    elif len(few) <= FEW:
+    if len(few) <= FEW:
         reached = bounds.shares(others, few)
     else:
         own = [k for k in tasks if k != j and not bounds.possible[others, k].any()]

@@ -128,9 +128,12 @@ class TimedPlaces(InPlan):
 
     def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
         """Why no place is left whatever the times and capacities."""
-        inspections = [core.Inspection(self.without(tuple(_RELAXED)).core, place.routes) for place in places]
-        if any(found.makespan is not None and math.isinf(found.usages[i]) for found in inspections):
+        free = self.without(tuple(_RELAXED)).core
+        usages = [core.Inspection(free, place.routes).usages for place in places]  # finite where tasks wait in a circle
+        if any(math.isinf(used[i]) for used in usages):
             return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
+        if any(map(math.isinf, itertools.chain.from_iterable(usages))):
+            return Outcome(word="unreachable", detail="there is no way for another robot of its team")
         detail = "at every place in its route tasks would wait for each other in a circle, or longer than they may"
         return Outcome(word="prerequisite", detail=detail)
 
@@ -317,7 +320,7 @@ def stop_of(found: Any, i: int, at: int) -> tuple[float, float, float]:
 
 def in_plan(problem: Problem, routes: Sequence[Sequence[int]]) -> InPlan:
     """Routes, and what one more task in them would do."""
-    return TimedPlaces(problem, routes) if problem.has_timed_rules else InPlan(problem, routes)
+    return TimedPlaces(problem, routes) if problem.core.is_timed else InPlan(problem, routes)
 
 
 def _spread(gaps: list[int], most: int) -> list[int]:

@@ -115,7 +115,9 @@ class TimedRules:
         return [sorted(others) for others in both]
 
     def _related(self, names: Sequence[str]) -> list[int]:
-        return [self.problem.task_index[name] for name in names] if self.problem.holds("relation") else []
+        """The named tasks that are in the problem: of a part of a mission not all are, and then nothing is tied."""
+        index = self.problem.task_index
+        return [index[name] for name in names if name in index] if self.problem.holds("relation") else []
 
     @cached_property
     def with_teams(self) -> bool:

@@ -35,9 +35,10 @@ class InsertionScore {
 
   InsertionScore(Objective objective, double peak) : objective_(objective), peak_(peak) {}
 
-  void add(const Offer& offer, double begin, double work) {
-    growth_ += offer.growth;
-    over_ = std::max(over_, offer.usage + offer.growth - peak_);
+  // `growth`: of the robot's usage.
+  void add(const Offer& offer, double begin, double work, double growth) {
+    growth_ += growth;
+    over_ = std::max(over_, offer.usage + growth - peak_);
     late_ += offer.late;
     // Robot time that the task takes up: the ways, the work and the waiting for the team.
     taken_ += offer.in + offer.out - offer.direct + work + (begin - offer.arrive) * kWaiting;

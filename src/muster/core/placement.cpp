@@ -159,7 +159,7 @@ void Placement::try_place(int robot, int task, int at) {
   if (!timeline_.in_time(begin, latest_) || !timeline_.in_time(begin + work, there.latest)) return;
   if (sees_usage) measure_usage(there, task);
   InsertionScore score(problem_.objective(), peak_);
-  score.add(there, begin, work);
+  score.add(there, begin, work, there.growth);
   double late = 0.0;
   if (problem_.objective() == Objective::lateness) late = lateness(task, begin + work) + delays(there, begin + work);
   const double value = score.value(begin, tail_, late);
@@ -182,7 +182,7 @@ double Placement::least_score(int robot, int task, int at, double work) const {
   offer.onward = next.tail;
   const double begin = std::max(ready_, offer.arrive);
   InsertionScore score(Objective::makespan, peak_);
-  score.add(offer, begin, work);
+  score.add(offer, begin, work, 0.0);
   return score.value(begin, tail_, 0.0);
 }
 

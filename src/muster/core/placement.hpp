@@ -1,6 +1,7 @@
 // Where a unit of work costs least, and who does it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "insertion_score.hpp"
@@ -39,7 +40,15 @@ class Placement {
   void try_cut(int unit);
   void try_key(int unit, int key);
   double key_of(const Offer& offer, int key) const;
+  void rank(const Offer* offers, int key);
+  void try_teams(int unit, int key);
+  void try_together(int unit, int key);
+  int cheapest_team() const;
   void judge(int unit);
+  void measure_works(int unit);
+  double work_in_team(int unit, int task) const;
+  bool may_begin(int unit, double begin) const;
+  double lateness_of_team(int unit, double begin) const;
 
   double least_score(int robot, int task, int at, double work) const;
   Offer offer(int robot, int task, int at, double work) const;
@@ -48,6 +57,8 @@ class Placement {
   double lateness(int task, double end) const;
   double delays(const Offer& offer, double end) const;
   double later_arrivals(int robot, int task, int at, double growth) const;
+
+  static constexpr int kKeys = 3;  // ways to rank robots
 
   Roster& roster_;
   const Problem& problem_;
@@ -68,9 +79,15 @@ class Placement {
   Rows teams_;
   std::vector<double> cuts_, keys_, works_;
   std::vector<int> candidates_, at_, free_;
-  std::vector<Offer> offers_;       // tasks of the unit x candidates
-  std::vector<const Offer*> team_;  // chosen, parallel to `members_`
-  std::vector<Member> members_;
+  std::vector<Offer> offers_;  // tasks of the unit x candidates
+  struct Part {
+    int task;
+    const Offer* offer;
+  };
+  std::vector<Part> team_;  // the members that are judged
+  // By key: of each candidate whether its place is another than when teams were last chosen, and how that ranked them.
+  std::array<std::vector<char>, kKeys> moved_;
+  std::array<TeamChoice::Ranking, kKeys> rankings_;
   std::vector<char> busy_;
 };
 

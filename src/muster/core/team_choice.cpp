@@ -52,24 +52,27 @@ void TeamChoice::number_abilities() {
     ability_class_.push_back(found->second);
     ++class_size_[found->second];
   }
-  ranked_.resize(class_size_.size());
+  same_.resize(class_size_.size());
 }
 
-void TeamChoice::teams(int task, std::span<const int> robots, std::span<const double> keys, Rows& found) {
+void TeamChoice::teams(int task, std::span<const int> robots, std::span<const double> keys, std::span<const char> moved,
+                       Ranking& ranking, Rows& found) {
   found.values.clear();
   found.first.assign(1, 0);
+  if (has_needs(task) && covers(task).rows.size() > 0) {
+    rank_anew(robots, keys, moved, ranking);
+    return by_covers(task, ranking, found);
+  }
   ranks_.clear();
   for (std::size_t k = 0; k < robots.size(); ++k) {
     if (keys[k] < kInfinity) ranks_.emplace_back(keys[k], static_cast<int>(k));
   }
   if (has_parts(task)) {
     by_parts(task, robots, found);
-  } else if (!has_needs(task)) {
-    if (!ranks_.empty()) append(found, std::array{std::ranges::min(ranks_).second});
-  } else if (covers(task).size() > 0) {
-    by_covers(task, robots, found);
-  } else {
+  } else if (has_needs(task)) {
     by_greedy_cover(task, robots, found);
+  } else if (!ranks_.empty()) {
+    append(found, std::array{std::ranges::min(ranks_).second});
   }
 }
 
@@ -84,7 +87,8 @@ bool TeamChoice::does(int task, std::span<const int> robots) {
     return covered(missing);
   }
   Rows found;
-  teams(task, robots, std::vector<double>(robots.size(), 0.0), found);
+  Ranking ranking;
+  teams(task, robots, std::vector<double>(robots.size(), 0.0), std::vector<char>(robots.size(), 1), ranking, found);
   return found.size() > 0 && found[0].size() == robots.size();
 }
 
@@ -109,8 +113,9 @@ void TeamChoice::by_one_part(const TeamPart& part, std::span<const int> robots, 
   std::erase_if(ranks_, [&](const auto& rank) { return !part.allowed[problem_.kind(robots[rank.second])]; });
   if (static_cast<int>(ranks_.size()) < part.count) return;
   std::ranges::nth_element(ranks_, ranks_.begin() + (part.count - 1));
-  for (int k = 0; k < part.count; ++k) found.values.push_back(ranks_[k].second);
-  found.first.push_back(part.count);
+  taken_.clear();
+  for (int k = 0; k < part.count; ++k) taken_.push_back(ranks_[k].second);
+  append(found, taken_);
 }
 
 // Finds a seat, by an augmenting path.
@@ -127,23 +132,56 @@ bool TeamChoice::give(int task, std::span<const int> robots, int index) {
   return false;
 }
 
-void TeamChoice::by_covers(int task, std::span<const int> robots, Rows& found) {
-  for (auto& ranked : ranked_) ranked.clear();
-  for (const auto& rank : ranks_) ranked_[ability_class_[robots[rank.second]]].push_back(rank);
-  for (auto& ranked : ranked_) std::ranges::sort(ranked);
-  const Rows& all = covers(task);
-  for (int k = 0; k < all.size(); ++k) {
-    taken_.clear();
-    int last = -1;
-    std::size_t rank = 0;
-    for (const int kind : all[k]) {
-      rank = kind == last ? rank + 1 : 0;
-      last = kind;
-      if (rank >= ranked_[kind].size()) break;
-      taken_.push_back(ranked_[kind][rank].second);
-    }
-    if (taken_.size() == all[k].size()) append(found, taken_);
+// Ranks those that moved, and notes how many of each class are before the first change.
+void TeamChoice::rank_anew(std::span<const int> robots, std::span<const double> keys, std::span<const char> moved,
+                           Ranking& ranking) {
+  ranking.resize(class_size_.size());
+  for (std::size_t kind = 0; kind < ranking.size(); ++kind) same_[kind] = ranking[kind].size();
+  for (std::size_t k = 0; k < robots.size(); ++k) {
+    if (!moved[k]) continue;
+    const auto index = static_cast<int>(k);
+    const int kind = ability_class_[robots[k]];
+    auto& ranked = ranking[kind];
+    const auto changed = [&](auto place) {
+      same_[kind] = std::min(same_[kind], static_cast<std::size_t>(place - ranked.begin()));
+    };
+    const auto old = std::ranges::find(ranked, index, &std::pair<double, int>::second);
+    changed(old);
+    if (old != ranked.end()) ranked.erase(old);
+    if (keys[k] == kInfinity) continue;
+    const std::pair rank{keys[k], index};
+    const auto place = std::ranges::lower_bound(ranked, rank);
+    changed(place);
+    ranked.insert(place, rank);
   }
+}
+
+void TeamChoice::by_covers(int task, const Ranking& ranking, Rows& found) {
+  const Covers& all = covers(task);
+  seen_covers_.resize(std::max<std::size_t>(seen_covers_.size(), all.rows.size()), 0);
+  ++call_;
+  for (std::size_t kind = 0; kind < ranking.size(); ++kind) {
+    if (same_[kind] == ranking[kind].size()) continue;
+    for (const int k : all.with[static_cast<int>(kind)]) {
+      if (std::exchange(seen_covers_[k], call_) != call_) fill(all.rows[k], ranking, found);
+    }
+  }
+}
+
+// The cheapest robots of the classes of a cover, if there are so many of each and it is not the team of the last call.
+void TeamChoice::fill(std::span<const int> cover, const Ranking& ranking, Rows& found) {
+  taken_.clear();
+  int last = -1;
+  std::size_t rank = 0;
+  bool is_new = false;
+  for (const int kind : cover) {
+    rank = kind == last ? rank + 1 : 0;
+    last = kind;
+    if (rank >= ranking[kind].size()) return;
+    is_new |= rank >= same_[kind];
+    taken_.push_back(ranking[kind][rank].second);
+  }
+  if (is_new) append(found, taken_);
 }
 
 // The cheapest that still bring what is missing, until nothing is; then the dearest that are needless go.
@@ -177,15 +215,22 @@ bool TeamChoice::covered(std::span<const double> missing) const {
   return std::ranges::all_of(missing, [](double amount) { return amount <= kRounding; });
 }
 
-const Rows& TeamChoice::covers(int task) {
-  Rows& found = covers_[task];
+const TeamChoice::Covers& TeamChoice::covers(int task) {
+  Covers& found = covers_[task];
   if (std::exchange(known_[task], 1)) return found;
   const auto needs = problem_.needs(task);
   std::vector<double> missing(needs.begin(), needs.end());
   std::vector<int> counts(class_size_.size(), 0);
   budget_ = kMostTried;
-  cover(task, 0, missing, counts, found);
-  if (found.size() > kMostCovers || budget_ < 0) found = Rows{};
+  cover(task, 0, missing, counts, found.rows);
+  if (found.rows.size() > kMostCovers || budget_ < 0) found.rows = Rows{};
+  for (std::size_t kind = 0; kind < class_size_.size(); ++kind) {
+    std::vector<int> with;
+    for (int k = 0; k < found.rows.size(); ++k) {
+      if (std::ranges::count(found.rows[k], static_cast<int>(kind)) > 0) with.push_back(k);
+    }
+    append(found.with, with);
+  }
   return found;
 }
 

@@ -18,20 +18,34 @@ class TeamChoice {
   bool alone(int task) const { return !has_parts(task) && !has_needs(task); }
   // Whether these robots can do the task together.
   bool does(int task, std::span<const int> robots);
+  // The robots that take part, by class of abilities, cheapest first: key and index.
+  using Ranking = std::vector<std::vector<std::pair<double, int>>>;
+
   // The teams worth a look, each as indices of `robots`: the cheapest for every way to share the parts or to cover the
-  // needs. Sums of independent keys are least among them.
-  void teams(int task, std::span<const int> robots, std::span<const double> keys, Rows& found);
+  // needs. Sums of independent keys are least among them. `ranking` is that of an earlier call, for the same task and
+  // robots, and becomes that of this one: teams of which nothing is new since may be left out, having no member that
+  // `moved`, and none instead of one that did.
+  void teams(int task, std::span<const int> robots, std::span<const double> keys, std::span<const char> moved,
+             Ranking& ranking, Rows& found);
 
  private:
+  struct Covers {
+    Rows rows;  // minimal ones, each as classes in order; empty: too many
+    Rows with;  // by class: those that it is in
+  };
+
   bool has_parts(int task) const { return !problem_.parts(task).empty(); }
   bool has_needs(int task) const;
   void number_abilities();
   void by_parts(int task, std::span<const int> robots, Rows& found);
   void by_one_part(const TeamPart& part, std::span<const int> robots, Rows& found);
   bool give(int task, std::span<const int> robots, int index);
-  void by_covers(int task, std::span<const int> robots, Rows& found);
+  void rank_anew(std::span<const int> robots, std::span<const double> keys, std::span<const char> moved,
+                 Ranking& ranking);
+  void by_covers(int task, const Ranking& ranking, Rows& found);
+  void fill(std::span<const int> cover, const Ranking& ranking, Rows& found);
   void by_greedy_cover(int task, std::span<const int> robots, Rows& found);
-  const Rows& covers(int task);
+  const Covers& covers(int task);
   void cover(int task, int kind, std::vector<double>& missing, std::vector<int>& counts, Rows& found);
   bool needless(int task, const std::vector<int>& counts) const;
   bool covered(std::span<const double> missing) const;
@@ -41,10 +55,12 @@ class TeamChoice {
   std::vector<int> class_robot_;    // one robot of each class
   std::vector<int> class_size_;
   std::vector<char> known_;                    // by task, whether its covers are
-  std::vector<Rows> covers_;                   // by task: minimal covers, each as classes in order; empty: too many
+  std::vector<Covers> covers_;                 // by task
   std::vector<std::pair<double, int>> ranks_;  // key and index of the robots that can take part
   std::vector<int> seat_of_, seats_, taken_;
-  std::vector<std::vector<std::pair<double, int>>> ranked_;  // by class
+  std::vector<std::size_t> same_;  // by class: how many of the first are those of the earlier call, and did not move
+  std::vector<int> seen_covers_;   // by cover: the call in which it was looked at
+  int call_ = 0;
   std::vector<char> seen_;
   int budget_ = 0;
 };

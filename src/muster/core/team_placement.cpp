@@ -9,26 +9,52 @@ namespace muster {
 
 namespace {
 
-constexpr int kKeys = 3;           // ways to rank robots
-constexpr double kFirstKey = 0.5;  // how often an algorithm with random numbers takes the first at a cut
+constexpr double kFirstKey = 0.5;  // how often an algorithm with random numbers takes the first
+
+std::size_t place_in(std::span<const int> tasks, int task) {
+  return static_cast<std::size_t>(std::ranges::find(tasks, task) - tasks.begin());
+}
 
 }  // namespace
 
 void Placement::try_cuts(int unit) {
   const auto tasks = problem_.tasks_of_unit(unit);
   candidates_.clear();
-  at_.clear();
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     if (std::ranges::any_of(tasks, [&](int task) { return usable(robot, task); })) candidates_.push_back(robot);
   }
-  at_.assign(candidates_.size(), -1);
   offers_.resize(tasks.size() * candidates_.size());
   gather_cuts(unit);
+  at_.assign(candidates_.size(), -1);
+  for (auto& moved : moved_) moved.assign(candidates_.size(), 1);
+  for (auto& ranking : rankings_) {
+    for (auto& ranked : ranking) ranked.clear();
+  }
   for (const double cut : cuts_) {
+    bool any_moved = false;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      if (pass(c, cut)) make_offers(unit, c);
+      if (!pass(c, cut)) continue;
+      make_offers(unit, c);
+      any_moved = true;
+      for (auto& moved : moved_) moved[c] = 1;
     }
-    if (!overlooked()) try_cut(unit);
+    if (any_moved && !overlooked()) try_cut(unit);
+  }
+}
+
+void Placement::try_cut(int unit) {
+  if (!trial_->random) {
+    for (int key = 0; key < kKeys; ++key) try_key(unit, key);
+  } else {
+    try_key(unit, trial_->random->uniform() < kFirstKey ? 0 : 1 + trial_->random->below(kKeys - 1));
+  }
+}
+
+void Placement::try_key(int unit, int key) {
+  if (problem_.tasks_of_unit(unit).size() == 1) {
+    try_teams(unit, key);
+  } else {
+    try_together(unit, key);
   }
 }
 
@@ -57,10 +83,8 @@ void Placement::gather_cuts(int unit) {
     }
     for (const int robot : candidates_) add(timeline_.stop(robot, timeline_.tasks_in(robot)).label);
   } else {
-    for (const int robot : candidates_) {
-      for (const int number : timeline_.route(robot)) {
-        if (timeline_.visit(number).unit >= 0) add(timeline_.visit(number).label);
-      }
+    for (int other = 0; other < problem_.units(); ++other) {
+      if (timeline_.present(other)) add(timeline_.label_of(other));
     }
   }
   std::ranges::sort(cuts_);
@@ -94,14 +118,6 @@ void Placement::make_offers(int unit, std::size_t candidate) {
   }
 }
 
-void Placement::try_cut(int unit) {
-  if (!trial_->random) {
-    for (int key = 0; key < kKeys; ++key) try_key(unit, key);
-  } else {
-    try_key(unit, trial_->random->uniform() < kFirstKey ? 0 : 1 + trial_->random->below(kKeys - 1));
-  }
-}
-
 // Robots are ranked by what they cost the objective, by when they come, or by how long the mission takes through them.
 double Placement::key_of(const Offer& offer, int key) const {
   if (key == 1) return offer.arrive;
@@ -113,90 +129,118 @@ double Placement::key_of(const Offer& offer, int key) const {
   return offer.growth;
 }
 
-void Placement::try_key(int unit, int key) {
-  const auto tasks = problem_.tasks_of_unit(unit);
-  const bool single = tasks.size() == 1;
-  members_.clear();
-  team_.clear();
-  for (std::size_t k = 0; k < tasks.size(); ++k) {
-    const Offer* offers = offers_.data() + k * candidates_.size();
-    keys_.resize(candidates_.size());
-    for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      keys_[c] = offers[c].robot < 0 || busy_[candidates_[c]] ? kNever : key_of(offers[c], key);
-    }
-    choice_.teams(tasks[k], candidates_, keys_, teams_);
-    int cheapest = -1;
-    double least = kNever;
-    for (int t = 0; t < teams_.size(); ++t) {
-      if (team_size_ >= 0 && static_cast<int>(teams_[t].size()) != team_size_) continue;
-      if (single) {
-        members_.clear();
-        team_.clear();
-        for (const int c : teams_[t]) {
-          members_.push_back({tasks[k], candidates_[c], at_[c]});
-          team_.push_back(&offers[c]);
-        }
-        judge(unit);
-        continue;
-      }
-      double sum = 0.0;
-      for (const int c : teams_[t]) sum += keys_[c];
-      if (sum < least) {
-        least = sum;
-        cheapest = t;
-      }
-    }
-    if (single) return;
-    if (cheapest < 0) break;
-    for (const int c : teams_[cheapest]) {
-      members_.push_back({tasks[k], candidates_[c], at_[c]});
-      team_.push_back(&offers[c]);
-      busy_[candidates_[c]] = 1;
-    }
-    if (k + 1 == tasks.size()) judge(unit);
+void Placement::rank(const Offer* offers, int key) {
+  keys_.resize(candidates_.size());
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    keys_[c] = offers[c].robot < 0 || busy_[candidates_[c]] ? kNever : key_of(offers[c], key);
   }
-  for (const Member& member : members_) busy_[member.robot] = 0;
 }
 
-// What it costs that these members do the unit's tasks.
-void Placement::judge(int unit) {
+// The teams for one task; those of earlier cuts whose members all stand where they stood were judged there.
+void Placement::try_teams(int unit, int key) {
+  const int task = problem_.tasks_of_unit(unit).front();
+  rank(offers_.data(), key);
+  choice_.teams(task, candidates_, keys_, moved_[key], rankings_[key], teams_);
+  std::ranges::fill(moved_[key], 0);
+  for (int t = 0; t < teams_.size(); ++t) {
+    const auto team = teams_[t];
+    if (team_size_ >= 0 && static_cast<int>(team.size()) != team_size_) continue;
+    team_.clear();
+    for (const int c : team) team_.push_back({task, &offers_[c]});
+    judge(unit);
+  }
+}
+
+// One after the other the tasks of a unit, each with its cheapest team of those that are left.
+void Placement::try_together(int unit, int key) {
   const auto tasks = problem_.tasks_of_unit(unit);
-  works_.assign(tasks.size(), 0.0);
-  double begin = ready_;
-  const auto number = [&](int task) {
-    return static_cast<std::size_t>(std::ranges::find(tasks, task) - tasks.begin());
-  };
-  for (std::size_t m = 0; m < members_.size(); ++m) {
-    double& work = works_[number(members_[m].task)];
-    work = std::max(work, team_[m]->work);
-    begin = std::max(begin, team_[m]->arrive);
-  }
-  begin = timeline_.open(unit, begin);
-  if (!timeline_.in_time(begin, timeline_.latest_for(unit, works_))) return;
-  InsertionScore score(problem_.objective(), peak_);
-  double late = 0.0;
-  const bool looks_late = problem_.objective() == Objective::lateness;
-  for (std::size_t m = 0; m < members_.size(); ++m) {
-    const double work = works_[number(members_[m].task)];
-    if (!timeline_.in_time(begin + work, team_[m]->latest)) return;
-    if (problem_.usage_is_time() && work > team_[m]->work) {
-      Offer slower = *team_[m];
-      slower.growth += work - slower.work;
-      if (!problem_.fits(slower.robot, slower.usage + slower.growth)) return;
-      score.add(slower, begin, work);
-    } else {
-      score.add(*team_[m], begin, work);
+  const std::vector<char> everyone(candidates_.size(), 1);
+  TeamChoice::Ranking ranking;
+  team_.clear();
+  bool complete = true;
+  for (std::size_t k = 0; k < tasks.size() && complete; ++k) {
+    const Offer* offers = offers_.data() + k * candidates_.size();
+    rank(offers, key);
+    choice_.teams(tasks[k], candidates_, keys_, everyone, ranking, teams_);
+    const int cheapest = cheapest_team();
+    complete = cheapest >= 0;
+    if (!complete) break;
+    for (const int c : teams_[cheapest]) {
+      team_.push_back({tasks[k], &offers[c]});
+      busy_[candidates_[c]] = 1;
     }
-    if (looks_late) late += delays(*team_[m], begin + work);
   }
-  if (looks_late) {
-    for (std::size_t k = 0; k < tasks.size(); ++k) late += lateness(tasks[k], begin + works_[k]);
+  if (complete) judge(unit);
+  for (const Part& part : team_) busy_[part.offer->robot] = 0;
+}
+
+int Placement::cheapest_team() const {
+  int cheapest = -1;
+  double least = kNever;
+  for (int t = 0; t < teams_.size(); ++t) {
+    if (team_size_ >= 0 && static_cast<int>(teams_[t].size()) != team_size_) continue;
+    double sum = 0.0;
+    for (const int c : teams_[t]) sum += keys_[c];
+    if (sum >= least) continue;
+    least = sum;
+    cheapest = t;
   }
-  const double value = score.value(begin, timeline_.tail_after(unit, works_), late);
-  if (value >= best_.score) return;
+  return cheapest;
+}
+
+// What it costs that the robots of `team_` do the unit's tasks.
+void Placement::judge(int unit) {
+  measure_works(unit);
+  double begin = ready_;
+  for (const Part& part : team_) begin = std::max(begin, part.offer->arrive);
+  begin = timeline_.open(unit, begin);
+  InsertionScore score(problem_.objective(), peak_);
+  for (const Part& part : team_) {
+    const double work = work_in_team(unit, part.task);
+    const double longer = problem_.usage_is_time() ? work - part.offer->work : 0.0;
+    score.add(*part.offer, begin, work, part.offer->growth + longer);
+  }
+  const double value = score.value(begin, timeline_.tail_after(unit, works_), lateness_of_team(unit, begin));
+  if (value >= best_.score || !may_begin(unit, begin)) return;
   best_.score = value;
   best_.growth = score.growth();
-  best_.members = members_;
+  best_.members.clear();
+  for (const Part& part : team_) best_.members.push_back({part.task, part.offer->robot, part.offer->at});
+}
+
+// The work of each task of the unit, as long as for its slowest member.
+void Placement::measure_works(int unit) {
+  const auto tasks = problem_.tasks_of_unit(unit);
+  works_.assign(tasks.size(), 0.0);
+  for (const Part& part : team_) {
+    double& work = works_[place_in(tasks, part.task)];
+    work = std::max(work, part.offer->work);
+  }
+}
+
+double Placement::work_in_team(int unit, int task) const {
+  return works_[place_in(problem_.tasks_of_unit(unit), task)];
+}
+
+// Whether all that comes after the unit would still be in time, and its members within their capacities.
+bool Placement::may_begin(int unit, double begin) const {
+  if (!timeline_.in_time(begin, timeline_.latest_for(unit, works_))) return false;
+  return std::ranges::all_of(team_, [&](const Part& part) {
+    const double work = work_in_team(unit, part.task);
+    const double longer = problem_.usage_is_time() ? work - part.offer->work : 0.0;
+    return timeline_.in_time(begin + work, part.offer->latest) &&
+           problem_.fits(part.offer->robot, part.offer->usage + part.offer->growth + longer);
+  });
+}
+
+// Of objective `lateness`: what the unit and all that comes after it in its members' routes add.
+double Placement::lateness_of_team(int unit, double begin) const {
+  if (problem_.objective() != Objective::lateness) return 0.0;
+  const auto tasks = problem_.tasks_of_unit(unit);
+  double late = 0.0;
+  for (const Part& part : team_) late += delays(*part.offer, begin + work_in_team(unit, part.task));
+  for (std::size_t k = 0; k < tasks.size(); ++k) late += lateness(tasks[k], begin + works_[k]);
+  return late;
 }
 
 }  // namespace muster

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from statistics import fmean
@@ -14,9 +14,13 @@ from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.verification import verify
+from muster_studies.instances.coalitions import SKILL_SETS, counted_teams
+from muster_studies.instances.solomon import solomon_instance
+from muster_studies.instances.waiting import windows_mission
 from muster_studies.peers.cp_sat import CpSat
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, Peer
+from muster_studies.peers.processor_time import ProcessorClock
 from muster_studies.peers.pyvrp_peer import PyVRP
 from muster_studies.peers.routing import Routing
 from muster_studies.peers.vroom_peer import Vroom
@@ -25,12 +29,22 @@ from muster_studies.uniform import large_mission
 
 OWN = "search"
 """The allocator that is compared."""
+OWN_OTHERS = ("greedy", "auction")
+"""Allocators that some tables have beside it."""
 PEERS: Mapping[str, Peer] = {peer.name: peer for peer in (Routing(), CpSat(), PyVRP(), Vroom())}
 
-_GENERATED = "uniform-"
+GENERATED: Mapping[str, Callable[[Sequence[str]], Mission]] = {
+    "uniform": lambda words: large_mission(int(words[0]), int(words[1])),
+    "solomon": lambda words: solomon_instance(words[0], int(words[1])),
+    "windows": lambda words: windows_mission(int(words[0])),
+    "skills": lambda words: SKILL_SETS[words[0]].instance(int(words[1])),
+    "counted": lambda words: counted_teams(int(words[0])),
+}
+"""Missions by the first word of their name, from the words that follow."""
+
 _TRIES = 3
 _UNDISTURBED = 0.9
-"""A run that had less of a processor, because others use the machine, is repeated."""
+"""A run by the wall clock that had less of a processor, because others use the machine, is repeated."""
 _TOO_SHORT_S = 0.05
 _ROUNDING = 1e-4
 """What a peer's own count of the objective may be off, relative."""
@@ -38,11 +52,20 @@ _ROUNDING = 1e-4
 
 @dataclass(frozen=True, kw_only=True)
 class Match:
-    """A mission and an objective; `mission` is shipped, or `uniform-TASKS-ROBOTS`."""
+    """A mission and an objective.
+
+    Parameters
+    ----------
+    mission
+        the name of a shipped one, or one of `GENERATED`, such as `uniform-TASKS-ROBOTS`.
+    complete
+        whether a plan that does all tasks is known to exist.
+    """
 
     mission: str
     objective: str
     ignored: tuple[str, ...] = ()
+    complete: bool = False
 
     def problem(self) -> Problem:
         return Problem.compile(mission_of(self.mission), self.objective, self.ignored).ready()
@@ -115,21 +138,19 @@ class Standing:
 @cache
 def mission_of(name: str) -> Mission:
     """A shipped mission, or a generated one."""
-    if not name.startswith(_GENERATED):
-        return mission_named(name)
-    tasks, robots = map(int, name.removeprefix(_GENERATED).split("-"))
-    return large_mission(tasks, robots)
+    family, *words = name.split("-")
+    return GENERATED[family](words) if family in GENERATED else mission_named(name)
 
 
 def perform(run: Run) -> Result:
     """Run a solver and judge its plan."""
     problem = run.match.problem()
     begin, cpu = time.perf_counter(), time.process_time()
-    if run.solver == OWN:
-        stop = Stop(time_limit=run.seconds)
-        plan = allocator_named(OWN).solve(problem, stop, seed=run.seed)
+    if run.solver in (OWN, *OWN_OTHERS):
+        stop = Stop(time_limit=run.seconds, clock=ProcessorClock())
+        plan = allocator_named(run.solver).solve(problem, stop, seed=run.seed)
         return _judged(run, problem, plan, Answer(None), begin, cpu)
-    instance, peer = Instance(problem), PEERS[run.solver]
+    instance, peer = Instance(problem, run.match.complete), PEERS[run.solver]
     unable = peer.cannot(instance)
     if unable is not None:
         return Result(run=run, fault=unable)
@@ -141,7 +162,9 @@ def perform(run: Run) -> Result:
 
 
 def undisturbed(run: Run) -> Result:
-    """The first result that had a processor to itself; after some tries the one that had most of one."""
+    """The result of a run; of one by the wall clock the first that had a processor to itself, or most of one."""
+    if run.solver not in PEERS or not PEERS[run.solver].by_wall_clock:
+        return perform(run)
     results: list[Result] = []
     while len(results) < _TRIES and (not results or results[-1].share < _UNDISTURBED):
         results.append(perform(run))
@@ -189,5 +212,9 @@ def runs_of(matches: Iterable[Match], solvers: Sequence[str], seconds: float, se
         Run(match=match, solver=solver, seconds=seconds, seed=seed)
         for match in matches
         for solver in solvers
-        for seed in range(seeds if solver == OWN or PEERS[solver].random else 1)
+        for seed in range(seeds if _is_random(solver) else 1)
     ]
+
+
+def _is_random(solver: str) -> bool:
+    return PEERS[solver].random if solver in PEERS else solver == OWN

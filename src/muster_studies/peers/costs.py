@@ -70,15 +70,16 @@ def usage_costs(problem: Problem, places: list[int], tasks: int) -> Costs:
     return _rounded(keys, legs, work)
 
 
-def time_costs(problem: Problem, places: list[int], tasks: int) -> Costs:
-    """Seconds between some places of the problem, the first of which are the tasks; the way to the end is free."""
+def time_costs(problem: Problem, places: list[int], tasks: int, *, to_ends: bool) -> Costs:
+    """Seconds between some places of the problem, the first of which are the tasks; `to_ends`: to ends too."""
     keys = _keys(problem, [(r.speed_mps, r.efficiency) for r in problem.robots])
     first = _first_of_each(keys)
     speeds = [1.0 if problem.in_time else problem.robots[i].speed_mps for i in first]
     legs = [problem.legs(i, places, places) / speed for i, speed in zip(first, speeds, strict=True)]
     work = [problem.work_seconds(i)[places[:tasks]] for i in first]
-    for table in legs:
-        table[:, tasks:] = 0
+    if not to_ends:
+        for table in legs:
+            table[:, tasks:] = 0
     return _rounded(keys, legs, work)
 
 

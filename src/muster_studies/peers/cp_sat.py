@@ -7,6 +7,7 @@ out, a tree search for more tasks comes first.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ from muster.allocation.problem import Problem
 from muster.verification import verify
 from muster_studies.peers.instance import Instance, Routes
 from muster_studies.peers.peer import Answer, missing
+from muster_studies.peers.processor_time import ProcessorStop
 
 if TYPE_CHECKING:
     from muster.allocation.exact.program import Program
@@ -44,6 +46,7 @@ class CpSat:
         f"out; missions of up to {_MOST_TASKS} tasks"
     )
     random = False
+    by_wall_clock = False
 
     def cannot(self, instance: Instance) -> str | None:
         if len(instance.tasks) > _MOST_TASKS:
@@ -116,9 +119,10 @@ class _Run:
 
         The program rounds costs down: what is above a capacity in real numbers does not count.
         """
-        begin = time.perf_counter()
-        routes = program.solve(seconds, self._seed, 1, parameters).routes
-        took = time.perf_counter() - begin
+        begin = time.process_time()
+        stop = ProcessorStop(seconds)
+        routes = program.solve(math.inf, self._seed, 1, parameters, stop.due).routes
+        took = time.process_time() - begin
         if routes is not None and self._admissible(routes):
             self.routes = min(self.routes, routes, key=self._rank)
         return took

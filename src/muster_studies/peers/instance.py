@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -26,9 +27,15 @@ class Instance:
 
     Nodes are the tasks, then the starts and ends of robots, each position once. Robots stand in the problem's order;
     tasks are counted as they stand in `tasks`, which holds indices of the problem's.
+
+    Parameters
+    ----------
+    complete
+        whether a plan that does all tasks is known to exist.
     """
 
     problem: Problem
+    complete: bool = False
 
     @cached_property
     def tasks(self) -> tuple[int, ...]:
@@ -45,9 +52,33 @@ class Instance:
         return self.problem.objective
 
     @cached_property
-    def optional(self) -> bool:
-        """Whether tasks may have to be left out. Without capacities all that are possible can be done together."""
+    def limited(self) -> bool:
+        """Whether a robot has a capacity."""
         return bool(np.isfinite(self.problem.capacity).any())
+
+    @cached_property
+    def optional(self) -> bool:
+        """Whether tasks may have to be left out. Without limits all that are possible can be done together."""
+        return self.limited or self.timed
+
+    @cached_property
+    def timed(self) -> bool:
+        """Whether a task has a time window, or a robot an end of its shift."""
+        return any(self.windows) or any(until is not None for until in self.available_until)
+
+    @cached_property
+    def unusual_rule(self) -> str | None:
+        """A rule of the mission that no peer is given."""
+        problem = self.problem
+        tasks = [problem.tasks[j] for j in self.tasks]
+        found = {
+            "teams": any(task.robots_needed or task.team or task.needs for task in tasks),
+            "relations": any(task.same_robot_as or task.other_robot_than or task.starts_with for task in tasks),
+            "deadlines": any(task.deadline_s is not None for task in tasks),
+            "lags": any(task.lags for task in tasks),
+            "lateness": self.objective == "lateness",
+        }
+        return next((rule for rule, is_there in found.items() if is_there), None)
 
     @cached_property
     def weights(self) -> list[int]:
@@ -77,7 +108,21 @@ class Instance:
     @cached_property
     def available_from(self) -> list[int]:
         """When each robot can leave, in the scale of `seconds`."""
-        return [round(robot.available_from_s * self.seconds.scale) for robot in self.problem.robots]
+        return [math.ceil(robot.available_from_s * self.seconds.scale) for robot in self.problem.robots]
+
+    @cached_property
+    def available_until(self) -> list[int | None]:
+        """When each robot is back at the latest, in the scale of `seconds`; None: at any time."""
+        return [_down(robot.available_until_s, self.seconds) for robot in self.problem.robots]
+
+    @cached_property
+    def windows(self) -> list[list[tuple[int, int | None]]]:
+        """For each task when work may begin, in the scale of `seconds`; empty, and None: at any time."""
+        scale = self.seconds.scale
+        return [
+            [(math.ceil(a * scale), _down(b, self.seconds)) for a, b in self.problem.tasks[j].window_s]
+            for j in self.tasks
+        ]
 
     @cached_property
     def _nodes(self) -> tuple[list[int], list[int], list[int]]:
@@ -128,13 +173,22 @@ class Instance:
 
     @cached_property
     def seconds(self) -> Costs:
-        """In seconds."""
-        return time_costs(self.problem, self._nodes[0], len(self.tasks))
+        """In seconds; the way to the end counts where a shift ends or the makespan includes it."""
+        problem = self.problem
+        shifts = any(robot.available_until_s is not None for robot in problem.robots)
+        returns = shifts or problem.mission.rules.makespan_includes_return
+        return time_costs(problem, self._nodes[0], len(self.tasks), to_ends=returns)
 
     @cached_property
     def capacity(self) -> list[int | None]:
         """The most usage of each robot, rounded down; None where unlimited."""
         return [int(c * self.usage.scale) if np.isfinite(c) else None for c in self.problem.capacity.tolist()]
+
+    @property
+    def horizon(self) -> int:
+        """A time that no plan without needless waiting reaches, in the scale of `seconds`."""
+        opens = [a for windows in self.windows for a, _ in windows]
+        return int(self.seconds.bound + max([*self.available_from, *opens]))
 
     def weight(self, routes: Routes) -> int:
         return sum(self.weights[j] for route in routes for j in route)
@@ -153,3 +207,7 @@ class Instance:
             objective=problem.objective,
             routes=tuple(by_robot[robot.id] for robot in problem.mission.robots),
         )
+
+
+def _down(seconds: float | None, costs: Costs) -> int | None:
+    return None if seconds is None else math.floor(seconds * costs.scale)

@@ -33,20 +33,22 @@ class Answer:
 class Peer(Protocol):
     """A solver from elsewhere.
 
-    `distribution` is the package that has it; `random` tells whether the seed makes a difference.
+    `distribution` is the package that has it; `random` tells whether the seed makes a difference, `by_wall_clock`
+    whether it can be stopped by the wall clock alone, not by processor time.
     """
 
     name: str
     distribution: str
     settings: str
     random: bool
+    by_wall_clock: bool
 
     def cannot(self, instance: Instance) -> str | None:
         """What the peer cannot express, if it cannot take the instance at all."""
         ...
 
     def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:
-        """Answer the instance; the time counts from when the model is handed over.
+        """Answer the instance; the processor time counts from when the model is handed over.
 
         Raises
         ------

@@ -11,6 +11,7 @@ import numpy as np
 from muster_studies.peers.costs import Integers
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, missing
+from muster_studies.peers.processor_time import ProcessorStop
 from muster_studies.peers.sweep import OBJECTIVES, Routed, answered
 
 _FORBIDDEN = 10
@@ -24,10 +25,15 @@ class PyVRP:
     distribution = "pyvrp"
     settings = "iterated local search, its defaults; with max the runs of a sweep go on from the best plan"
     random = True
+    by_wall_clock = False
 
     def cannot(self, instance: Instance) -> str | None:
         if instance.has_prerequisites:
             return "no prerequisites"
+        if instance.unusual_rule:
+            return f"no {instance.unusual_rule}"
+        if any(len(windows) > 1 for windows in instance.windows):
+            return "no task with several windows"
         return None if instance.objective in OBJECTIVES else f"no {instance.objective}"
 
     def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:
@@ -48,31 +54,48 @@ class _Model:
         self._profile_of = {profile: k for k, profile in enumerate(dict.fromkeys(profiles))}
         self._types: dict[Hashable, list[int]] = {}
         for i, profile in enumerate(profiles):
-            key = profile, instance.starts[i], instance.ends[i], instance.capacity[i]
+            shift = instance.available_from[i], instance.available_until[i]
+            key = profile, instance.starts[i], instance.ends[i], instance.capacity[i], shift
             self._types.setdefault(key, []).append(i)
         self._data = self._make_data()
         self._best: tuple[int, list[Any]] | None = None  # the value, and the routes as PyVRP has them
 
-    def _profile(self, robot: int) -> tuple[int, bytes]:
-        """What a robot's table depends on."""
-        return self.instance.usage.kinds[robot], self.instance.allowed[robot].tobytes()
+    def _profile(self, robot: int) -> tuple[int, int, bytes]:
+        """What a robot's tables depend on."""
+        instance = self.instance
+        return instance.usage.kinds[robot], instance.seconds.kinds[robot], instance.allowed[robot].tobytes()
 
     def _make_data(self) -> Any:
         instance, pyvrp = self.instance, self._pyvrp
-        prize = instance.usage.bound if instance.optional else 0
-        tables = [self._table(kind, row) for kind, row in self._profile_of]
+        required = instance.complete or not instance.optional
+        prize = 0 if required else instance.usage.bound
+        tables = [self._table(kind, row) for kind, _, row in self._profile_of]
         nodes = range(instance.node_count + 1)
         return pyvrp.ProblemData(
             locations=[pyvrp.Location(0, 0) for _ in nodes],
             clients=[
-                pyvrp.Client(location=j, prize=prize * weight, required=not instance.optional)
+                pyvrp.Client(location=j, prize=prize * weight, required=required, **self._window(j))
                 for j, weight in enumerate(instance.weights)
             ],
             depots=[pyvrp.Depot(location=node) for node in nodes[len(instance.tasks) :]],
             vehicle_types=self._vehicle_types(None),
             distance_matrices=tables,
-            duration_matrices=[np.zeros_like(tables[0])] * len(tables),
+            duration_matrices=[self._durations(kind) for _, kind, _ in self._profile_of],
         )
+
+    def _window(self, task: int) -> dict[str, int]:
+        """When a task may begin, as a client has it."""
+        return {
+            name: limit
+            for window in self.instance.windows[task]
+            for name, limit in zip(("tw_early", "tw_late"), window, strict=True)
+            if limit is not None
+        }
+
+    def _durations(self, kind: int) -> Integers:
+        """The work at the place left, and travel; nothing where no time matters."""
+        seconds = self.instance.seconds.departing(kind)
+        return seconds if self.instance.timed else np.zeros_like(seconds)
 
     def _table(self, kind: int, row: bytes) -> Integers:
         table = self.instance.usage.arriving(kind)
@@ -94,20 +117,25 @@ class _Model:
                     end_depot=instance.ends_or_anywhere[i] - len(instance.tasks),
                     profile=self._profile_of[self._profile(i)],
                     **({"max_distance": min(most)} if most else {}),
+                    **(self._shift(i) if instance.timed else {}),
                 )
             )
         return found
 
+    def _shift(self, robot: int) -> dict[str, int]:
+        """When a robot leaves at the earliest, and is back at the latest."""
+        until = self.instance.available_until[robot]
+        shift = {"tw_early": self.instance.available_from[robot]}
+        return shift if until is None else {**shift, "tw_late": until}
+
     def run(self, cap: int | None, seconds: float) -> Routed | None:
         """One run under a cap."""
-        from pyvrp.stop import MaxRuntime
-
         data = self._data if cap is None else self._data.replace(vehicle_types=self._vehicle_types(cap))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that a cap is hard to keep, which is what a sweep wants to know
             result = self._pyvrp.solve(
                 data,
-                MaxRuntime(seconds),
+                ProcessorStop(seconds),
                 seed=self._seed,
                 collect_stats=False,
                 display=False,

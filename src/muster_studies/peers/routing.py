@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 from muster_studies.peers.costs import Costs
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, missing
+from muster_studies.peers.processor_time import ProcessorStop
 
 
 @dataclass(frozen=True)
@@ -29,6 +32,8 @@ _ATTEMPTS = (_Attempt("PATH_CHEAPEST_ARC", 100), _Attempt("PARALLEL_CHEAPEST_INS
 """Neither is better throughout: each has half the time, and the better result counts."""
 _LARGE = 200
 """With more tasks the insertion is far better, and has all the time."""
+_LONGEST_S = 24 * 3600
+"""The limit by the wall clock, without which guided local search warns that it may run forever."""
 _USAGE, _TIME = "usage", "time"
 
 
@@ -42,9 +47,10 @@ class Routing:
         f"above {_LARGE} tasks), then guided local search"
     )
     random = False
+    by_wall_clock = False
 
     def cannot(self, instance: Instance) -> str | None:
-        return None
+        return f"no {instance.unusual_rule}" if instance.unusual_rule else None
 
     def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:
         attempts = _ATTEMPTS if len(instance.tasks) <= _LARGE else _ATTEMPTS[-1:]
@@ -84,7 +90,7 @@ class _Model:
         self._robots = range(instance.robot_count)
         self._set_costs()
         self._set_tasks()
-        if instance.has_prerequisites or instance.objective == "makespan":
+        if instance.has_prerequisites or instance.timed or instance.objective == "makespan":
             self._set_times()
 
     def _index(self, task: int) -> int:
@@ -98,12 +104,17 @@ class _Model:
         ]
         return [tables[kind] for kind in costs.kinds]
 
+    @property
+    def _counts_usage(self) -> bool:
+        """Whether the usage on the way is needed, not only its sum."""
+        return self.instance.limited or self.instance.objective not in ("total", "makespan")
+
     def _set_costs(self) -> None:
         instance, model = self.instance, self._model
         evaluators = self._registered(instance.usage)
         for i in self._robots:
             model.SetArcCostEvaluatorOfVehicle(evaluators[i], i)
-        if instance.objective in ("total", "makespan") and not instance.optional:
+        if not self._counts_usage:
             return
         most = [instance.usage.bound if c is None else c for c in instance.capacity]
         model.AddDimensionWithVehicleTransitAndCapacity(evaluators, 0, most, True, _USAGE)
@@ -129,17 +140,31 @@ class _Model:
     def _set_times(self) -> None:
         """Times of tasks: waiting is slack, and what a task waits for ends before it begins."""
         instance, model, costs = self.instance, self._model, self.instance.seconds
-        horizon = costs.bound + max(instance.available_from)
+        horizon = instance.horizon
         limits = [horizon] * instance.robot_count
         model.AddDimensionWithVehicleTransitAndCapacity(self._registered(costs), horizon, limits, True, _TIME)
         times = model.GetDimensionOrDie(_TIME)
         for i in self._robots:
             times.SlackVar(model.Start(i)).SetMin(instance.available_from[i])
+            if (until := instance.available_until[i]) is not None:
+                times.CumulVar(model.End(i)).SetMax(until)
+        for task, windows in enumerate(instance.windows):
+            self._set_windows(times.CumulVar(self._index(task)), windows, horizon)
         if instance.objective == "makespan":
             times.SetGlobalSpanCostCoefficient(self._attempt.weight)
         for task, before in enumerate(instance.prerequisites):
             for k in before:
                 self._set_precedence(times, k, task)
+
+    @staticmethod
+    def _set_windows(begin: Any, windows: Sequence[tuple[int, int | None]], horizon: int) -> None:
+        """Work begins within one of the windows, which stand in order and do not overlap."""
+        if not windows:
+            return
+        begin.SetRange(windows[0][0], windows[-1][1] or horizon)
+        for (_, closes), (opens, _) in pairwise(windows):
+            if closes is not None and closes + 1 <= opens - 1:
+                begin.RemoveInterval(closes + 1, opens - 1)
 
     def _set_precedence(self, times: Any, before: int, task: int) -> None:
         instance, solver = self.instance, self._model.solver()
@@ -164,7 +189,9 @@ class _Model:
         parameters = pywrapcp.DefaultRoutingSearchParameters()
         parameters.first_solution_strategy = FirstSolutionStrategy.Value.Value(self._attempt.first)
         parameters.local_search_metaheuristic = LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH
-        parameters.time_limit.FromMilliseconds(max(1, round(1000 * seconds)))
+        parameters.time_limit.FromSeconds(_LONGEST_S)
+        stop = ProcessorStop(seconds)
+        self._model.AddSearchMonitor(self._model.solver().CustomLimit(stop.due))
         solution = self._model.SolveWithParameters(parameters)
         if solution is None:
             return Answer(None, build_s=build_s)
@@ -183,7 +210,9 @@ class _Model:
     def _claimed(self, solution: Any) -> float | None:
         """The objective as the library counts it."""
         instance, model = self.instance, self._model
-        if instance.objective in ("total", "total+max") and not instance.optional:
+        if instance.objective == "total" and not self._counts_usage:
+            return float(self._arcs(solution) / instance.usage.scale)
+        if instance.objective == "total+max" and not instance.optional:
             return float(solution.ObjectiveValue() / instance.usage.scale)
         if instance.objective == "makespan":
             times = model.GetDimensionOrDie(_TIME)
@@ -198,6 +227,17 @@ class _Model:
         total = sum(ends) if instance.objective.startswith("total") else 0
         greatest = max(ends) if instance.objective.endswith("max") else 0
         return float((total + greatest) / instance.usage.scale)
+
+    def _arcs(self, solution: Any) -> int:
+        """The sum of the costs of all arcs."""
+        model, total = self._model, 0
+        for i in self._robots:
+            index = model.Start(i)
+            while not model.IsEnd(index):
+                onward = solution.Value(model.NextVar(index))
+                total += model.GetArcCostForVehicle(index, onward, i)
+                index = onward
+        return int(total)
 
     def _used(self, solution: Any, robot: int) -> bool:
         return not self._model.IsEnd(solution.Value(self._model.NextVar(self._model.Start(robot))))

@@ -9,13 +9,13 @@ from statistics import fmean
 from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
 from muster_studies.effort import Effort
+from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
 from muster_studies.peers.contest import (
     OWN,
     PEERS,
     Match,
     Result,
     Run,
-    Standing,
     Standings,
     runs_of,
     standings_of,
@@ -108,7 +108,7 @@ def peers_study(limits: Limits | None = None) -> Repetition[Run, Result]:
         seeds=_seeds,
         extras=("studies",),
         check=_check,
-        remarks=lambda effort, found: (*_legend(limits or _limits(effort), _seeds(effort)), _shares(found.values())),
+        remarks=lambda effort, found: (*_legend(limits or _limits(effort), _seeds(effort)), shares(found.values())),
     )
 
 
@@ -139,10 +139,11 @@ def _legend(limits: Limits, seeds: int) -> list[str]:
     found = versions(PEERS.values())
     return [
         f"Machine: {machine()}. Versions: {', '.join(f'{name} {number}' for name, number in found.items())}.",
-        f"Every solver has {limits.all:g} s of wall time for each plan and one thread, and runs alone; handing over "
-        "the model comes on top (milliseconds; in the table of large missions it is a column). Whole numbers that "
-        "solvers want are rounded at 1e-7 of the longest way. All values are by muster.verify, lower is better; where "
-        "tasks are left out their number done is told, and more tasks come before a lower value.",
+        f"Every solver has {limits.all:g} s of processor time for each plan (VROOM: of wall time) and one thread, and "
+        "runs alone; handing over the model comes on top (milliseconds; in the table of large missions it is a "
+        "column). Whole numbers that solvers want are rounded at 1e-7 of the longest way. All values are by "
+        "muster.verify, lower is better; where tasks are left out their number done is told, and more tasks come "
+        "before a lower value.",
         f"search and PyVRP are random: mean and worst of {'seed 0' if seeds == 1 else f'seeds 0 to {seeds - 1}'}. The "
         "others are not, and run once. Columns with / hold the mean of a solver by the mean of search: above 1, search "
         "is better.",
@@ -160,12 +161,12 @@ def _legend(limits: Limits, seeds: int) -> list[str]:
     ]
 
 
-def _shares(results: Collection[Result]) -> str:
-    shares = [result.share for result in results]
+def shares(results: Collection[Result]) -> str:
+    shares = [result.share for result in results if result.run.solver == "VROOM"] or [1.0]
     return (
-        "A run that had less than 0.9 of a processor, because others used the machine, is repeated, at most twice, and "
-        f"the one with most counts: the runs that count had {fmean(shares):.2f} of one on average, {min(shares):.2f} "
-        "at least."
+        "A run of VROOM that had less than 0.9 of a processor, because others used the machine, is repeated, at most "
+        f"twice, and the one with most counts: the runs that count had {fmean(shares):.2f} of one on average, "
+        f"{min(shares):.2f} at least."
     )
 
 
@@ -178,11 +179,15 @@ def _columns(solvers: tuple[str, ...]) -> tuple[str, ...]:
 
 def _row(match: Match, solvers: tuple[str, ...], standings: Standings, notes: Notes) -> tuple[Cell, ...]:
     own = standings[match, OWN]
-    cells: list[Cell] = [match.mission + (f", {_FREE}" if match.ignored else ""), _mean(own, notes), _worst(own)]
+    cells: list[Cell] = [
+        match.mission + (f", {_FREE}" if match.ignored else ""),
+        mean_cell(own, notes),
+        worst_cell(own),
+    ]
     for solver in solvers[1:]:
         standing = standings[match, solver]
-        worst = [_worst(standing)] if PEERS[solver].random else []
-        cells += [_mean(standing, notes), *worst, _ratio(standing, own)]
+        worst = [worst_cell(standing)] if PEERS[solver].random else []
+        cells += [mean_cell(standing, notes), *worst, ratio_cell(standing, own)]
     return tuple(cells)
 
 
@@ -195,38 +200,6 @@ def _mean_row(columns: tuple[str, ...], rows: list[tuple[Cell, ...]]) -> tuple[C
     return tuple(cells)
 
 
-def _mean(standing: Standing, notes: Notes) -> Cell:
-    """The mean over seeds where all do the same tasks, else that of the worst; a fault as a note."""
-    if standing.fault is not None:
-        return _fault(standing.fault, notes)
-    if not standing.same_tasks:
-        return _worst(standing)
-    result = standing.results[0]
-    return standing.mean if result.tasks == result.tasks_total else f"{standing.mean:.3f} ({result.tasks} tasks)"
-
-
-def _fault(fault: str, notes: Notes) -> Cell:
-    """Nothing where the mission cannot be expressed, which the legend tells; else what went wrong, with a note."""
-    if fault.startswith("no prerequisites"):
-        return None
-    return f"{fault.split(':')[0]} {notes.number(fault)}" if ":" in fault or fault.startswith("claims") else fault
-
-
-def _worst(standing: Standing) -> Cell:
-    if standing.fault is not None:
-        return None
-    worst = standing.worst
-    return worst.value if worst.tasks == worst.tasks_total else f"{worst.value:.3f} ({worst.tasks} tasks)"
-
-
-def _ratio(standing: Standing, own: Standing) -> Cell:
-    if standing.fault is not None or own.fault is not None or own.mean == 0:
-        return None
-    if not (standing.same_tasks and own.same_tasks) or standing.worst.weight != own.worst.weight:
-        return "fewer tasks" if standing.worst.weight < own.worst.weight else "more tasks"
-    return standing.mean / own.mean
-
-
 def _large_table(quick: bool, standings: Standings) -> Table:
     rows: list[tuple[Cell, ...]] = []
     notes = Notes()
@@ -235,8 +208,8 @@ def _large_table(quick: bool, standings: Standings) -> Table:
         for solver in (OWN, *_LARGE_SOLVERS):
             standing = standings[match, solver]
             result = standing.results[0]
-            took = max(result.took_s for result in standing.results)
-            figures = _mean(standing, notes), _worst(standing), _ratio(standing, own)
+            took = max(result.cpu_s for result in standing.results)
+            figures = mean_cell(standing, notes), worst_cell(standing), ratio_cell(standing, own)
             rows.append((match.mission, solver, result.run.seconds, took, result.build_s, *figures))
     columns = ("mission", "solver", "limit [s]", "took [s]", "model [s]", "F", "worst", f"/ {OWN}")
     title = "Large missions, total+max: search after a short time, the others after a long one"

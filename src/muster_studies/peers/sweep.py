@@ -1,7 +1,7 @@
 """A solver that minimises the total, used for other objectives: solved repeatedly with lower and lower caps on routes.
 
 Each run minimises the total under a cap on the route length. What counts is the best of all runs by the objective; the
-time limit is split over them.
+time limit, in processor time, is split over them.
 """
 
 from __future__ import annotations
@@ -64,17 +64,17 @@ def answered(instance: Instance, make: Callable[[], Run], seconds: float) -> Ans
 
 def swept(instance: Instance, run: Run, seconds: float) -> Routed | None:
     """The best of all runs: one without a cap, then with caps."""
-    end = time.perf_counter() + seconds
+    end = time.process_time() + seconds
     each = seconds if instance.objective == "total" else seconds / RUNS
     best: _Found | None = None
-    while best is None and time.perf_counter() < end - 0.1 * each:
-        best = _found(instance, None, run(None, min(each, end - time.perf_counter())))
+    while best is None and time.process_time() < end - 0.1 * each:
+        best = _found(instance, None, run(None, min(each, end - time.process_time())))
         if instance.objective == "total":
             return None if best is None else best.routed
     if best is None:
         return None
     caps = _Caps(least_greatest(instance, best.routed), best, instance.objective)
-    while (cap := caps.next()) is not None and (left := end - time.perf_counter()) > 0.1 * each:
+    while (cap := caps.next()) is not None and (left := end - time.process_time()) > 0.1 * each:
         caps.tried(cap, _found(instance, cap, run(cap, min(each, left))))
     return caps.best.routed
 

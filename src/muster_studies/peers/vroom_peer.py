@@ -6,6 +6,7 @@ from datetime import timedelta
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, missing
@@ -16,6 +17,7 @@ _LARGE = 200
 """With more tasks the least exploration level has the better plans within a minute."""
 _MOST_PRIORITY = 100
 _MOST_TASKS = 2000
+Tables = npt.NDArray[np.uint32]
 _MOST_COST = 2**31
 """VROOM refuses costs whose sums may be beyond 32 bits: those of large missions are divided."""
 
@@ -27,10 +29,15 @@ class Vroom:
     distribution = "pyvroom"
     settings = f"exploration level {_EXPLORATION}, {_FAST_EXPLORATION} above {_LARGE} tasks; 1 thread"
     random = False
+    by_wall_clock = True
 
     def cannot(self, instance: Instance) -> str | None:
         if instance.has_prerequisites:
             return "no prerequisites"
+        if instance.unusual_rule:
+            return f"no {instance.unusual_rule}"
+        if instance.timed and (instance.limited or instance.objective != "total"):
+            return "no limits of a route's length beside times"
         if len(instance.tasks) > _MOST_TASKS:
             return f"over {_MOST_TASKS} tasks: its first plans alone take far more than the time limit"
         return None if instance.objective in OBJECTIVES else f"no {instance.objective}"
@@ -54,19 +61,43 @@ class _Model:
         longest = max(int(table.max(initial=0)) for table in tables)
         self._divisor = -(-longest * (nodes + 2 * instance.robot_count) // _MOST_COST) or 1
         up = self._divisor - 1 if instance.optional else self._divisor // 2  # capacities must hold in truth
-        self._tables = [((table + up) // self._divisor).astype(np.uint32) for table in tables]
+        self._costs = [((table + up) // self._divisor).astype(np.uint32) for table in tables]
+        self._profiles = dict.fromkeys(map(self._profile, range(instance.robot_count)))
         self._all_allowed = bool(instance.allowed.all())
+
+    def _profile(self, robot: int) -> tuple[int, int]:
+        """What a robot's tables depend on."""
+        return self.instance.usage.kinds[robot], self.instance.seconds.kinds[robot]
+
+    def _durations(self, kind: int) -> Tables:
+        """The work at the place left, and travel."""
+        nodes = self.instance.node_count
+        return self.instance.seconds.departing(kind)[:nodes, :nodes].astype(np.uint32)
+
+    def _windows(self, task: int) -> list[Any]:
+        last = self.instance.horizon
+        return [self._vroom.TimeWindow(a, last if b is None else b) for a, b in self.instance.windows[task]]
+
+    def _shift(self, robot: int) -> Any:
+        """When a robot leaves at the earliest, and is back at the latest."""
+        until = self.instance.available_until[robot]
+        return self._vroom.TimeWindow(
+            self.instance.available_from[robot], self.instance.horizon if until is None else until
+        )
 
     def _input(self, cap: int | None) -> Any:
         instance, vroom = self.instance, self._vroom
         question = vroom.Input()
-        for kind, table in enumerate(self._tables):
-            question.set_durations_matrix(str(kind), table)
+        for usage, seconds in self._profiles:
+            name = f"{usage} {seconds}"
+            question.set_durations_matrix(name, self._durations(seconds) if instance.timed else self._costs[usage])
+            question.set_costs_matrix(name, self._costs[usage])
         question.add_vehicle([self._vehicle(i, cap) for i in range(instance.robot_count)])
         for j, weight in enumerate(instance.weights):
             skills = None if self._all_allowed else {j + 1}
             priority = _MOST_PRIORITY * weight // max(instance.weights) if len({*instance.weights}) > 1 else 0
-            question.add_job(vroom.Job(j, location=j, skills=skills, priority=priority))
+            windows = self._windows(j)
+            question.add_job(vroom.Job(j, location=j, skills=skills, priority=priority, time_windows=windows))
         return question
 
     def _vehicle(self, robot: int, cap: int | None) -> Any:
@@ -78,7 +109,8 @@ class _Model:
             robot,
             start=instance.starts[robot],
             end=None if instance.ends[robot] < 0 else instance.ends[robot],
-            profile=str(instance.usage.kinds[robot]),
+            profile="{} {}".format(*self._profile(robot)),
+            time_window=self._shift(robot) if instance.timed else None,
             skills=skills,
             max_travel_time=min(most) // self._divisor if most else None,
         )

@@ -1,0 +1,38 @@
+"""The cells of a comparison: the mean, the worst and the ratio of a solver's values, or why there is none."""
+
+from __future__ import annotations
+
+from muster_studies.peers.contest import Standing
+from muster_studies.tables import Cell, Notes
+
+
+def mean_cell(standing: Standing, notes: Notes) -> Cell:
+    """The mean over seeds where all do the same tasks, else that of the worst; a fault as a note."""
+    if standing.fault is not None:
+        return fault_cell(standing.fault, notes)
+    if not standing.same_tasks:
+        return worst_cell(standing)
+    result = standing.results[0]
+    return standing.mean if result.tasks == result.tasks_total else f"{standing.mean:.3f} ({result.tasks} tasks)"
+
+
+def fault_cell(fault: str, notes: Notes) -> Cell:
+    """Nothing where the mission cannot be expressed, which the legend tells; else what went wrong, with a note."""
+    if fault.startswith("no prerequisites"):
+        return None
+    return f"{fault.split(':')[0]} {notes.number(fault)}" if ":" in fault or fault.startswith("claims") else fault
+
+
+def worst_cell(standing: Standing) -> Cell:
+    if standing.fault is not None:
+        return None
+    worst = standing.worst
+    return worst.value if worst.tasks == worst.tasks_total else f"{worst.value:.3f} ({worst.tasks} tasks)"
+
+
+def ratio_cell(standing: Standing, own: Standing) -> Cell:
+    if standing.fault is not None or own.fault is not None or own.mean == 0:
+        return None
+    if not (standing.same_tasks and own.same_tasks) or standing.worst.weight != own.worst.weight:
+        return "fewer tasks" if standing.worst.weight < own.worst.weight else "more tasks"
+    return standing.mean / own.mean

@@ -1,0 +1,13 @@
+"""The effort of the comparison in time."""
+
+from __future__ import annotations
+
+from muster_studies.effort import Effort
+
+QUICK_S = 0.3
+"""The limit of each run with --quick."""
+_SEEDS, _QUICK_SEEDS = 3, 1
+
+
+def seeds_of(effort: Effort) -> int:
+    return effort.seeds or (_QUICK_SEEDS if effort.quick else _SEEDS)

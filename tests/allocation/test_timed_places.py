@@ -1,0 +1,57 @@
+"""Reasons and remedies where times, teams and relations matter; tests/timed_missions tries random missions."""
+
+import math
+
+from muster import Mission, Robot, Rules, Task
+from muster.allocation.explanations import unassigned
+from muster.allocation.problem import Problem
+from muster.allocation.remedies import remedies, smallest_as_is
+from muster.mission.model import TravelTable
+from muster.planning.explaining.explanations import admits
+
+
+def task(name, x, **more):
+    return Task(id=name, position=(x, 0), duration_s=5, **more)
+
+
+def compiled(*tasks, robots=2, objective=None, **rules):
+    made = tuple(Robot(id=f"r_{k}", position=(10 * k, 0)) for k in range(robots))
+    return Problem.compile(Mission(rules=Rules(timing="constant", **rules), robots=made, tasks=tasks), objective)
+
+
+def reasons(problem, *routes):
+    return [(r.reason, r.detail) for item in unassigned(problem, routes) for r in item.reasons]
+
+
+def test_remedies_where_a_task_is_tied_to_another_that_the_plan_leaves_out():
+    problem = compiled(task("a", 1, window_s=((0, 2),)), task("b", 2, other_robot_than=("a",)), task("c", 3))
+    found = smallest_as_is(problem, [[], []], 1, admits)
+    assert (found.robot, found.kinds, found.enough) == ("r_0", (), True)
+    assert [remedy.enough for remedy in remedies(problem, [[2], []], 0, admits)] == [True, True]
+
+
+def test_a_task_fits_where_the_way_back_is_part_of_the_makespan():
+    problem = compiled(task("a", 1), task("b", 12), objective="makespan", makespan_includes_return=True)
+    assert reasons(problem, [0], []) == [
+        ("not-chosen", "fits as number 2, for 12.00 m in all"),
+        ("not-chosen", "fits as number 1, for 2.00 m in all"),
+    ]
+
+
+def test_no_way_for_another_robot_of_the_team():
+    inf = math.inf
+    places = ("r_0", "r_1", "a")
+    tables = {"x": TravelTable(places, ((0, 1, 1), (1, 0, 1), (1, 1, 0)))}
+    tables["y"] = TravelTable(places, ((0, 1, inf), (1, 0, inf), (inf, inf, 0)))
+    robots = (Robot(id="r_0", type="x", position=(0, 0)), Robot(id="r_1", type="y", position=(0, 0)))
+    mission = Mission(
+        rules=Rules(travel="matrix", timing="constant"),
+        robots=robots,
+        tasks=(task("a", 1, robots_needed=2),),
+        travel={"x": "x.csv", "y": "y.csv"},
+        travel_tables=tables,
+    )
+    assert reasons(Problem.compile(mission), [], []) == [
+        ("unreachable", "there is no way for another robot of its team"),
+        ("unreachable", "there is no way to it"),
+    ]
