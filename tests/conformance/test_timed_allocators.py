@@ -9,7 +9,7 @@ from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import timed_mission
 
 import muster
-from muster.allocation.capabilities import ALL, capability_table, required, those_that_can
+from muster.allocation.capabilities import ALL, FOR_GOOD, capability_table, required, those_that_can
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
@@ -27,11 +27,12 @@ CASES = {
     "relation": {"other_robot_than": ("a",)},
     "starts-with": {"starts_with": ("a",)},
 }
+OF_ROBOTS = {"shift": {"available_until_s": 200.0}, "min-tasks": {"min_tasks": 2}}
 
 
 def mission_of(word):
     """A mission that asks for one capability."""
-    robots = tuple(replace(robot, available_until_s=200.0) for robot in ROBOTS) if word == "shift" else ROBOTS
+    robots = tuple(replace(robot, **OF_ROBOTS.get(word, {})) for robot in ROBOTS)
     task = replace(TASK, **CASES.get(word, {}))
     rules = muster.Rules(timing="constant", objective="lateness" if word == "lateness" else "total+max")
     tasks = (muster.Task(id="a", position=(1.0, 1.0), duration_s=5, due_s=3.0), task)
@@ -82,9 +83,15 @@ def test_plans_with_all_rules_are_admissible_and_their_figures_true(allocator, s
     holds_true(mission, plan)
 
 
-@pytest.mark.parametrize("word", sorted(ALL))
+@pytest.mark.parametrize("word", sorted(FOR_GOOD))
 def test_those_that_an_issue_needs_can_do_all(word):
     assert {"greedy", "greedy+genetic", "auction", "search"} <= set(those_that_can([word]))
+
+
+def test_an_auction_never_takes_back_what_it_sold():
+    assert {"min-tasks"} == ALL - FOR_GOOD
+    assert "auction" not in those_that_can(["min-tasks"])
+    assert {"greedy", "greedy+genetic", "search"} <= set(those_that_can(["min-tasks"]))
 
 
 def test_a_task_of_a_team_is_won_by_a_coalition():

@@ -42,7 +42,7 @@ messages = st.builds(
     stages,
     declarations=several(declarations),
     bids=several(bids),
-    sales=several(st.builds(Sold, robots, tasks, prices)),
+    sales=several(st.builds(Sold, robots, tasks, prices, several(st.tuples(robots, tasks)))),
     sales_from=counts,
     lacks=several(robots),
     heartbeats=several(st.builds(Heartbeat, robots, counts, counts)),

@@ -5,11 +5,12 @@ from dataclasses import replace
 import pytest
 
 from muster import Event, Mission, Negotiation, Robot, Rules, Task, simulate
+from muster.allocation.auction import AUCTION
 from muster.allocation.capabilities import those_that_can
 from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
 from muster.mission.model import Lag, TeamPart
-from muster.negotiation.capabilities import AGREED, refuse_mission, refuse_what_is_not_agreed
+from muster.negotiation.capabilities import refuse_mission, refuse_what_is_not_agreed
 from muster.negotiation.methods import METHODS
 
 ROBOTS = tuple(Robot(id=name, position=(5.0 * k, 0.0), radius_m=0.3) for k, name in enumerate("ab"))
@@ -42,21 +43,32 @@ REFUSED = {
 }
 
 
-CASES = [(method, where) for method, chosen in METHODS.items() for where in REFUSED if word_of(where) not in chosen.can]
+JOINT = [where for where in REFUSED if word_of(where) in ("team", "starts-with")]
+CASES = [("consensus-bundle", where) for where in REFUSED] + [("auction", where) for where in JOINT]
 
 
-def test_the_auction_agrees_on_times_and_bundles_on_none():
-    assert METHODS["auction"].can == {"window", "deadline", "shift", "lag", "lateness"}
+def test_the_auction_agrees_on_all_that_the_central_one_keeps_and_bundles_on_none():
+    assert METHODS["auction"].can == AUCTION.can
     assert METHODS["consensus-bundle"].can == set()
 
 
-@pytest.mark.parametrize(("method", "where"), CASES)
-def test_the_error_names_the_key_and_what_can(method, where):
-    word = word_of(where)
+@pytest.mark.parametrize("where", REFUSED)
+def test_the_error_names_the_key_and_what_can(where):
     with pytest.raises(ParameterError) as refused:
-        refuse_mission(REFUSED[where], METHODS[method].can)
-    able = "the method auction or " if word in AGREED else ""
-    assert f"{where}; expected {able}a plan of {' or '.join(those_that_can([word]))}" in str(refused.value)
+        refuse_mission(REFUSED[where], METHODS["consensus-bundle"].can)
+    able = " or ".join(those_that_can([word_of(where)]))
+    assert f"{where}; expected the method auction or a plan of {able}" in str(refused.value)
+
+
+@pytest.mark.parametrize("where", REFUSED)
+def test_what_begins_together_is_agreed_on_and_not_carried_out(where):
+    refuse_what_is_not_agreed(Problem.compile(REFUSED[where]), METHODS["auction"].can)
+    if where not in JOINT:
+        refuse_mission(REFUSED[where], METHODS["auction"].can)
+        return
+    with pytest.raises(ParameterError) as refused:
+        refuse_mission(REFUSED[where], METHODS["auction"].can)
+    assert f"{where}, and do not begin it together; expected a plan" in str(refused.value)
 
 
 @pytest.mark.parametrize(("method", "where"), CASES)
@@ -66,9 +78,9 @@ def test_the_package_refuses_before_a_record_is_begun(method, where, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(("method", "where"), CASES)
-def test_no_robot_takes_part(method, where):
-    chosen = METHODS[method]
+@pytest.mark.parametrize("where", REFUSED)
+def test_no_robot_takes_part_in_what_its_method_does_not_agree_on(where):
+    chosen = METHODS["consensus-bundle"]
     problem = Problem.compile(REFUSED[where]).ready()
     with pytest.raises(ParameterError, match="without a centre"):
         chosen.negotiator(problem, chosen.allocator.parameters(), "a", incarnation=1)
@@ -96,14 +108,11 @@ def test_a_bid_rule_that_sees_no_times_is_refused_with_them():
 
 
 @pytest.mark.parametrize(
-    ("method", "keys", "named"),
-    [
-        ("auction", {"robots_needed": 2}, "task u: robots_needed"),
-        ("consensus-bundle", {"window_s": ((10.0, 20.0),)}, "task u: window_s"),
-    ],
+    ("keys", "named"),
+    [({"robots_needed": 2}, "task u: robots_needed"), ({"window_s": ((10.0, 20.0),)}, "task u: window_s")],
 )
-def test_a_robot_does_not_announce_a_task_on_which_they_cannot_agree(method, keys, named):
-    chosen = METHODS[method]
+def test_a_robot_does_not_announce_a_task_on_which_they_cannot_agree(keys, named):
+    chosen = METHODS["consensus-bundle"]
     robot = chosen.negotiator(Problem.compile(PLAIN).ready(), chosen.allocator.parameters(), "a", incarnation=1)
     before = list(robot.facts)
     with pytest.raises(ParameterError, match=named):

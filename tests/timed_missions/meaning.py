@@ -258,6 +258,9 @@ class Meaning:
             found.add("prerequisite")
         if any(not set(self.units[self.unit_of[j]]) <= teams.keys() for j in teams):
             found.add("relation")
+        if self._holds("min-tasks"):
+            pairs = zip(self.robots, routes, strict=True)
+            found |= {"min-tasks" for robot, route in pairs if route and len(route) < robot.min_tasks}
         found |= self._too_long(routes, way_home=True)
         return found
 

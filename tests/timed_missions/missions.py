@@ -16,6 +16,7 @@ IGNORED = (
     "shift",
     "team",
     "relation",
+    "min-tasks",
     "prerequisite",
     "capacity",
     "skill",
@@ -40,6 +41,7 @@ def timed_mission(seed, *, tasks=None, robots=None):
     made_tasks = [_task(random, k, tasks, made_robots, has) for k in range(tasks)]
     _relate(random, made_tasks, has, robots)
     random.shuffle(made_tasks)
+    made_robots = _with_least(Random(f"least {seed}"), made_robots)
     suitability = {kind: {task: random.choice((0.4, 0.7, 1.0, 1.0)) for task in KINDS} for kind in TYPES}
     mission = Mission(
         name=f"timed-{seed}",
@@ -87,6 +89,13 @@ def _robot(random, k, has):
         else None,
         abilities={"lift": round(random.uniform(1, 5), 2)} if "needs" in has and random.random() < 0.85 else None,
     )
+
+
+def _with_least(random, robots):
+    """In some missions robots do a least number of tasks, or none."""
+    if random.random() > 0.35:
+        return robots
+    return tuple(replace(robot, min_tasks=random.choice((0, 1, 2, 2, 3))) for robot in robots)
 
 
 def _task(random, k, tasks, robots, has):

@@ -6,7 +6,7 @@ from itertools import product
 
 from tests.timed_missions.meaning import Meaning
 
-LIMITS = ("window", "deadline", "shift", "capacity")
+LIMITS = ("window", "deadline", "shift", "capacity", "min-tasks")
 """The rules that are looked at one after the other: each is named where it leaves no place, beside those before it."""
 
 PAIRS = ("skill", "suitability", "lock")
@@ -169,8 +169,14 @@ def _other_ends(places, word, name, time, deadline):
 
 
 def _uses(places, word, usage, _, capacity, __):
-    least = min(used for _, used in places.usages(word))
+    least = min(used for _, used in places.usages(*LIMITS[LIMITS.index(word) :]))
     return near(usage, least) and near(capacity, places.meaning._capacity(places.mission.robots[places.i]))
+
+
+def _too_few(places, word, name, count, least):
+    i = next(i for i, robot in enumerate(places.mission.robots) if robot.id == name)
+    counts = {len(routes[i]) for routes in places.left(*LIMITS[LIMITS.index(word) :])}
+    return int(count) in counts and 0 < int(count) < int(least) == places.mission.robots[i].min_tasks
 
 
 def _same_robot(places, word, name, robots):
@@ -238,6 +244,7 @@ SENTENCES = (
     (rf"with it (\S+) begins at {SECONDS}, its (?:last )?window closes at {SECONDS}", _other_begins),
     (rf"with it (\S+) ends at {SECONDS}, its deadline is {SECONDS}", _other_ends),
     (r"at least ([\d.]+) (m|s) with it, of ([\d.]+) (m|s)", _uses),
+    (r"with it (\S+) would do (\d+) tasks?, and does at least (\d+) or none.*", _too_few),
     (r"the same robot must do (\S+), and (.+) does it", _same_robot),
     (r"another robot must do (\S+), which is in its route", _other_robot),
     (r"left out before it: (.+)", _left_out_before),

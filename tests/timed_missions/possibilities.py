@@ -199,6 +199,7 @@ ALONE = (
     (r"the same robot must do (\S+), which comes with it, and cannot be (\S+)", _same_robot),
     (r"another robot must do (\S+), which comes with it, and only (\S+) can", _other_robot),
     (r"(lacks .+|type \S+ scores .+|only .+ may do it|fits no part of the team: .+)", _nothing_else),
+    (r"does at least \d+ tasks or none, and (may do only \d+ tasks?|can never do so many)", _nothing_else),
     (r"needs .+; .+", _nothing_else),
     (r"there is no way to it", _nothing_else),
 )

@@ -1,5 +1,7 @@
 """The enumeration of timed missions, by hand, and against judge and bounds; `make campaign-times` tries thousands."""
 
+from dataclasses import replace
+
 import pytest
 
 from muster import Mission, Robot, Rules, Task
@@ -86,6 +88,7 @@ def test_the_missions_have_every_rule():
         "shift",
         "team",
         "relation",
+        "min-tasks",
     }
     for values in (
         [len(task.window_s) > 1 for task in tasks],
@@ -101,6 +104,7 @@ def test_the_missions_have_every_rule():
         [task.starts_with for task in tasks],
         [robot.available_until_s for robot in robots],
         [robot.abilities for robot in robots],
+        [robot.min_tasks > 1 for robot in robots],
     ):
         assert 0.01 < sum(bool(value) for value in values) / len(values) < 0.95
     assert len(RULES) == len(set(RULES))
@@ -153,6 +157,14 @@ def test_every_plan_of_two_tasks_and_two_robots():
     assert len(EveryPlan(mission_of(task("a", 1), task("b", 2))).admissible) == 11
     assert len(EveryPlan(mission_of(task("a", 1), task("b", 2, starts_with=("a",)))).admissible) == 3
     assert len(EveryPlan(mission_of(task("a", 1, needs={"lift": 5}))).admissible) == 2
+
+
+def test_a_robot_does_at_least_so_many_tasks_or_none():
+    meaning = mission_of(task("a", 1), task("b", 2))
+    shy = replace(meaning.mission, robots=(replace(meaning.robots[0], min_tasks=2), meaning.robots[1]))
+    assert Meaning(shy).faults(((0,), (1,))) == {"min-tasks"}
+    assert not Meaning(shy, ignored=("min-tasks",)).faults(((0,), (1,)))
+    assert len(EveryPlan(Meaning(shy)).admissible) == 11 - 4  # all but those in which it does one of the two
 
 
 def test_lateness_is_weighed_and_cost_breaks_ties():

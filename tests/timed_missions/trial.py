@@ -5,6 +5,7 @@ from random import Random
 
 import muster
 from muster.allocation.bounds import lower_bound
+from muster.allocation.capabilities import required, those_that_can
 from muster.allocation.conflicts import together
 from muster.allocation.exact import solve_exactly
 from muster.allocation.explanations import unassigned
@@ -25,7 +26,7 @@ from tests.timed_missions.places import Places
 from tests.timed_missions.possibilities import Possibilities
 from tests.timed_missions.remedied import Remedied
 
-FOR_ALL_RULES = ("greedy", "greedy+genetic", "auction", "search")  # allocators that take every mission
+FOR_ALL_RULES = ("greedy", "greedy+genetic", "auction", "search")  # but an auction takes nothing back
 OTHERS = tuple(name for name in ALLOCATORS if name not in FOR_ALL_RULES)
 ITERATIONS, LONGER = 200, 5000
 EXACT_S = 30.0
@@ -74,7 +75,8 @@ class Trial:
     def with_plans(self):
         """Plans of the allocators, and that of the exact solver."""
         bound = lower_bound(self.problem)
-        found = [self._plan(name, bound) for name in FOR_ALL_RULES]
+        able = those_that_can(required(self.problem))
+        found = [self._plan(name, bound, may_refuse=name not in able) for name in FOR_ALL_RULES]
         self._reached(found[-1])
         self._plan(OTHERS[self.report.seed % len(OTHERS)], bound, may_refuse=True)
         if self.report.seed % EXACT_EVERY == 0:

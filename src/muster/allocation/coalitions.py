@@ -117,25 +117,23 @@ class CoalitionAuction:
         found = self._best(unit, robots)
         return None if found is None else CoalitionBid(found, self._price(found))
 
-    def added_usages(self, unit: int, robot: int) -> Iterator[tuple[int, float]]:
-        """The tasks of a unit that a robot may do, and what each adds to its usage at the place where that is least."""
-        inspection = core.Inspection(self._problem.core, self.routes)
-        for task in self._problem.timed_rules.units[unit]:
-            found = inspection.cheapest_insertion(robot, task) if self._problem.may(robot, task) else None
-            if found is not None and math.isfinite(found.usage):
-                yield task, found.usage
+    def usage(self, robot: int) -> float:
+        """What a robot's route uses so far."""
+        return self._roster.core.usage(robot)
 
     def holds(self, bid: CoalitionBid) -> bool:
         """Whether the routes with what is bid for are admissible."""
         return self._roster.fits(bid.insertion)
 
     def assign(self, bid: CoalitionBid) -> bool:
-        """Put a unit into the routes of those that bid; False, and nothing is changed, if it does not hold."""
-        return self._roster.put(bid.insertion)
+        """Put a unit into the routes of those that bid; False, and nothing is changed, if it does not hold.
 
-    def settle(self) -> None:
-        """Make the bids that follow depend on the routes alone, not on how they came about."""
-        self._roster = WorkingRoster(self._problem, self._roster.routes)
+        The bids that follow depend on the routes alone, not on the bids that were looked at before.
+        """
+        holds = self._roster.put(bid.insertion)
+        if holds:
+            self._roster = WorkingRoster(self._problem, self._roster.routes)
+        return holds
 
     def is_alone(self, unit: int) -> bool:
         """Whether a unit is one task for one robot."""
@@ -171,7 +169,7 @@ class CoalitionAuction:
     def _penalty(self, robot: int, task: int) -> float:
         terms, penalty = self._terms, 0.0
         if terms.battery_weight:
-            usage = np.array([self._roster.core.usage(robot)])
+            usage = np.array([self.usage(robot)])
             penalty += terms.battery_weight * float(self._problem.drains.shares(usage, slice(robot, robot + 1))[0])
         if terms.suitability_weight:
             penalty += terms.suitability_weight * float(lack_penalty(self._problem.suitability[robot, task]))

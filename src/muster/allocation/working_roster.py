@@ -56,11 +56,12 @@ class WorkingRoster:
         return False
 
     def finish(self) -> None:
-        """Take out what the plan cannot hold as it is, as nothing more comes to it."""
+        """Take out what the plan cannot hold as it is, as nothing more comes to it; where that fails, everything."""
         if self.core.finish() and self.core.admissible():
             self.core.commit()
         else:
             self.core.rollback()
+            self.clear()
 
     def usage(self, insertion: core.UnitInsertion) -> float:
         """The greatest usage among the members of the team, as it is."""

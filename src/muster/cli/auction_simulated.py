@@ -85,7 +85,7 @@ class _Account:
                     self._seen.add((stage.base, number))
                     sold = node.epoch.sales[number]
                     self.tell(
-                        f"epoch {stage.epoch}, round {number + 1}: {sold.robot} wins {sold.task} for {sold.price:.2f}"
+                        f"epoch {stage.epoch}, round {number + 1}: {sold.winner} wins {sold.what} for {sold.price:.2f}"
                     )
 
     def end(self) -> None:

@@ -75,7 +75,7 @@ def _picture(title: str, team: Team, sales: list[tuple[int, Sold]], room: int) -
         rows = [*troubled[: max(room - 1, 1)], (f"... {len(rows) - max(room - 1, 1)} more", *[""] * 6)]
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
-    won = [Text(f"round {number}: {sold.robot} won {sold.task} for {sold.price:.2f}") for number, sold in sales]
+    won = [Text(f"round {number}: {sold.winner} won {sold.what} for {sold.price:.2f}") for number, sold in sales]
     return Group(table, *won)
 
 

@@ -79,7 +79,7 @@ void bind_problem(nb::module_& m) {
              Indices travel_class, const Windows& windows, Numbers deadline, Numbers due, Numbers available_until,
              Numbers after, Numbers within, Indices unit, const Parts& parts, Numbers abilities, Numbers needs,
              const std::vector<std::vector<int>>& same_robot, const std::vector<std::vector<int>>& other_robot,
-             Numbers acceleration, Numbers climb, Numbers turn, bool makespan_includes_return) {
+             Indices min_tasks, Numbers acceleration, Numbers climb, Numbers turn, bool makespan_includes_return) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 2 || entry.shape(1) != 3 || exit.ndim() != 2 || exit.shape(1) != 3 || !table_fits) {
@@ -117,6 +117,7 @@ void bind_problem(nb::module_& m) {
             data.needs = numbers(needs);
             data.same_robot = rows(same_robot);
             data.other_robot = rows(other_robot);
+            data.min_tasks.assign(min_tasks.data(), min_tasks.data() + min_tasks.size());
             data.acceleration = numbers(acceleration);
             data.climb = numbers(climb);
             data.turn = numbers(turn);
@@ -127,7 +128,8 @@ void bind_problem(nb::module_& m) {
           "must_end"_a, "fixed"_a, "actuation_cost"_a, "work_class"_a, "duration"_a, "priority"_a, "kind"_a,
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "table"_a, "travel_class"_a, "windows"_a, "deadline"_a,
           "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a, "abilities"_a, "needs"_a,
-          "same_robot"_a, "other_robot"_a, "acceleration"_a, "climb"_a, "turn"_a, "makespan_includes_return"_a,
+          "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a, "turn"_a,
+          "makespan_includes_return"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `kind` "
           "is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, "
@@ -137,12 +139,14 @@ void bind_problem(nb::module_& m) {
           "`travel_class`. What is empty of the rest no task or robot has: by task `windows`, `deadline`, `due`, "
           "`unit` "
           "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_robot`, `other_robot`; by "
-          "robot `available_until`; `after` and `within` by prerequisite; `abilities` (m, a) and `needs` (n, a); by "
+          "robot `available_until`, `min_tasks` (of a route that has any); `after` and `within` by prerequisite; "
+          "`abilities` (m, a) and `needs` (n, a); by "
           "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles. Raises ValueError if shapes do "
           "not fit.")
       .def_prop_ro("tasks", &Problem::tasks)
       .def_prop_ro("robots", &Problem::robots)
-      .def_prop_ro("is_timed", &Problem::is_timed, "Whether anything binds tasks to times, teams or relations.");
+      .def_prop_ro("is_timed", &Problem::is_timed,
+                   "Whether anything binds tasks to times, teams, relations or whole routes.");
 }
 
 }  // namespace muster

@@ -89,6 +89,7 @@ void Problem::check_times() const {
               fits(data_.unit.size(), tasks) && fits(data_.parts.size(), tasks),
           "times of tasks need a value for each task");
   require(fits(data_.available_until.size(), robots), "shifts need a value for each robot");
+  require(fits(data_.min_tasks.size(), robots), "least numbers of tasks need a value for each robot");
   const std::size_t edges = data_.prerequisites.values.size();
   require(fits(data_.after.size(), edges) && fits(data_.within.size(), edges),
           "lags need a value for each prerequisite");
@@ -122,7 +123,7 @@ void Problem::find_units() {
   }
   timed_ = has_time_limits() || !data_.after.empty() || !data_.within.empty() || !data_.unit.empty() ||
            !data_.parts.empty() || !data_.needs.empty() || !data_.same_robot.values.empty() ||
-           !data_.other_robot.values.empty() || data_.objective == Objective::lateness ||
+           !data_.other_robot.values.empty() || has_min_tasks() || data_.objective == Objective::lateness ||
            (data_.makespan_includes_return && data_.objective == Objective::makespan);
 }
 

@@ -60,6 +60,7 @@ struct ProblemData {
   std::vector<std::vector<TimeWindow>> windows;  // by task, sorted
   std::vector<double> deadline, due;             // by task; inf: none
   std::vector<double> available_until;           // by robot; inf: without end
+  std::vector<int> min_tasks;                    // by robot: the least number of tasks of a route that has any
   std::vector<double> after, within;             // lags, parallel to prerequisites.values; 0 and inf: none
   std::vector<int> unit;                         // by task: its number of a node; tasks that start together share it
   std::vector<std::vector<TeamPart>> parts;      // by task
@@ -100,7 +101,8 @@ class Problem {
   // How many tasks at the beginning of the robot's route stay: the first place where another may go.
   int fixed(int robot) const { return data_.fixed[robot]; }
 
-  // Whether anything binds tasks to times, teams or relations: routes with one task each do not tell all then.
+  // Whether anything binds tasks to times, teams, relations or whole routes: routes with one task each do not tell all
+  // then.
   bool is_timed() const { return timed_; }
   bool has_windows() const { return !data_.windows.empty(); }
   // Whether work or routes must be over by a time: windows, deadlines, shifts.
@@ -110,6 +112,8 @@ class Problem {
   double available_until(int robot) const {
     return data_.available_until.empty() ? kInfinity : data_.available_until[robot];
   }
+  bool has_min_tasks() const { return !data_.min_tasks.empty(); }
+  int min_tasks(int robot) const { return data_.min_tasks.empty() ? 0 : data_.min_tasks[robot]; }
   // Of a task's prerequisite number k: the least and the most time between its end and the task's begin.
   double after(int task, int k) const {
     return data_.after.empty() ? 0.0 : data_.after[data_.prerequisites.first[task] + k];

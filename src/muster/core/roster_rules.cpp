@@ -1,11 +1,164 @@
 // What must hold of whole plans: of routes that others made, and of those that nothing more comes to.
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "roster.hpp"
 #include "team_choice.hpp"
 
 namespace muster {
+
+namespace {
+
+// How many tasks a robot that does some lacks; 0: it does enough, or none.
+int lack(const Roster& roster, int robot) {
+  const int tasks = roster.timeline().tasks_in(robot);
+  return tasks == 0 ? 0 : std::max(0, roster.problem().min_tasks(robot) - tasks);
+}
+
+// The robot that lacks most tasks; none: all do enough, or none.
+std::optional<int> shortest_route(const Roster& roster) {
+  int found = 0;
+  if (!roster.problem().has_min_tasks()) return std::nullopt;
+  for (int robot = 1; robot < roster.problem().robots(); ++robot) {
+    if (lack(roster, robot) > lack(roster, found)) found = robot;
+  }
+  return lack(roster, found) > 0 ? std::optional(found) : std::nullopt;
+}
+
+// Routes with too few tasks, one after the other: a robot gets more tasks from the routes around it, or none.
+class ShortRoutes {
+ public:
+  ShortRoutes(Roster& roster, const Trial& trial)
+      : roster_(roster), problem_(roster.problem()), random_(trial.random), elsewhere_(trial) {
+    if (!problem_.has_min_tasks()) return;
+    open_.assign(problem_.robots(), 1);
+    fills_ = problem_.robots();
+    elsewhere_.robots = &open_;
+  }
+  ShortRoutes(const ShortRoutes&) = delete;
+  ShortRoutes& operator=(const ShortRoutes&) = delete;
+
+  // False: no route is too short any more, or one cannot be mended.
+  bool mend_one() {
+    const auto robot = shortest_route(roster_);
+    if (!robot) return false;
+    const bool fills = --fills_ >= 0 && (!random_ || random_->uniform() < 0.5);  // where chance decides, both are tried
+    failed_ = fills && !fill(*robot);
+    if (failed_ || lack(roster_, *robot) == 0) return !failed_;
+    open_[*robot] = 0;
+    failed_ = !empty(*robot);
+    return !failed_;
+  }
+
+  // Whether a route is too short and cannot be mended: a task in it stays where it is, or no schedule exists.
+  bool failed() const { return failed_; }
+
+ private:
+  // Gives a robot the tasks that it lacks, near ones first, as far as it can do them. False: no schedule exists.
+  bool fill(int robot) {
+    std::vector<char> alone(problem_.robots(), 0), tried(problem_.units(), 0);
+    alone[robot] = 1;
+    Trial own = elsewhere_;
+    own.robots = &alone;
+    while (lack(roster_, robot) > 0) {
+      const auto unit = nearest_of_others(robot, tried);
+      if (!unit) break;
+      tried[*unit] = 1;
+      roster_.remove(*unit);
+      if (!roster_.settle_begins() || !insert({*unit}, {own, elsewhere_})) return false;
+    }
+    return true;
+  }
+
+  // Takes all tasks from a robot and puts them elsewhere, as far as they fit.
+  bool empty(int robot) {
+    const Timeline& timeline = roster_.timeline();
+    std::vector<int> units;
+    for (int at = 1; at <= timeline.tasks_in(robot); ++at) units.push_back(timeline.stop(robot, at).unit);
+    if (std::ranges::any_of(units, [&](int unit) { return roster_.fixed(unit); })) return false;
+    for (const int unit : units) roster_.remove(unit);
+    return roster_.settle_begins() && insert(units, {elsewhere_});
+  }
+
+  // The unit that is nearest to a robot's route, of those that may come over to it.
+  std::optional<int> nearest_of_others(int robot, const std::vector<char>& tried) const {
+    double nearest = kNever;
+    std::optional<int> found;
+    for (int task = 0; task < problem_.tasks(); ++task) {
+      const int unit = problem_.unit(task);
+      if (tried[unit] || !problem_.allowed(robot, task) || !may_leave(unit, robot)) continue;
+      const double way = way_to(robot, task) * (random_ ? 0.5 + random_->uniform() : 1.0);
+      if (way >= nearest) continue;
+      nearest = way;
+      found = unit;
+    }
+    return found;
+  }
+
+  // Whether it is a task of one other robot, which keeps enough tasks without it, or does too few anyway, and is
+  // nowhere later without it.
+  bool may_leave(int unit, int robot) const {
+    if (!roster_.present(unit) || roster_.fixed(unit)) return false;
+    const auto visits = roster_.timeline().visits_of(unit);
+    if (visits.size() != 1 || !problem_.same_robot(problem_.tasks_of_unit(unit).front()).empty()) return false;
+    const Visit& visit = roster_.timeline().visit(visits.front());
+    const int owner = visit.robot, left = roster_.timeline().tasks_in(owner) - 1;
+    const bool enough = lack(roster_, owner) > 0 || left == 0 || left >= problem_.min_tasks(owner);
+    return owner != robot && enough && (left == 0 || is_on_the_way(visit));
+  }
+
+  // Whether the way past a visit is not longer than the way through it.
+  bool is_on_the_way(const Visit& visit) const {
+    const Timeline& timeline = roster_.timeline();
+    const int robot = visit.robot, before = timeline.stop(robot, visit.at - 1).place;
+    const bool is_last = visit.at == timeline.tasks_in(robot);
+    if (is_last && !problem_.must_end(robot)) return true;
+    const int after = is_last ? problem_.end(robot) : timeline.stop(robot, visit.at + 1).place;
+    const double through =
+        problem_.travel_time(robot, before, visit.place) + problem_.travel_time(robot, visit.place, after);
+    return problem_.travel_time(robot, before, after) <= through;
+  }
+
+  // The least way to a task from a stop of the robot's route, or its start.
+  double way_to(int robot, int task) const {
+    double way = kNever;
+    for (int at = 0; at <= roster_.timeline().tasks_in(robot); ++at) {
+      const int place = roster_.timeline().stop(robot, at).place;
+      way = std::min(way, problem_.distance(problem_.travel_class(robot), place, task));
+    }
+    return way;
+  }
+
+  // Puts units where the first of the trials finds a place that finds one. False: no schedule exists.
+  bool insert(std::vector<int> units, const std::vector<Trial>& trials) {
+    for (bool more = true; more;) {
+      more = false;
+      for (int& unit : units) {
+        if (unit < 0 || !roster_.ready(unit)) continue;
+        const UnitInsertion* insertion = nullptr;
+        for (const Trial& trial : trials) {
+          if (!insertion) insertion = roster_.best_insertion(unit, trial);
+        }
+        unit = -1;
+        if (!insertion) continue;
+        if (!roster_.insert(*insertion)) return false;
+        more = true;
+      }
+    }
+    return true;
+  }
+
+  Roster& roster_;
+  const Problem& problem_;
+  Random* random_;
+  Trial elsewhere_;
+  bool failed_ = false;
+  int fills_ = 0;           // how many routes may still be filled, so that this ends
+  std::vector<char> open_;  // by robot, whether tasks may still come to it
+};
+
+}  // namespace
 
 // The robots that do a task, in order.
 std::vector<int> Roster::team_of(int task) const {
@@ -18,6 +171,7 @@ std::vector<int> Roster::team_of(int task) const {
 }
 
 bool Roster::keeps_rules() const {
+  if (shortest_route(*this)) return false;
   TeamChoice choice(problem_);
   for (int task = 0; task < problem_.tasks(); ++task) {
     const int unit = problem_.unit(task);
@@ -52,9 +206,13 @@ void Roster::drop_orphans() {
   }
 }
 
-bool Roster::finish(const Trial&) {
-  drop_orphans();
-  return settle_begins();
+bool Roster::finish(const Trial& trial) {
+  ShortRoutes routes(*this, trial);
+  do {
+    drop_orphans();
+    if (!settle_begins()) return false;
+  } while (routes.mend_one());
+  return !routes.failed();
 }
 
 }  // namespace muster

@@ -58,6 +58,7 @@ ScheduleSearch::ScheduleSearch(const Problem& problem, const Routes& start, std:
     roster_.commit();
   } else {
     roster_.rollback();
+    roster_.begin(start);
   }
   current_ = cost();
   note_best();

@@ -286,6 +286,7 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
         position=snapshot.spot.point[: mission.dimensions],
         end_position=None if snapshot.home is None else snapshot.home[: mission.dimensions],
         return_to_start=False,
+        min_tasks=0,  # what was planned kept it; what happens since may not leave so many
         work_capacity=capacity,
         available_from_s=max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s)),
     )

@@ -10,9 +10,9 @@ from muster.mission.value_types import shown
 
 IGNORABLE = (
     *("prerequisite", "suitability", "skill", "lock", "capacity"),
-    *("window", "deadline", "shift", "team", "relation"),
+    *("window", "deadline", "shift", "team", "relation", "min-tasks"),
 )
-_PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in ("suitability", "lock", "capacity")}
+_PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in ("suitability", "lock", "capacity", "min-tasks")}
 """Words of earlier files and commands, read as before; and the like of the others."""
 
 

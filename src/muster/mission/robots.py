@@ -60,6 +60,7 @@ class Robot(Checked):
         instead=SHIFT,
         if_used=True,
     )
+    min_tasks: int = spec(Whole(), "it does at least so many tasks, or none at all", default=0, if_used=True)
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)
     kind: str = spec(Choice(("ground", "air")), "where it moves", default="ground")

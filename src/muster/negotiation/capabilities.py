@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from muster.allocation.capabilities import required, those_that_can
+from muster.allocation.capabilities import FOR_GOOD, required, those_that_can
 from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 
-AGREED = frozenset({"window", "deadline", "shift", "lag", "lateness"})
+AGREED = FOR_GOOD
 """What the auction agrees on."""
+
+CARRIED_OUT = AGREED - {"team", "starts-with"}
+"""What of it robots also carry out by themselves: they do not tell each other that all are there."""
 
 
 def refuse_what_is_not_agreed(problem: Problem, can: frozenset[str]) -> None:
@@ -28,7 +31,12 @@ def refuse_what_is_not_agreed(problem: Problem, can: frozenset[str]) -> None:
 
 
 def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
-    """Refuse a mission as `refuse_what_is_not_agreed`, also for robots and tasks that its events bring.
+    """Refuse a mission to be carried out as `refuse_what_is_not_agreed`, also for what its events bring.
+
+    Parameters
+    ----------
+    can
+        what the method agrees on.
 
     Raises
     ------
@@ -38,4 +46,11 @@ def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
     joining = [event.robot_joins for event in mission.events if event.robot_joins is not None]
     new = [event.new_task for event in mission.events if event.new_task is not None]
     whole = mission.at_once(robots=(*mission.robots, *joining), tasks=(*mission.tasks, *new))
-    refuse_what_is_not_agreed(Problem.compile(whole), can)
+    problem = Problem.compile(whole)
+    refuse_what_is_not_agreed(problem, can)
+    together = [f"{where} ({word})" for word, where in required(problem).items() if word not in CARRIED_OUT]
+    if together:
+        raise ParameterError(
+            f"robots without a centre agree on {'; '.join(together)}, and do not begin it together; "
+            "expected a plan, of muster auction for example"
+        )

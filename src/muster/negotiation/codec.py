@@ -33,7 +33,7 @@ from muster.negotiation.plain_values import (
     rows,
 )
 
-PROTOCOL = 3
+PROTOCOL = 4
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 
@@ -49,7 +49,7 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
     """The table: the encoding of each field of a message, in the order of `Message`."""
     claim = record(Claim, task=task, price=NUMBER, round=COUNT, begun=FLAG)
     fact = record(Fact, task=task, robot=robot, kind=choice(*FACTS), order=COUNT, content=DATA)
-    sold = record(Sold, robot=robot, task=task, price=NUMBER)
+    sold = _sold(robot, task)
     declaration = record(
         Declaration,
         robot=robot,
@@ -89,6 +89,24 @@ def _pair(first: Form, second: Form) -> Form:
         lambda pair: (first.pack(pair[0]), second.pack(pair[1])),
         lambda pair: (first.unpack(pair[0]), second.unpack(pair[1])),
     )
+
+
+def _sold(robot: Form, task: Form) -> Form:
+    """A sale; where several robots won, an array of them takes the place of the robot, with the others' tasks."""
+
+    def pack(sold: Sold) -> list[Any]:
+        others = [form.pack(name) for pair in sold.others for form, name in zip((robot, task), pair, strict=True)]
+        won = robot.pack(sold.robot)
+        return [[won, *others] if others else won, task.pack(sold.task), NUMBER.pack(sold.price)]
+
+    def unpack(plain: Any) -> Sold:
+        if len(array(plain)) != 3:
+            raise MalformedError("not a sale")
+        won, *others = plain[0] if type(plain[0]) is list and len(plain[0]) % 2 and len(plain[0]) > 1 else [plain[0]]
+        pairs = zip(map(robot.unpack, others[::2]), map(task.unpack, others[1::2]), strict=True)
+        return Sold(robot.unpack(won), task.unpack(plain[1]), NUMBER.unpack(plain[2]), tuple(pairs))
+
+    return Form(pack, unpack)
 
 
 def _incarnations() -> Form:

@@ -6,11 +6,12 @@ claims.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from hashlib import blake2b
 
+from muster.mission.model import Task
 from muster.negotiation.knowledge import holders, in_order
 from muster.negotiation.messages import Claim, Declaration, Fact
 from muster.negotiation.new_tasks import task_of
@@ -32,6 +33,12 @@ class Rules:
         tasks that must not be begun twice, whatever happens to the network.
     linked
         whether prerequisites of added tasks count.
+    teams
+        tasks that several robots may own, as a team.
+    joint
+        tasks that several robots begin at the same moment: those of teams, and those tied by `starts_with`.
+    tied
+        whether teams, and whether `starts_with`, of added tasks count.
     """
 
     robots: Mapping[str, int]
@@ -39,6 +46,9 @@ class Rules:
     prerequisites: Mapping[str, Sequence[str]]
     once: frozenset[str] = frozenset()
     linked: bool = True
+    teams: frozenset[str] = frozenset()
+    joint: frozenset[str] = frozenset()
+    tied: tuple[bool, bool] = (True, True)
 
     @property
     def majority(self) -> int:
@@ -55,7 +65,21 @@ class Rules:
             tasks={**self.tasks, **{task.id: k for k, task in enumerate(tasks, len(self.tasks))}},
             prerequisites={**self.prerequisites, **{t.id: t.prerequisites if self.linked else () for t in tasks}},
             once=self.once | {task.id for task in tasks if task.across_partition == "at-most-once"},
+            teams=self.teams | teams_among(tasks, self.tied),
+            joint=self.joint | joint_among(tasks, self.tied),
         )
+
+
+def teams_among(tasks: Iterable[Task], tied: tuple[bool, bool]) -> frozenset[str]:
+    """The tasks that several robots may own; `tied` is as in `Rules`."""
+    return frozenset(task.id for task in tasks if tied[0] and task.is_for_team)
+
+
+def joint_among(tasks: Iterable[Task], tied: tuple[bool, bool]) -> frozenset[str]:
+    """The tasks that several robots begin at the same moment; `tied` is as in `Rules`."""
+    tasks = list(tasks)
+    linked = {name for task in tasks if tied[1] and task.starts_with for name in (task.id, *task.starts_with)}
+    return teams_among(tasks, tied) | linked
 
 
 @dataclass(frozen=True)
@@ -115,7 +139,8 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
 
     A task that several robots claim stays with the one that has begun it; if nobody has, with the lowest price, then
     with the first in tie order. A robot that claims a task without knowing that it has moved loses it, unless it has
-    begun it. Tasks that wait for a task that nobody owns or has done are dropped. Where routes wait for each other in a
+    begun it. A team keeps its task as one robot does; of several teams the one with more robots. Tasks that wait for a
+    task that nobody owns or has done are dropped. Where routes wait for each other in a
     cycle the tasks that come last in tie order are dropped. Tasks that were begun are never dropped.
     """
     declarations = sorted(declarations, key=lambda declaration: rules.robots[declaration.robot])
@@ -202,7 +227,9 @@ def _one_owner_each(routes: Routes, rules: Rules) -> dict[str, tuple[str, ...]]:
             owners.setdefault(claim.task, []).append((not claim.begun, claim.price, rules.robots[robot], robot))
     twice = {}
     for task, claimants in owners.items():
-        if len(claimants) > 1:
+        if task in rules.teams:
+            _leave_to_one_team(task, routes, rules)
+        elif len(claimants) > 1:
             begun = tuple(robot for waits, _, _, robot in sorted(claimants) if not waits)
             keep = begun or (min(claimants)[3],)
             if len(begun) > 1:
@@ -211,6 +238,18 @@ def _one_owner_each(routes: Routes, rules: Rules) -> dict[str, tuple[str, ...]]:
                 if robot not in keep:
                     routes[robot][:] = [claim for claim in routes[robot] if claim.task != task]
     return twice
+
+
+def _leave_to_one_team(task: str, routes: Routes, rules: Rules) -> None:
+    """Leave a team's task to those that won it in one sale. A team that lacks robots loses it with its schedule."""
+    teams: dict[tuple[float, int], list[str]] = {}
+    for robot, claims in routes.items():
+        for claim in claims:
+            if claim.task == task:
+                teams.setdefault((claim.price, claim.round), []).append(robot)
+    kept = min(teams, key=lambda sale: (-len(teams[sale]), sale, min(rules.robots[robot] for robot in teams[sale])))
+    for claims in routes.values():
+        claims[:] = [claim for claim in claims if claim.task != task or (claim.price, claim.round) == kept]
 
 
 def _drop_orphans(routes: Routes, done: set[str], rules: Rules) -> None:

@@ -105,6 +105,16 @@ class Sold:
     others: tuple[tuple[str, str], ...] = ()
 
     @property
+    def winner(self) -> str:
+        """The robots, for people: `r_0+r_1`."""
+        return "+".join(dict.fromkeys(robot for robot, _ in self.assignments))
+
+    @property
+    def what(self) -> str:
+        """The tasks, for people."""
+        return ", ".join(dict.fromkeys(task for _, task in self.assignments))
+
+    @property
     def assignments(self) -> tuple[tuple[str, str], ...]:
         """All robots that won, each with its task."""
         return ((self.robot, self.task), *self.others)

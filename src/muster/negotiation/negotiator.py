@@ -64,7 +64,8 @@ class Negotiator(Participant):
         """Whether the robot may begin a task now.
 
         It must own the task by an auction that has ended, and all prerequisites must be done. For an at-most-once task
-        a majority of the mission's robots must also know that this robot is going to begin it: see `begin`.
+        a majority of the mission's robots must also know that this robot is going to begin it: see `begin`. What
+        several robots begin at the same moment they agree on, and none begins.
         """
         return bool(self.route) and self._owned.may_begin(task, self.epoch, self._peer_progress.shown, self.rules)
 

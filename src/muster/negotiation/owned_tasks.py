@@ -89,6 +89,8 @@ class OwnedTasks:
         if task in self.begun:
             return True
         rules = rules.with_added(base.added)
+        if task in rules.joint:  # nobody could say that all are there
+            return False
         if not self.known.done.issuperset(rules.prerequisites[task]):
             return False
         return task not in rules.once or self._is_reserved(task, base, epoch, shown, rules)

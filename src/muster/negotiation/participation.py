@@ -18,7 +18,7 @@ from muster.mission.auction_book import Book
 from muster.mission.plan import Plan
 from muster.negotiation.bundles import BundleValuer
 from muster.negotiation.effects import Memory
-from muster.negotiation.epoch_base import Rules
+from muster.negotiation.epoch_base import Rules, joint_among, teams_among
 from muster.negotiation.members import Timeouts
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import with_tasks
@@ -29,13 +29,16 @@ from muster.negotiation.valuation import AuctionValuer, Valuer
 
 def rules_of(problem: Problem) -> Rules:
     """The rules of a mission that the agreement has to respect."""
-    linked = problem.holds("prerequisite")
+    linked, tied = problem.holds("prerequisite"), (problem.holds("team"), problem.holds("relation"))
     return Rules(
         robots=problem.robot_index,
         tasks=problem.task_index,
         prerequisites={task.id: task.prerequisites if linked else () for task in problem.tasks},
         once=frozenset(task.id for task in problem.tasks if task.across_partition == "at-most-once"),
         linked=linked,
+        teams=teams_among(problem.tasks, tied),
+        joint=joint_among(problem.tasks, tied),
+        tied=tied,
     )
 
 

@@ -80,7 +80,8 @@ def _awards(
         for robot, owned in claims.items()
         for c in owned
     ]
-    return sorted({id(award): award for award in awards}.values(), key=lambda award: award.round)
+    place = {id(award): k for k, award in enumerate(seen.values())}
+    return sorted({id(award): award for award in awards}.values(), key=lambda a: (a.round, place.get(id(a), 0)))
 
 
 def book_of_bundles(problem: Problem, params: Parameters, view: View) -> Book:

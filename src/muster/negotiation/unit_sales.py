@@ -2,8 +2,9 @@
 
 The rules of `allocation.coalitions`, for one robot. All robots keep all routes, so all know the earliest schedule that
 follows from them, and a bid is what that schedule allows. For one robot's task a robot bids what it would take it for.
-Of a team's task it bids for a place: what the task adds to its usage. The members then compute the same coalitions of
-those that bid ([shehory1998], [vig2006]); so a task is won only by robots that each have bid for it.
+Of a team's task it bids for a place, with its usage so far, unless it has refused it. The members then compute the same
+coalitions of those that bid, and what each would take it for ([shehory1998], [vig2006]); so a task is won only by
+robots that each have bid for it.
 """
 
 from __future__ import annotations
@@ -61,7 +62,6 @@ class UnitSales:
         bid = self._bid_of(sold)
         if not self._auction.assign(bid):
             raise ValueError(f"{sold}; expected a unit that the schedule holds")
-        self._auction.settle()
 
     def booked_bids(self, number: int, sold: Sold, members: Sequence[int]) -> Iterator[BookedBid]:
         """Every bid of the members in the round of this number, in which this is going to be sold."""
@@ -86,10 +86,11 @@ class UnitSales:
         return self._problem.timed_rules.unit[self._problem.task_index[sold.task]]
 
     def _places(self, robot: int, units: Sequence[int]) -> Iterator[Bid]:
-        """What the tasks of units for several robots add to the usage of one, wherever it may do them."""
+        """The tasks of units for several robots that a robot may do, with its usage so far."""
         for unit in units:
-            for task, usage in self._auction.added_usages(unit, robot):
-                yield self._problem.tasks[task].id, usage
+            for task in self._problem.timed_rules.units[unit]:
+                if self._problem.may(robot, task):
+                    yield self._problem.tasks[task].id, self._auction.usage(robot)
 
     def _offer(self, unit: int, bids: Sequence[RoundBids]) -> _Offer:
         """The bids for a unit."""

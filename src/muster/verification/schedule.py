@@ -254,5 +254,7 @@ def _in_windows(task: Task, begin: float) -> bool:
 
 def _window_text(task: Task, begin: float) -> str:
     close = task.window_s[-1][1]
+    if close is None:  # tasks that begin together have windows of which none is open to all
+        return f"begins at {begin:,.10g} s at the earliest, outside its windows"
     last = "" if len(task.window_s) == 1 else "last "
     return f"begins at {begin:,.10g} s at the earliest, its {last}window closes at {close:,.10g} s"

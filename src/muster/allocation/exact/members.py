@@ -9,6 +9,7 @@ import math
 from typing import Any
 
 from muster.allocation.exact.circuits import Circuits
+from muster.allocation.rules.min_tasks import least_tasks
 
 _ABILITY_UNITS = 2.0**24  # of the greatest need
 _ROUNDING = 1e-9
@@ -27,6 +28,7 @@ def add_members(circuits: Circuits) -> None:
             model.add(sum(members) == circuits.done[j])
     _units(circuits)
     _relations(circuits)
+    _enough_tasks(circuits)
 
 
 def _needs(circuits: Circuits, j: int, members: list[Any]) -> None:
@@ -63,6 +65,14 @@ def _units(circuits: Circuits) -> None:
             circuits.model.add(circuits.done[j] == circuits.done[unit[0]])
         for i in circuits.robots if len(unit) > 1 else ():
             circuits.model.add_at_most_one(circuits.does[i, j] for j in unit if (i, j) in circuits.does)
+
+
+def _enough_tasks(circuits: Circuits) -> None:
+    """A robot that does any task does as many as it must."""
+    for i, least in enumerate(least_tasks(circuits.problem).tolist()):
+        if least > 1:
+            does = [circuits.does[i, j] for j in circuits.tasks if (i, j) in circuits.does]
+            circuits.model.add(sum(does) >= least * circuits.used[i])
 
 
 def _relations(circuits: Circuits) -> None:

@@ -11,6 +11,7 @@ from muster.allocation.rules.action import Action
 from muster.allocation.rules.capacity import Capacity
 from muster.allocation.rules.deadline import Deadline
 from muster.allocation.rules.lock import Lock
+from muster.allocation.rules.min_tasks import MinTasks
 from muster.allocation.rules.prerequisite import Prerequisite
 from muster.allocation.rules.relation import Relation
 from muster.allocation.rules.rule import Change, InPlan, Outlook, Question, Rule
@@ -36,4 +37,5 @@ RULES: tuple[Rule, ...] = (
     Team(),
     Relation(),
     Capacity(),
+    MinTasks(),
 )

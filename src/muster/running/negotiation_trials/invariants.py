@@ -10,11 +10,12 @@ from muster.mission.model import Mission, Task
 from muster.mission.plan import Plan, Route
 from muster.negotiation.epoch import opening_of
 from muster.negotiation.knowledge import in_order
-from muster.negotiation.messages import Bid, Fact
+from muster.negotiation.messages import Fact, RoundBids
 from muster.negotiation.methods import METHODS
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import task_of
 from muster.negotiation.participation import rules_of
+from muster.negotiation.valuation import Valuer
 from muster.running.negotiation_trials.observer import Observer
 from muster.running.negotiation_trials.scenario import Scenario
 from muster.verification import verify
@@ -34,11 +35,11 @@ class Invariants:
             for claim in node.route:
                 owners.setdefault(claim.task, []).append(node.robot)
         for task, robots in owners.items():
-            if len(robots) > 1 and not all(robot in self._observer.begun.get(task, ()) for robot in robots):
+            begun = self._observer.begun.get(task, ())
+            if len(robots) > 1 and not (_is_one_team(task, nodes) or all(robot in begun for robot in robots)):
                 yield f"{task} is owned by {robots}"
+        yield from self._could_be_sold(nodes)
         for node in nodes:
-            if bids := self._could_add(node, nodes):
-                yield f"{node.robot} could add {bids}"
             for task in sorted(_reserved(node) - {claim.task for claim in node.route}):
                 yield f"{node.robot} keeps {task} from others, and does not own it"
         routes = [{robot: node.valuer.route(robot) for robot in self._rules.robots} for node in nodes]
@@ -46,8 +47,16 @@ class Invariants:
             yield f"views differ: {routes}"
         yield from self._judged(nodes[0], routes[0])
 
-    def _could_add(self, node: Negotiator, nodes: Sequence[Negotiator]) -> tuple[Bid, ...]:
-        """The bids of a robot if the auction began again with all tasks that must be for sale."""
+    def _could_be_sold(self, nodes: Sequence[Negotiator]) -> Iterator[str]:
+        """What robots could add if the auction began again with all tasks that must be for sale."""
+        asked = {node.robot: self._asked_again(node, nodes) for node in nodes}
+        bids = [RoundBids(node.robot, 0, asked[node.robot].bids(node.epoch.refused)) for node in nodes]
+        if self._scenario.method != "auction":
+            yield from (f"{said.robot} could add {said.bids}" for said in bids if said.bids)
+        elif sales := asked[nodes[0].robot].resolve(bids).sales:
+            yield f"{sales[0].winner} could add {sales[0].what}"
+
+    def _asked_again(self, node: Negotiator, nodes: Sequence[Negotiator]) -> Valuer:
         base = node.epoch.base
         assert base is not None
         begun = opening_of(base)
@@ -57,7 +66,7 @@ class Invariants:
         asked = method.negotiator(self._problem, terms, node.robot, incarnation=1).valuer
         closed = self._closed(node, nodes).intersection(self._rules.with_added(base.added).tasks)
         asked.begin(replace(begun, ahead=ahead, closed=closed))
-        return asked.bids(node.epoch.refused)
+        return asked
 
     def _closed(self, node: Negotiator, nodes: Sequence[Negotiator]) -> set[str]:
         """Tasks that need no owner: done, cancelled, perhaps begun, or at-most-once where too few remember."""
@@ -86,8 +95,16 @@ def _as_it_is(mission: Mission, node: Negotiator, past: Collection[str]) -> Miss
     return replace(mission, tasks=tuple(_begun(task) if task.id in past else task for task in tasks))
 
 
+def _is_one_team(task: str, nodes: Sequence[Negotiator]) -> bool:
+    """Whether all robots that own a task of a team won it in one sale; the judge says whether they are enough."""
+    base = nodes[0].epoch.base
+    assert base is not None
+    sales = {(claim.price, claim.round) for node in nodes for claim in node.route if claim.task == task}
+    return len(sales) == 1 and task in nodes[0].rules.with_added(base.added).teams
+
+
 def _begun(task: Task) -> Task:
-    return replace(task.waiting_for(()), window_s=(), deadline_s=None)
+    return replace(task.waiting_for(()), window_s=(), deadline_s=None, same_robot_as=(), other_robot_than=())
 
 
 def _begun_for_good(facts: Collection[Fact]) -> Iterator[Fact]:

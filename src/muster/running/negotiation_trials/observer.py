@@ -111,9 +111,17 @@ class Observer:
         if any(sold.task == task for sold in node.epoch.sales) and 2 * know <= len(node.rules.robots):
             self.broken.append(f"{node.robot} has bought {task}, and {know} of {len(node.rules.robots)} know")
 
+    def _won_together(self, task: str, robot: str, other: str) -> bool:
+        """Whether robots own a task of a team by the same sale."""
+        claims = (claim for name in (robot, other) for claim in self.nodes[name].route if claim.task == task)
+        sales = {(claim.price, claim.round) for claim in claims}
+        return task in self.nodes[robot].rules.teams and len(sales) == 1
+
     def _clash(self, task: str, robot: str, other: str) -> None:
         if frozenset((robot, other)) in self._lost:
             self.counts["owned twice by robots that have lost each other"] += 1
+            return
+        if self._won_together(task, robot, other):
             return
         began = self.begun.get(task, ())
         if not (robot in began and other in began):

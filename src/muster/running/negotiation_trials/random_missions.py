@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from random import Random
+from typing import Any
 
-from muster.mission.model import OBJECTIVES, Lag, Mission, Robot, Rules, Task
+from muster.mission.model import OBJECTIVES, Lag, Mission, Robot, Rules, Task, TeamPart
 
 SIDE_M = 100.0
 SKILLS = ("camera", "gripper")
+LIFT = "lift_kg"
 # What robots can agree on without a centre.
 _AGREED = [objective for objective in OBJECTIVES if objective != "lateness"]
 
@@ -45,15 +48,16 @@ def random_mission(random: Random, *, robots: int, tasks: int, once: float, free
 
 
 def with_times(mission: Mission, random: Random) -> Mission:
-    """The mission with windows, deadlines, due times, lags and shifts."""
+    """The mission with windows, deadlines, due times, lags, shifts, teams and relations."""
     rules = replace(mission.rules, objective=random.choice(OBJECTIVES))
     robots = tuple(
         replace(robot, available_until_s=random.uniform(150, 500)) if random.random() < 0.3 else robot
         for robot in mission.robots
     )
-    return replace(
-        mission, rules=rules, robots=robots, tasks=tuple(_with_times(task, random) for task in mission.tasks)
-    )
+    able = tuple(replace(robot, abilities={LIFT: random.choice((1.0, 2.0))}) for robot in robots)
+    timed = [_with_times(task, random) for task in mission.tasks]
+    tasks = [_with_others(task, timed[:k], random) for k, task in enumerate(timed)]
+    return replace(mission, rules=rules, robots=able, tasks=tuple(tasks))
 
 
 def _with_times(task: Task, random: Random) -> Task:
@@ -71,6 +75,22 @@ def _with_times(task: Task, random: Random) -> Task:
         due_s=random.uniform(20, 300) if random.random() < 0.4 else None,
         lags={before: lag for before, lag in lags.items() if lag != Lag()},
     )
+
+
+def _with_others(task: Task, before: Sequence[Task], random: Random) -> Task:
+    """The task for a team, or tied to one of those before it; most are left as they are."""
+    ties: list[dict[str, Any]] = [
+        {"robots_needed": 2},
+        {"team": (TeamPart(), TeamPart(requires=(random.choice(SKILLS),)))},
+        {"needs": {LIFT: 3.0}},
+    ]
+    alone = [other for other in before if not other.is_for_team and other.id not in task.prerequisites]
+    if alone:
+        other = random.choice(alone)
+        ties += [{"same_robot_as": (other.id,)}, {"other_robot_than": (other.id,)}]
+        if not task.prerequisites and not other.prerequisites:  # else they could wait for each other
+            ties.append({"starts_with": (other.id,)})
+    return replace(task, **random.choice(ties)) if random.random() < 0.3 else task
 
 
 def random_task(random: Random, name: str, *, before: list[str], skilled: bool, once: bool) -> Task:

@@ -17,6 +17,7 @@ from muster.verification.rules.action import Action
 from muster.verification.rules.capacity import Capacity
 from muster.verification.rules.deadline import Deadline
 from muster.verification.rules.lock import Lock
+from muster.verification.rules.min_tasks import MinTasks
 from muster.verification.rules.prerequisite import Prerequisite
 from muster.verification.rules.relation import Relation
 from muster.verification.rules.shift import Shift
@@ -63,6 +64,7 @@ RULES: tuple[Rule, ...] = (
     Window(),
     Deadline(),
     Shift(),
+    MinTasks(),
 )
 
 

@@ -1,0 +1,71 @@
+"""A robot does at least so many tasks, or none at all: one that would do too few is not worth sending out."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from muster import core
+from muster.allocation.rules.rule import Bools, InPlan, Limits, Outlook, Question, Routes, Rule, listed
+
+
+class MinTasks(Rule):
+    """A route has no task, or at least `min_tasks_i`; a team's task counts for each of its members."""
+
+    word: ClassVar[str] = "min-tasks"
+    asked = ("min-tasks",)
+    for_good = False
+    lifted_late = True
+
+    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+        binds = np.flatnonzero(least_tasks(problem) > 1)
+        if len(binds):
+            yield "min-tasks", f"robot {problem.robots[binds[0]].id}: min_tasks"
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        least = least_tasks(problem)
+        return {"min_tasks": least if (least > 1).any() else np.empty(0, dtype=np.int32)}
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return int(least_tasks(problem)[i])
+
+    def possible(self, limits: Limits) -> Bools | None:
+        least = least_tasks(limits.problem)
+        if not (least > 1).any():
+            return None
+        enough = limits.usable.sum(axis=1) >= least
+        return np.broadcast_to(enough[:, None], limits.usable.shape)
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        least = int(least_tasks(problem)[i])
+        if least <= 1 or outlook.limits.usable[i].any():
+            return None
+        may = sum(problem.may(i, k) for k in range(len(problem.tasks)))
+        only = f"and may do only {_counted(may)}" if may < least else "and can never do so many"
+        return f"does at least {least} tasks or none, {only}"
+
+    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        return plan.kept_out(self.word, i, j)
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str:
+        least = least_tasks(problem)
+        short = [{k: len(r) for k, r in enumerate(routes) if 0 < len(r) < least[k]} for routes, _ in places]
+        said = (
+            f"{problem.robots[k].id} would do {_counted(n)}, and does at least {least[k]} or none"
+            for k, n in min(short, key=len).items()
+        )
+        return f"with it {listed(list(said))}"
+
+
+def least_tasks(problem: Question) -> npt.NDArray[np.int32]:
+    """(m,) how many tasks robots do at least that do any; as many as bind, one more than there are tasks at most."""
+    most = len(problem.tasks) + 1
+    holds = problem.holds(MinTasks.word)
+    return np.array([min(robot.min_tasks, most) if holds else 0 for robot in problem.robots], dtype=np.int32)
+
+
+def _counted(tasks: int) -> str:
+    return "1 task" if tasks == 1 else f"{tasks} tasks"
