@@ -188,3 +188,13 @@ def test_without_a_spacing_all_is_seen(muster):
     Path("search.yaml").write_text(searched("overlap: 0.2", ", only_robots: [blind]"), encoding="utf-8")
     code, out, err = muster("check", "search.yaml")
     assert "it has no camera from which the distance of lanes follows" in " ".join(out.split())
+
+
+def test_a_robot_that_would_have_to_do_more_tasks_than_there_are_is_a_warning(muster):
+    text = TWO.replace("CAPACITY}", "200, min_tasks: 4}\n  - {id: r_1, position: [2, 0], min_tasks: 3}")
+    Path("two.yaml").write_text(text, encoding="utf-8")
+    code, out, err = muster("check", "two.yaml")
+    assert code == 0
+    assert "no errors" in out
+    assert err.splitlines() == ["warning: robot r_0: min_tasks 4, and the mission has 3 tasks: it does none"]
+    assert "min_tasks" not in muster("check", "two.yaml", "--ignore", "min-tasks")[2]

@@ -18,11 +18,12 @@ from muster.cli.options import (
 )
 from muster.cli.tables import counted, sequence
 from muster.mission.errors import Finding, MissionError, NotSupportedError
+from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission
 from muster.mission.plan import Unassigned, json_text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from muster.allocation.conflicts import Together
     from muster.motion.actions.coverage import Unseen
@@ -66,7 +67,7 @@ def command(
         found = backend.check(loaded, ignore, time_limit)
     except (MissionError, NotSupportedError) as error:
         return _refused(form, error)
-    return _checked(form, loaded, found, require_complete=require_complete)
+    return _checked(form, loaded, found, ignore, require_complete=require_complete)
 
 
 def _refused(form: str, error: MissionError | NotSupportedError) -> int:
@@ -81,7 +82,7 @@ def _refused(form: str, error: MissionError | NotSupportedError) -> int:
     return BAD_INPUT
 
 
-def _checked(form: str, mission: Mission, found: Possible, *, require_complete: bool) -> int:
+def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[str], *, require_complete: bool) -> int:
     """Print which tasks can be done; returns the exit code."""
     from muster.planning.explaining import unseen_findings
 
@@ -91,6 +92,8 @@ def _checked(form: str, mission: Mission, found: Possible, *, require_complete: 
         click.echo(json_text({"errors": [error.as_dict() for error in errors], **found.as_dict()}), nl=False)
     else:
         _print_checked(mission, lost, len(errors))
+        if "min-tasks" not in ignored_rules(ignore):
+            _print_never_used(mission)
         _print_unseen(found.unseen, errors)
         if len(lost) < len(mission.tasks):
             _print_together(all_others, "all other tasks" if lost else "all tasks")
@@ -117,6 +120,15 @@ def _print_unseen(unseen: tuple[Unseen, ...], errors: Sequence[Finding]) -> None
     for one in unseen:
         if not one.never_seen:
             click.echo(f"warning: task {one.task}: {one.detail}", err=True)
+
+
+def _print_never_used(mission: Mission) -> None:
+    """Print on standard error the robots that would have to do more tasks than there are."""
+    tasks = counted(len(mission.tasks), "task")
+    for robot in mission.robots:
+        if robot.min_tasks > len(mission.tasks):
+            least = f"min_tasks {robot.min_tasks}, and the mission has {tasks}"
+            click.echo(f"warning: robot {robot.id}: {least}: it does none", err=True)
 
 
 def _print_together(found: Together, tasks: str) -> None:
