@@ -1,6 +1,7 @@
 """What one more task in the routes of a plan would do: every place for it, and which reasons against them are true."""
 
 import re
+from dataclasses import replace
 from functools import cache
 from itertools import product
 
@@ -48,8 +49,16 @@ class Places:
 
     def _left(self, *words):
         """The places that keep all rules but those of these words."""
-        meaning = Meaning(self.mission, ignored=(*self.ignored, *words))
+        meaning = self.meaning_without(words)
         return [routes for routes in self.all if not meaning.faults(routes)]
+
+    def meaning_without(self, words):
+        """The rules but those of these words; windows open when they do, and the last does not close."""
+        if "window" not in words:
+            return Meaning(self.mission, ignored=(*self.ignored, *words))
+        tasks = tuple(replace(task, window_s=_never_closed(task.window_s)) for task in self.mission.tasks)
+        others = [word for word in words if word != "window"]
+        return Meaning(replace(self.mission, tasks=tasks), ignored=(*self.ignored, *others))
 
     def is_true(self, word):
         """Whether the rule keeps robot i from the task, and is the first of the limits that leaves no place."""
@@ -64,7 +73,7 @@ class Places:
             return not self.teams_of(self.j)
         if word == "relation":
             return all(self._breaks_relations(routes) for routes in self.all)
-        faults = [Meaning(self.mission, ignored=(*self.ignored, *LIMITS)).faults(routes) for routes in self.all]
+        faults = [self.meaning_without(LIMITS).faults(routes) for routes in self.all]
         if word == "unreachable":
             return {"unreachable"} in faults and set() not in faults
         if word == "prerequisite":
@@ -80,7 +89,7 @@ class Places:
         before = any(
             b not in self.done | set(self.unit) for k in self.unit if k != self.j for b in self.meaning.before[k]
         )
-        return before or "relation" in Meaning(self.mission, ignored=(*self.ignored, *LIMITS)).faults(routes)
+        return before or "relation" in self.meaning_without(LIMITS).faults(routes)
 
     # --- the numbers of a sentence ------------------------------------------------------------------------------------
 
@@ -95,7 +104,7 @@ class Places:
     def times(self, word):
         """Begins and ends of the tasks done at each place that keeps the rules before a limit."""
         lifted = LIMITS[LIMITS.index(word) :]
-        meaning = Meaning(self.mission, ignored=(*self.ignored, *lifted))
+        meaning = self.meaning_without(lifted)
         return [(routes, *meaning.schedule(routes)) for routes in self.left(*lifted)]
 
     def arrival(self, routes, ends):
@@ -116,6 +125,11 @@ class Places:
 
     def number(self, name):
         return self.meaning.number[name]
+
+
+def _never_closed(windows):
+    *before, (opens, _) = sorted(windows, key=lambda window: window[0]) or [(None, None)]
+    return (*before, (opens, None)) if windows else ()
 
 
 def seconds(text):
@@ -229,6 +243,25 @@ def _able(places):
     return [robot.id for robot in robots if not parts or any(meaning._fits(robot, part) for part in parts)]
 
 
+def _circles(places, word):
+    """Whether tasks wait for each other at every place, whatever the lags."""
+    return not _without_within(places)
+
+
+def _too_long_after(places, word):
+    return places.is_true(word) and bool(_without_within(places))
+
+
+def _without_within(places):
+    """The places that keep all rules but limits, if tasks may begin however long after their prerequisites."""
+    tasks = tuple(
+        replace(task, lags={name: replace(lag, within_s=None) for name, lag in task.lags.items()})
+        for task in places.mission.tasks
+    )
+    mission = replace(places.mission, tasks=tasks)
+    return Places(mission, places.ignored, places.routes, places.i, places.j).left(*LIMITS)
+
+
 def _as_the_word(places, word, *groups):
     """The sentence says no more than the word of the reason."""
     return places.is_true(word)
@@ -260,7 +293,11 @@ SENTENCES = (
     (r"with it the route of another robot would end after its shift", _as_the_word),
     (r"at no place in its route are all (windows|deadlines) kept", _as_the_word),
     (r"with its team one of the robots would need more than its capacity", _as_the_word),
-    (r"at every place in its route tasks would wait for each other in a circle, or longer than they may", _as_the_word),
+    (r"at every place in its route tasks would wait for each other in a circle", _circles),
+    (
+        r"at every place in its route a task would begin longer after its prerequisite than within_s allows",
+        _too_long_after,
+    ),
     (r"at every place in its route the prerequisites would wait in a circle", _as_the_word),
     (r"no team for it keeps its relations to the tasks of the plan", _as_the_word),
 )

@@ -158,6 +158,14 @@ def _held_back(possible, robot, name, lost, other, how, time, limit):
     return _not_before(time, both) and near(limit, task.window_s[-1][1] if how == "begins" else task.deadline_s)
 
 
+def _too_far(possible, robot, name, lost, within, other, way):
+    """That whoever does one task is too late at the other, which no other robot does."""
+    lag = possible.task(name).lags[other]
+    travel, tasks = possible.every.meaning._travel, (possible.task(other), possible.task(name))
+    ways = [travel.seconds(i, *tasks) for i in range(len(possible.mission.robots))]
+    return near(within, lag.within_s) and any(near(way, one) for one in ways) and not possible.can([name])
+
+
 def _lost_before(possible, robot, name, lost, other):
     return other in lost and other in possible.task(name).prerequisites
 
@@ -198,6 +206,10 @@ ALONE = (
     (r"begins together with .+, for which no different robots are left", _nothing_else),
     (r"the same robot must do (\S+), which comes with it, and cannot be (\S+)", _same_robot),
     (r"another robot must do (\S+), which comes with it, and only (\S+) can", _other_robot),
+    (
+        rf"begins at most {SECONDS} after (\S+) ends, and the robot that does both takes {SECONDS} to come to it",
+        _too_far,
+    ),
     (r"(lacks .+|type \S+ scores .+|only .+ may do it|fits no part of the team: .+)", _nothing_else),
     (r"does at least \d+ tasks or none, and (may do only \d+ tasks?|can never do so many)", _nothing_else),
     (r"needs .+; .+", _nothing_else),
@@ -272,7 +284,7 @@ _USES = r"would use at least ([\d.]+) (m|s), of ([\d.]+) (m|s)"
 TOGETHER = (
     (rf"only (\S+) can do them, and {_USES}", _together_usage),
     (rf"together (.+) {_USES}", _together_usage),
-    (r"the same robot must do (\S+) and (\S+); (\S+) only (.+) can do, (\S+) only (.+) can do", _by_the_same),
+    (r"the same robot must do (\S+) and (\S+); (\S+) only (.+) can do, (\S+) only (.+)", _by_the_same),
     (r"different robots must do (\S+) and (\S+), and only (\S+) can do them", _by_others),
     (rf"only .+ can do them, and in every order it would {_BREAKS}{_UNTIL}", _however),
     (r"only (\S+) can do them: (.+)", _one_after_the_other),

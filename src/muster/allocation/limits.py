@@ -12,6 +12,7 @@ import numpy as np
 from muster.allocation.bottleneck import bottleneck
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.deadline import too_late
+from muster.allocation.rules.times import spans
 from muster.allocation.rules.window import closed
 from muster.allocation.timed_rules import ROUNDING, TimedRules
 
@@ -119,7 +120,8 @@ class Limits:
     @cached_property
     def held_back(self) -> dict[int, str]:
         """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
-        found = {j: _held_back(self, j) for j in range(len(self.problem.tasks))} if self.is_timed else {}
+        tasks = range(len(self.problem.tasks)) if self.is_timed else ()
+        found = {j: _too_far(self, j) or _held_back(self, j) for j in tasks}
         return {j: late for j, late in found.items() if late}
 
     @cached_property
@@ -194,9 +196,22 @@ def _sweep(limits: Limits, times: _Times) -> bool:
     for j in range(len(times.begin)):
         for k, after, _ in limits.rules.lags(j):
             if math.isfinite(times.begin[k]):  # else it is left out, and so is all that waits for it
-                onward = times.begin[k] + limits.shortest_work[k] + max(after, _way(limits, k, j))
+                onward = times.begin[k] + limits.shortest_work[k] + max(after, _way(limits, k, j, limits.usable))
                 changed |= times.wait(limits.rules, j, onward, k)
     return changed
+
+
+def _too_far(limits: Limits, j: int) -> str:
+    """That a task begins only so long after another, and the robot that must do both takes longer to come to it."""
+    for k, _, within in limits.rules.lags(j):
+        way = _way(limits, k, j, limits.problem.allowed) if math.isfinite(within) else 0.0
+        if way > within * (1 + ROUNDING) + ROUNDING:
+            most, least = spans(within, way)
+            before = limits.problem.tasks[k].id
+            return (
+                f"begins at most {most} after {before} ends, and the robot that does both takes {least} to come to it"
+            )
+    return ""
 
 
 def _held_back(limits: Limits, j: int) -> str:
@@ -237,15 +252,15 @@ def _begin(rules: TimedRules, u: int, ready: Floats) -> float:
     return time
 
 
-def _way(limits: Limits, k: int, j: int) -> float:
+def _way(limits: Limits, k: int, j: int, usable: Bools) -> float:
     """Least travel from a task to the next, if the same robot must do both; else 0."""
-    robots, others = (np.flatnonzero(limits.usable[:, t]) for t in (k, j))
+    robots, others = (np.flatnonzero(usable[:, t]) for t in (k, j))
     alone = len(robots) == 1 and len(others) == 1 and robots[0] == others[0]
     if len(limits.problem.shortcuts()):
         return 0.0  # a way through another task may be shorter
     if not (alone or k in limits.rules.same_robot[j] or j in limits.rules.same_robot[k]):
         return 0.0
-    both = np.flatnonzero(limits.usable[:, k] & limits.usable[:, j]).tolist()
+    both = np.flatnonzero(usable[:, k] & usable[:, j]).tolist()
     return min((float(limits.problem.travel_seconds(i, [k], [j])[0, 0]) for i in both), default=0.0)
 
 

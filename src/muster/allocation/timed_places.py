@@ -19,6 +19,7 @@ from muster.allocation.rules.deadline import too_late
 from muster.allocation.rules.rule import ROUNDING, InPlan
 from muster.allocation.rules.shift import beyond
 from muster.allocation.rules.window import closed
+from muster.mission.model import Task
 
 _RELAXED = {rule.word: rule for rule in RULES if rule.lifted_late}
 """The rules that are looked at one after the other, in the order of rules."""
@@ -120,21 +121,27 @@ class TimedPlaces(InPlan):
         raise AssertionError("a place that keeps all rules is admissible")
 
     def _without(self, words: Sequence[str]) -> Problem:
-        """The problem in which some rules do not hold."""
+        """The problem in which some rules do not hold; windows still open, and the last ones do not close."""
         problem = self.problem
         if not words:
             return problem
-        return replace(problem, ignored=(*problem.ignored, *words), known=problem.measured)
+        tasks = tuple(map(_never_closed, problem.tasks)) if "window" in words else problem.tasks
+        ignored = (*problem.ignored, *(word for word in words if word != "window"))
+        return replace(problem, ignored=ignored, tasks=tasks, known=problem.measured)
 
     def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
         """Why no place is left whatever the times and capacities."""
-        free = self.without(tuple(_RELAXED)).core
-        usages = [core.Inspection(free, place.routes).usages for place in places]  # finite where tasks wait in a circle
+        free = self.without(tuple(_RELAXED))
+        usages = [core.Inspection(free.core, place.routes).usages for place in places]  # finite in a circle
         if any(math.isinf(used[i]) for used in usages):
             return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
         if any(map(math.isinf, itertools.chain.from_iterable(usages))):
             return Outcome(word="unreachable", detail="there is no way for another robot of its team")
-        detail = "at every place in its route tasks would wait for each other in a circle, or longer than they may"
+        patient = replace(free, tasks=tuple(map(_without_within, free.tasks)), known=free.measured)
+        if self._admissible(patient, places):
+            detail = "at every place in its route a task would begin longer after its prerequisite than within_s allows"
+        else:
+            detail = "at every place in its route tasks would wait for each other in a circle"
         return Outcome(word="prerequisite", detail=detail)
 
     def _detail(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> str:
@@ -305,6 +312,19 @@ class TimedPlaces(InPlan):
         """The robots that do the tasks of the plan which the same robots must do; None: there are no such tasks."""
         teams = [set(self.members(k)) for k in self.problem.timed_rules.same_robot[j] if self.members(k)]
         return set.intersection(*teams) if teams else None
+
+
+def _never_closed(task: Task) -> Task:
+    """A task whose last window has no end."""
+    if not task.window_s:
+        return task
+    *before, (opens, _) = sorted(task.window_s, key=lambda window: window[0])
+    return replace(task, window_s=(*before, (opens, None)))
+
+
+def _without_within(task: Task) -> Task:
+    """A task that may begin however long after its prerequisites."""
+    return replace(task, lags={name: replace(lag, within_s=None) for name, lag in task.lags.items()})
 
 
 def has_schedule(found: Any) -> bool:

@@ -13,8 +13,14 @@ _LONGEST = 1e9  # seconds, up to which times are said as times of day
 
 def moments(problem: Question, *times: float) -> tuple[str, ...]:
     """Times since the start, with as many digits as tell them apart."""
+    said = zip(times, spans(*times), strict=True)
+    return tuple(f"{seconds}{_of_day(problem, time)}" for time, seconds in said)
+
+
+def spans(*times: float) -> tuple[str, ...]:
+    """How long things take, with as many digits as tell them apart."""
     digits = next((d for d in _DIGITS if len({_seconds(t, d) for t in times}) == len(set(times))), _DIGITS[-1])
-    return tuple(f"{_seconds(time, digits)}{_of_day(problem, time)}" for time in times)
+    return tuple(_seconds(time, digits) for time in times)
 
 
 def span(seconds: float) -> str:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task
+from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
 from muster.allocation.rules.times import known_least, longer, moments, reaches, span
 from muster.mission.model import Robot, Task
 
@@ -71,8 +71,8 @@ class Window(Rule):
         limits = outlook.limits
         if not limits.is_timed or math.isfinite(limits.pair_begin[i, j]):
             return None
-        how, ready = reaches(limits, i, j)
-        return closed(problem, j, how, ready) or _never_together(problem, j)
+        own = closed(problem, j, "arrives at", float(limits.arrival[i, j]))
+        return own or closed(problem, j, *reaches(limits, i, j)) or _never_together(problem, j)
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         return plan.kept_out(self.word, i, j)
@@ -91,5 +91,15 @@ def closed(problem: Question, j: int, how: str, ready: float) -> str | None:
 def _never_together(problem: Question, j: int) -> str:
     """That tasks which begin together have no window in common from when they are ready."""
     unit = problem.timed_rules.units[problem.timed_rules.unit[j]]
-    names = ", ".join(problem.tasks[k].id for k in unit if k != j)
-    return f"begins together with {names}, and from when all are ready no window is open to all"
+    names = listed([problem.tasks[k].id for k in unit if k != j])
+    windows = listed([_windows(problem, k) for k in unit if problem.timed_rules.windows[k]])
+    return f"begins together with {names}, and from when all are ready no window is open to all: {windows}"
+
+
+def _windows(problem: Question, j: int) -> str:
+    """When a task may begin."""
+    said = (
+        f"from {moments(problem, opens)[0]}" + (f" to {moments(problem, closes)[0]}" if math.isfinite(closes) else "")
+        for opens, closes in problem.timed_rules.windows[j]
+    )
+    return f"{problem.tasks[j].id} {' or '.join(said)}"
