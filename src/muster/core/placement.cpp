@@ -152,9 +152,11 @@ void Placement::try_place(int robot, int task, int at) {
   const double work = problem_.work_time(robot, task);
   measure_alone(task, work);
   const bool sees_usage = problem_.objective() != Objective::makespan;
-  if (!sees_usage && least_score(robot, task, at, work) >= best_.score) return;
+  if (!sees_usage && least_score(robot, at, work) >= best_.score) return;
+  Offer there = arrival(robot, task, at, work);
+  if (!sees_usage && least_score(there) >= best_.score) return;
+  go_on(there, task);
   const int unit = problem_.unit(task);
-  Offer there = offer(robot, task, at, work);
   const double begin = timeline_.open(unit, std::max(ready_, there.arrive));
   if (!timeline_.in_time(begin, latest_) || !timeline_.in_time(begin + work, there.latest)) return;
   if (sees_usage) measure_usage(there, task);
@@ -171,37 +173,43 @@ void Placement::try_place(int robot, int task, int at) {
   best_.members.assign(1, {task, robot, at});
 }
 
-// Of objective `makespan`: what a place costs if the way on took no time.
-double Placement::least_score(int robot, int task, int at, double work) const {
+// Of objective `makespan`: when the mission ends at the earliest if the ways to and from a place took no time, later
+// than now.
+double Placement::least_score(int robot, int at, double work) const {
   const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
-  if (std::max(ready_, last.leave) + std::max(tail_, work + next.tail) - peak_ >= best_.score) return kNever;
-  Offer offer;
-  offer.in = problem_.travel_time(robot, last.place, task);
-  offer.arrive = last.leave + offer.in;
-  offer.direct = next.in;
-  offer.onward = next.tail;
-  const double begin = std::max(ready_, offer.arrive);
+  return std::max(ready_, last.leave) + std::max(tail_, work + next.tail) - peak_;
+}
+
+// The same with the way there, and what the place takes of the robot's time.
+double Placement::least_score(const Offer& arrival) const {
+  const double begin = std::max(ready_, arrival.arrive);
   InsertionScore score(Objective::makespan, peak_);
-  score.add(offer, begin, work, 0.0);
+  score.add(arrival, begin, arrival.work, 0.0);
   return score.value(begin, tail_, 0.0);
 }
 
-// What a task between two stops takes of the robot's time.
-Offer Placement::offer(int robot, int task, int at, double work) const {
+// A task between two stops up to its end, as if the way on took no time.
+Offer Placement::arrival(int robot, int task, int at, double work) const {
   const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
-  const bool goes_on = next.unit >= 0 || problem_.must_end(robot);
   Offer offer;
   offer.robot = robot;
   offer.at = at;
   offer.work = work;
   offer.in = problem_.travel_time(robot, last.place, task);
   offer.arrive = last.leave + offer.in;
-  offer.out = goes_on ? problem_.travel_time(robot, task, next.place) : 0.0;
   offer.direct = next.unit >= 0 || last.unit >= 0 ? next.in : 0.0;
+  offer.onward = next.tail;
+  return offer;
+}
+
+// The way on, and what comes after it.
+void Placement::go_on(Offer& offer, int task) const {
+  const Visit& next = timeline_.stop(offer.robot, offer.at + 1);
+  const bool goes_on = next.unit >= 0 || problem_.must_end(offer.robot);
+  offer.out = goes_on ? problem_.travel_time(offer.robot, task, next.place) : 0.0;
   offer.latest = next.latest - offer.out;
   offer.onward = next.unit >= 0 || problem_.makespan_includes_return() ? offer.out + next.tail : 0.0;
   if (next.unit >= 0) offer.next = timeline_.begin_of(next.unit);
-  return offer;
 }
 
 // What it takes of what is limited by the robot's capacity.

@@ -21,6 +21,11 @@ class Placement {
   const UnitInsertion* best(int unit, const Trial& trial);
 
  private:
+  struct Part {
+    int task;  // one of `tasks_of_unit`
+    const Offer* offer;
+  };
+
   bool alone(int unit) const;
   bool usable(int robot, int task) const { return !excluded_[robot] && problem_.allowed(robot, task); }
   void look_at_relations(int unit);
@@ -45,13 +50,15 @@ class Placement {
   void try_together(int unit, int key);
   int cheapest_team() const;
   void judge(int unit);
-  void measure_works(int unit);
-  double work_in_team(int unit, int task) const;
+  void measure_works(std::size_t tasks);
+  double growth(const Part& part) const;
   bool may_begin(int unit, double begin) const;
   double lateness_of_team(int unit, double begin) const;
 
-  double least_score(int robot, int task, int at, double work) const;
-  Offer offer(int robot, int task, int at, double work) const;
+  double least_score(int robot, int at, double work) const;
+  double least_score(const Offer& arrival) const;
+  Offer arrival(int robot, int task, int at, double work) const;
+  void go_on(Offer& offer, int task) const;
   void measure_usage(Offer& offer, int task) const;
   bool overlooked() const { return trial_->blink > 0.0 && trial_->random->uniform() < trial_->blink; }
   double lateness(int task, double end) const;
@@ -80,11 +87,7 @@ class Placement {
   std::vector<double> cuts_, keys_, works_;
   std::vector<int> candidates_, at_, free_;
   std::vector<Offer> offers_;  // tasks of the unit x candidates
-  struct Part {
-    int task;
-    const Offer* offer;
-  };
-  std::vector<Part> team_;  // the members that are judged
+  std::vector<Part> team_;     // the members that are judged
   // By key: of each candidate whether its place is another than when teams were last chosen, and how that ranked them.
   std::array<std::vector<char>, kKeys> moved_;
   std::array<TeamChoice::Ranking, kKeys> rankings_;

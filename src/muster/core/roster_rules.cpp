@@ -111,13 +111,10 @@ class ShortRoutes {
   // Whether the way past a visit is not longer than the way through it.
   bool is_on_the_way(const Visit& visit) const {
     const Timeline& timeline = roster_.timeline();
-    const int robot = visit.robot, before = timeline.stop(robot, visit.at - 1).place;
-    const bool is_last = visit.at == timeline.tasks_in(robot);
-    if (is_last && !problem_.must_end(robot)) return true;
-    const int after = is_last ? problem_.end(robot) : timeline.stop(robot, visit.at + 1).place;
-    const double through =
-        problem_.travel_time(robot, before, visit.place) + problem_.travel_time(robot, visit.place, after);
-    return problem_.travel_time(robot, before, after) <= through;
+    const int robot = visit.robot;
+    const Visit &before = timeline.stop(robot, visit.at - 1), &after = timeline.stop(robot, visit.at + 1);
+    if (after.unit < 0 && !problem_.must_end(robot)) return true;
+    return problem_.travel_time(robot, before.place, after.place) <= visit.in + after.in;
   }
 
   // The least way to a task from a stop of the robot's route, or its start.

@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kFirstKey = 0.5;  // how often an algorithm with random numbers takes the first
 
-std::size_t place_in(std::span<const int> tasks, int task) {
-  return static_cast<std::size_t>(std::ranges::find(tasks, task) - tasks.begin());
-}
-
 }  // namespace
 
 void Placement::try_cuts(int unit) {
@@ -109,7 +105,8 @@ void Placement::make_offers(int unit, std::size_t candidate) {
     if (at_[candidate] < problem_.fixed(robot) || !usable(robot, tasks[k])) continue;
     if (trial_->append_only && at_[candidate] < timeline_.tasks_in(robot)) continue;
     const double work = problem_.work_time(robot, tasks[k]);
-    made = offer(robot, tasks[k], at_[candidate], work);
+    made = arrival(robot, tasks[k], at_[candidate], work);
+    go_on(made, tasks[k]);
     measure_usage(made, tasks[k]);
     if (!timeline_.in_time(std::max(ready_, made.arrive) + work, made.latest) ||
         !problem_.fits(robot, made.usage + made.growth)) {
@@ -146,7 +143,7 @@ void Placement::try_teams(int unit, int key) {
     const auto team = teams_[t];
     if (team_size_ >= 0 && static_cast<int>(team.size()) != team_size_) continue;
     team_.clear();
-    for (const int c : team) team_.push_back({task, &offers_[c]});
+    for (const int c : team) team_.push_back({0, &offers_[c]});
     judge(unit);
   }
 }
@@ -155,18 +152,18 @@ void Placement::try_teams(int unit, int key) {
 void Placement::try_together(int unit, int key) {
   const auto tasks = problem_.tasks_of_unit(unit);
   const std::vector<char> everyone(candidates_.size(), 1);
-  TeamChoice::Ranking ranking;
   team_.clear();
   bool complete = true;
   for (std::size_t k = 0; k < tasks.size() && complete; ++k) {
     const Offer* offers = offers_.data() + k * candidates_.size();
+    TeamChoice::Ranking ranking;
     rank(offers, key);
     choice_.teams(tasks[k], candidates_, keys_, everyone, ranking, teams_);
     const int cheapest = cheapest_team();
     complete = cheapest >= 0;
     if (!complete) break;
     for (const int c : teams_[cheapest]) {
-      team_.push_back({tasks[k], &offers[c]});
+      team_.push_back({static_cast<int>(k), &offers[c]});
       busy_[candidates_[c]] = 1;
     }
   }
@@ -190,46 +187,39 @@ int Placement::cheapest_team() const {
 
 // What it costs that the robots of `team_` do the unit's tasks.
 void Placement::judge(int unit) {
-  measure_works(unit);
+  const auto tasks = problem_.tasks_of_unit(unit);
+  measure_works(tasks.size());
   double begin = ready_;
   for (const Part& part : team_) begin = std::max(begin, part.offer->arrive);
   begin = timeline_.open(unit, begin);
   InsertionScore score(problem_.objective(), peak_);
-  for (const Part& part : team_) {
-    const double work = work_in_team(unit, part.task);
-    const double longer = problem_.usage_is_time() ? work - part.offer->work : 0.0;
-    score.add(*part.offer, begin, work, part.offer->growth + longer);
-  }
+  for (const Part& part : team_) score.add(*part.offer, begin, works_[part.task], growth(part));
   const double value = score.value(begin, timeline_.tail_after(unit, works_), lateness_of_team(unit, begin));
   if (value >= best_.score || !may_begin(unit, begin)) return;
   best_.score = value;
   best_.growth = score.growth();
   best_.members.clear();
-  for (const Part& part : team_) best_.members.push_back({part.task, part.offer->robot, part.offer->at});
+  for (const Part& part : team_) best_.members.push_back({tasks[part.task], part.offer->robot, part.offer->at});
 }
 
 // The work of each task of the unit, as long as for its slowest member.
-void Placement::measure_works(int unit) {
-  const auto tasks = problem_.tasks_of_unit(unit);
-  works_.assign(tasks.size(), 0.0);
-  for (const Part& part : team_) {
-    double& work = works_[place_in(tasks, part.task)];
-    work = std::max(work, part.offer->work);
-  }
+void Placement::measure_works(std::size_t tasks) {
+  works_.assign(tasks, 0.0);
+  for (const Part& part : team_) works_[part.task] = std::max(works_[part.task], part.offer->work);
 }
 
-double Placement::work_in_team(int unit, int task) const {
-  return works_[place_in(problem_.tasks_of_unit(unit), task)];
+// Of a member's usage, which counts the work of its team where usage is time.
+double Placement::growth(const Part& part) const {
+  const double longer = problem_.usage_is_time() ? works_[part.task] - part.offer->work : 0.0;
+  return part.offer->growth + longer;
 }
 
 // Whether all that comes after the unit would still be in time, and its members within their capacities.
 bool Placement::may_begin(int unit, double begin) const {
   if (!timeline_.in_time(begin, timeline_.latest_for(unit, works_))) return false;
   return std::ranges::all_of(team_, [&](const Part& part) {
-    const double work = work_in_team(unit, part.task);
-    const double longer = problem_.usage_is_time() ? work - part.offer->work : 0.0;
-    return timeline_.in_time(begin + work, part.offer->latest) &&
-           problem_.fits(part.offer->robot, part.offer->usage + part.offer->growth + longer);
+    return timeline_.in_time(begin + works_[part.task], part.offer->latest) &&
+           problem_.fits(part.offer->robot, part.offer->usage + growth(part));
   });
 }
 
@@ -238,7 +228,7 @@ double Placement::lateness_of_team(int unit, double begin) const {
   if (problem_.objective() != Objective::lateness) return 0.0;
   const auto tasks = problem_.tasks_of_unit(unit);
   double late = 0.0;
-  for (const Part& part : team_) late += delays(*part.offer, begin + work_in_team(unit, part.task));
+  for (const Part& part : team_) late += delays(*part.offer, begin + works_[part.task]);
   for (std::size_t k = 0; k < tasks.size(); ++k) late += lateness(tasks[k], begin + works_[k]);
   return late;
 }
