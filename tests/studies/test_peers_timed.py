@@ -102,7 +102,7 @@ def test_what_no_peer_is_given_is_told():
 
 
 def test_a_solver_is_stopped_by_processor_time():
-    stop, begin = ProcessorStop(0.05), time.process_time()
+    begin, stop = time.process_time(), ProcessorStop(0.05)
     time.sleep(0.1)
     assert not stop.due()
     while not stop(0):
