@@ -7,7 +7,6 @@ import pytest
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.capabilities import required
 from muster.allocation.explanations import unassigned
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
@@ -117,9 +116,9 @@ def test_a_robot_that_can_never_do_enough_does_nothing():
 
 
 def test_a_least_number_of_one_binds_nothing():
-    assert not required(Problem.compile(line(van("a", 0, 1))))
+    assert not Problem.compile(line(van("a", 0, 1))).asked
     assert not Problem.compile(line(van("a", 0, 1))).core.is_timed
-    assert required(Problem.compile(line(van("a", 0, 2)))) == {"min-tasks": "robot a: min_tasks"}
+    assert Problem.compile(line(van("a", 0, 2))).asked == {"min-tasks": "robot a: min_tasks"}
 
 
 def test_an_auction_refuses_it_by_name():

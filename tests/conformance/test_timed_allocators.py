@@ -9,7 +9,7 @@ from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import timed_mission
 
 import muster
-from muster.allocation.capabilities import ALL, FOR_GOOD, capability_table, required, those_that_can
+from muster.allocation.capabilities import ALL, FOR_GOOD, capability_table, those_that_can
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
@@ -63,7 +63,7 @@ def holds_true(mission, plan):
 @pytest.mark.parametrize("word", sorted(ALL))
 def test_each_rule_is_kept_or_refused_by_name(allocator, word):
     mission = mission_of(word)
-    assert set(required(Problem.compile(mission))) == {word}
+    assert set(Problem.compile(mission).asked) == {word}
     if word in ALLOCATORS[allocator].can:
         plan = solved(mission, allocator, 1)
         holds_true(mission, plan)

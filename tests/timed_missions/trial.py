@@ -5,7 +5,7 @@ from random import Random
 
 import muster
 from muster.allocation.bounds import lower_bound
-from muster.allocation.capabilities import required, those_that_can
+from muster.allocation.capabilities import those_that_can
 from muster.allocation.conflicts import together
 from muster.allocation.exact import solve_exactly
 from muster.allocation.explanations import unassigned
@@ -75,7 +75,7 @@ class Trial:
     def with_plans(self):
         """Plans of the allocators, and that of the exact solver."""
         bound = lower_bound(self.problem)
-        able = those_that_can(required(self.problem))
+        able = those_that_can(self.problem.asked)
         found = [self._plan(name, bound, may_refuse=name not in able) for name in FOR_ALL_RULES]
         self._reached(found[-1])
         self._plan(OTHERS[self.report.seed % len(OTHERS)], bound, may_refuse=True)

@@ -27,12 +27,6 @@ def offer(allocators: Offered) -> None:
     _offered.append(allocators)
 
 
-def required(problem: Problem) -> dict[str, str]:
-    """What the allocator of a problem must be able to do, each with the place that asks for it first."""
-    late = {"lateness": "objective lateness"} if problem.objective == "lateness" else {}
-    return {word: where for rule in RULES for word, where in rule.asks(problem)} | late
-
-
 def refuse_what_is_not_kept(problem: Problem, name: str, can: frozenset[str]) -> None:
     """Refuse a problem that asks for rules that the allocator of this name cannot keep.
 
@@ -41,10 +35,9 @@ def refuse_what_is_not_kept(problem: Problem, name: str, can: frozenset[str]) ->
     ParameterError
         with the key, its task or robot, and the allocators that can do all that the problem asks for.
     """
-    asked = required(problem)
-    lacking = [f"{where} ({word})" for word, where in asked.items() if word not in can]
+    lacking = [f"{where} ({word})" for word, where in problem.asked.items() if word not in can]
     if lacking:
-        able = " or ".join(those_that_can(asked)) or "an allocator that can"
+        able = " or ".join(those_that_can(problem.asked)) or "an allocator that can"
         raise ParameterError(f"allocator: {name} cannot do {'; '.join(lacking)}; expected {able}")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -172,9 +172,15 @@ class Problem:
         return TimedRules(self)
 
     @cached_property
+    def asked(self) -> Mapping[str, str]:
+        """What not every allocator can do, and the problem asks for: each with the place that does so first."""
+        found = {word: where for rule in RULES for word, where in rule.asks(self).items() if where is not None}
+        return found | ({"lateness": "objective lateness"} if self.objective == "lateness" else {})
+
+    @property
     def has_timed_rules(self) -> bool:
         """Whether anything but prerequisites depends on times, teams, relations or on what a whole route is."""
-        return self.objective == "lateness" or any(True for rule in RULES for _ in rule.asks(self))
+        return bool(self.asked)
 
     @cached_property
     def dependants(self) -> list[list[int]]:

@@ -146,7 +146,7 @@ class TimedRules:
         """What the abilities of a team must sum to, with those of each robot."""
         needs = self.problem.tasks[j].needs if self.problem.holds("team") else None
         robots = self.problem.robots
-        return [(value, np.array([_ability(robot, name) for robot in robots])) for name, value in (needs or {}).items()]
+        return [(value, np.array([ability(robot, name) for robot in robots])) for name, value in (needs or {}).items()]
 
     def parts(self, j: int) -> list[tuple[int, Bools]]:
         """The parts of a team: how many robots, and which may be among them."""
@@ -195,7 +195,8 @@ def _limit(value: float | None) -> float:
     return math.inf if value is None else value
 
 
-def _ability(robot: Robot, name: str) -> float:
+def ability(robot: Robot, name: str) -> float:
+    """How much of an ability a robot has."""
     return float((robot.abilities or {}).get(name, 0.0))
 
 

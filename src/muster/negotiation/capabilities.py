@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from muster.allocation.capabilities import FOR_GOOD, required, those_that_can
+from muster.allocation.capabilities import FOR_GOOD, those_that_can
 from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -22,7 +22,7 @@ def refuse_what_is_not_agreed(problem: Problem, can: frozenset[str]) -> None:
     ParameterError
         with the keys, their tasks or robots, and what can do all that the problem asks for.
     """
-    asked = required(problem)
+    asked = problem.asked
     lacking = [f"{where} ({word})" for word, where in asked.items() if word not in can]
     if lacking:
         method = ["the method auction"] if asked.keys() <= AGREED else []
@@ -48,7 +48,7 @@ def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
     whole = mission.at_once(robots=(*mission.robots, *joining), tasks=(*mission.tasks, *new))
     problem = Problem.compile(whole)
     refuse_what_is_not_agreed(problem, can)
-    together = [f"{where} ({word})" for word, where in required(problem).items() if word not in CARRIED_OUT]
+    together = [f"{where} ({word})" for word, where in problem.asked.items() if word not in CARRIED_OUT]
     if together:
         raise ParameterError(
             f"robots without a centre agree on {'; '.join(together)}, and do not begin it together; "

@@ -34,14 +34,18 @@ class Capacity(Rule):
         insertion, problem = plan.insertion(i, j), plan.problem
         if insertion is None or insertion.usage <= problem.capacity[i]:
             return None
-        unit = problem.usage_unit
-        return f"at least {insertion.usage:.2f} {unit} with it, of {problem.capacity[i]:.2f} {unit}"
+        return _too_much(problem, i, insertion.usage)
 
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
-        usage, unit = min(found.usages[i] for _, found in places), problem.usage_unit
+        usage = min(found.usages[i] for _, found in places)
         if usage > problem.capacity[i]:
-            return f"at least {usage:.2f} {unit} with it, of {problem.capacity[i]:.2f} {unit}"
+            return _too_much(problem, i, usage)
         return "with its team one of the robots would need more than its capacity"
+
+
+def _too_much(problem: Question, i: int, usage: float) -> str:
+    unit = problem.usage_unit
+    return f"at least {usage:.2f} {unit} with it, of {problem.capacity[i]:.2f} {unit}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar
 
@@ -61,10 +61,9 @@ class Deadline(Rule):
     lifted_late = True
     key = "deadline"
 
-    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
-        first = first_task(problem, "deadline_s", lambda j: np.isfinite(problem.timed_rules.deadline[j]))
-        if first is not None:
-            yield "deadline", first
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        deadline = problem.timed_rules.deadline
+        return {"deadline": first_task(problem, "deadline_s", lambda j: np.isfinite(deadline[j]))}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         return {"deadline": limits_array(problem.timed_rules.deadline)}

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from muster import core
-from muster.allocation.rules.rule import Bools, InPlan, Limits, Outlook, Question, Routes, Rule, listed
+from muster.allocation.rules.rule import Bools, InPlan, Limits, Outlook, Question, Routes, Rule, first_robot, listed
 
 
 class MinTasks(Rule):
@@ -20,17 +20,15 @@ class MinTasks(Rule):
     for_good = False
     lifted_late = True
 
-    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
-        binds = np.flatnonzero(least_tasks(problem) > 1)
-        if len(binds):
-            yield "min-tasks", f"robot {problem.robots[binds[0]].id}: min_tasks"
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        return {"min-tasks": first_robot(problem, "min_tasks", lambda i: _least(problem, i) > 1)}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         least = least_tasks(problem)
         return {"min_tasks": least if (least > 1).any() else np.empty(0, dtype=np.int32)}
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
-        return int(least_tasks(problem)[i])
+        return _least(problem, i)
 
     def possible(self, limits: Limits) -> Bools | None:
         least = least_tasks(limits.problem)
@@ -40,7 +38,7 @@ class MinTasks(Rule):
         return np.broadcast_to(enough[:, None], limits.usable.shape)
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        least = int(least_tasks(problem)[i])
+        least = _least(problem, i)
         if least <= 1 or outlook.limits.usable[i].any():
             return None
         may = sum(problem.may(i, k) for k in range(len(problem.tasks)))
@@ -62,9 +60,11 @@ class MinTasks(Rule):
 
 def least_tasks(problem: Question) -> npt.NDArray[np.int32]:
     """(m,) how many tasks robots do at least that do any; as many as bind, one more than there are tasks at most."""
-    most = len(problem.tasks) + 1
-    holds = problem.holds(MinTasks.word)
-    return np.array([min(robot.min_tasks, most) if holds else 0 for robot in problem.robots], dtype=np.int32)
+    return np.array([_least(problem, i) for i in range(len(problem.robots))], dtype=np.int32)
+
+
+def _least(problem: Question, i: int) -> int:
+    return min(problem.robots[i].min_tasks, len(problem.tasks) + 1) if problem.holds(MinTasks.word) else 0
 
 
 def _counted(tasks: int) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -26,12 +26,10 @@ class Prerequisite(Rule):
     word: ClassVar[str] = "prerequisite"
     asked = ("lag",)
 
-    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
         lags = problem.timed_rules.lags
         lagged = [any(after or np.isfinite(within) for _, after, within in lags(j)) for j in range(len(problem.tasks))]
-        first = first_task(problem, "prerequisites with after_s or within_s", lambda j: lagged[j])
-        if first is not None:
-            yield "lag", first
+        return {"lag": first_task(problem, "prerequisites with after_s or within_s", lambda j: lagged[j])}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         lags = [lag for j in range(len(problem.tasks)) for lag in problem.timed_rules.lags(j)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -49,16 +49,14 @@ class Relation(Rule):
     asked = ("relation", "starts-with")
     key = "relation"
 
-    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
         rules = problem.timed_rules
         same = _stated(problem, "same_robot_as", lambda j: rules.same_robot[j])
-        first = same or _stated(problem, "other_robot_than", lambda j: rules.other_robot[j])
-        if first is not None:
-            yield "relation", first
         whole = len(rules.units) == len(problem.tasks)
-        together = None if whole else first_task(problem, "starts_with", rules.beginning_with)
-        if together is not None:
-            yield "starts-with", together
+        return {
+            "relation": same or _stated(problem, "other_robot_than", lambda j: rules.other_robot[j]),
+            "starts-with": None if whole else first_task(problem, "starts_with", rules.beginning_with),
+        }
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         rules, alone = problem.timed_rules, len(problem.timed_rules.units) == len(problem.tasks)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, Protocol
@@ -221,9 +221,9 @@ class Rule:
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
 
-    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
-        """The words of `asked` that a problem asks for, each with the place that does so first."""
-        return iter(())
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        """For each word of `asked` the place of a problem that asks for it first; None: none does."""
+        return {}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         """What the core has to know of it: arguments of `core.Problem`; what is empty binds nothing."""
@@ -266,6 +266,12 @@ def first_task(problem: Question, key: str, has: Callable[[int], object]) -> str
     """The first task that has something, named with the key; None: there is none."""
     first = next((task.id for j, task in enumerate(problem.tasks) if has(j)), None)
     return None if first is None else f"task {first}: {key}"
+
+
+def first_robot(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
+    """The same of robots."""
+    first = next((robot.id for i, robot in enumerate(problem.robots) if has(i)), None)
+    return None if first is None else f"robot {first}: {key}"
 
 
 def limits_array(limits: Floats) -> Floats:

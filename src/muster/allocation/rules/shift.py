@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar
 
@@ -18,6 +18,7 @@ from muster.allocation.rules.rule import (
     Outlook,
     Question,
     Rule,
+    first_robot,
     limits_array,
 )
 from muster.allocation.rules.times import known_least, longer, moments
@@ -64,11 +65,9 @@ class Shift(Rule):
     lifted_late = True
     key = "shift"
 
-    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
         until = problem.timed_rules.available_until
-        first = next((robot.id for robot, end in zip(problem.robots, until, strict=True) if np.isfinite(end)), None)
-        if first is not None:
-            yield "shift", f"robot {first}: available_until_s"
+        return {"shift": first_robot(problem, "available_until_s", lambda i: np.isfinite(until[i]))}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         return {"available_until": limits_array(problem.timed_rules.available_until)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from muster.allocation.bottleneck import fills, matched, on_some_matching
 from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
+from muster.allocation.timed_rules import ability
 from muster.mission.model import Robot, Task, TeamPart
 from muster.mission.near_matches import did_you_mean
 
@@ -45,11 +46,12 @@ class Team(Rule):
     asked = ("team",)
     key = "team"
 
-    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
         first = next(filter(problem.timed_rules.is_for_team, range(len(problem.tasks))), None)
-        if first is not None:
-            task = problem.tasks[first]
-            yield "team", f"task {task.id}: {'needs' if task.needs else 'team' if task.team else 'robots_needed'}"
+        if first is None:
+            return {"team": None}
+        task = problem.tasks[first]
+        return {"team": f"task {task.id}: {'needs' if task.needs else 'team' if task.team else 'robots_needed'}"}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         rules, none = problem.timed_rules, np.empty(0)
@@ -64,7 +66,7 @@ class Team(Rule):
         names = sorted({name for j in tasks for name in rules.needed(j)})
         return {
             "parts": parts,
-            "abilities": np.array([[(r.abilities or {}).get(name, 0.0) for name in names] for r in problem.robots]),
+            "abilities": np.array([[ability(robot, name) for name in names] for robot in problem.robots]),
             "needs": np.array([[rules.needed(j).get(name, 0.0) for name in names] for j in tasks]),
         }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar
 
@@ -55,10 +55,8 @@ class Window(Rule):
     lifted_late = True
     key = "window"
 
-    def asks(self, problem: Question) -> Iterator[tuple[str, str]]:
-        first = first_task(problem, "window_s", lambda j: problem.timed_rules.windows[j])
-        if first is not None:
-            yield "window", first
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        return {"window": first_task(problem, "window_s", lambda j: problem.timed_rules.windows[j])}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         windows = problem.timed_rules.windows
