@@ -14,6 +14,13 @@ from muster.mission.near_matches import did_you_mean
 from muster_studies import study_verb
 from muster_studies.benches import BENCHES, bench_named
 
+_seeds_option = click.option(
+    "--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]"
+)
+_output_option = click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
+)
+
 
 @click.group(invoke_without_command=True, short_help="Measure speed on this machine, or quality against other solvers.")
 @click.option("--only", metavar="NAMES", help=f"Some of: {', '.join(BENCHES)}.")
@@ -57,12 +64,10 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
 
 @command.command("peers")
 @click.option("--tables", metavar="N,N", help="Only these tables: total+max, total, max, average, makespan, large.")
-@click.option("--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]")
+@_seeds_option
 @click.option("--quick", is_flag=True, help="Small missions and short time limits, to see that everything works.")
 @format_option
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
-)
+@_output_option
 @quiet_option
 @click.pass_context
 def peers(ctx: click.Context, /, **options: Any) -> int:
@@ -75,12 +80,10 @@ def peers(ctx: click.Context, /, **options: Any) -> int:
 
 @command.command("peers-timed")
 @click.option("--tables", metavar="N,N", help="Only these tables: windows, ordered, teams.")
-@click.option("--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]")
+@_seeds_option
 @click.option("--quick", is_flag=True, help="One or two missions a table and short time limits.")
 @format_option
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
-)
+@_output_option
 @quiet_option
 @click.pass_context
 def peers_timed(ctx: click.Context, /, **options: Any) -> int:

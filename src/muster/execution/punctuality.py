@@ -12,7 +12,8 @@ from muster.execution.forecast import Forecast
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger, MissedTask
 
-_CHANGES = {"window": "window_missed", "deadline": "deadline_missed", "prerequisite": "within_missed"}
+MISSED = {"window": "window_missed", "deadline": "deadline_missed", "prerequisite": "within_missed"}
+"""By rule: the kind of event that says that a task cannot begin in time any more."""
 
 
 @dataclass
@@ -53,7 +54,7 @@ class Punctuality:
                 self.ledger.missed.append(MissedTask(task.id, now, missed.reason, missed.next_s))
                 if task.id in routed:
                     yield Change(
-                        _CHANGES[missed.rule], {"task": task.id, "reason": missed.reason, "next_s": missed.next_s}
+                        MISSED[missed.rule], {"task": task.id, "reason": missed.reason, "next_s": missed.next_s}
                     )
 
     def count_waits(self, seconds: float) -> None:

@@ -58,6 +58,10 @@ class Case:
                 named.setdefault(name, []).append(task.id)
         return named
 
+    def needs_others(self, task: Task) -> bool:
+        """Whether other robots may have to work at the same time: in its team, or at a task that begins with it."""
+        return bool(task.is_for_team or task.starts_with or task.id in self.beginning_with)
+
     @property
     def unit(self) -> str:
         """The unit of usage."""

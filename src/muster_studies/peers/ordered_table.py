@@ -8,7 +8,7 @@ from statistics import fmean
 
 from muster_studies.effort import Effort
 from muster_studies.peers.contest import OWN, OWN_OTHERS, Match, Result, Run, Standing, Standings, runs_of, standings_of
-from muster_studies.peers.timed_effort import QUICK_S, seeds_of
+from muster_studies.peers.timed_effort import limit_of, seeds_of
 from muster_studies.tables import Cell, Notes, Table
 
 _SOLVERS = (OWN, *OWN_OTHERS, "CP-SAT", "OR-Tools")
@@ -29,8 +29,7 @@ class Ordered:
         return [Match(mission=f"windows-{seed}", objective="makespan") for seed in range(count)]
 
     def jobs(self, effort: Effort) -> list[Run]:
-        seconds = QUICK_S if effort.quick else self.limit_s
-        return runs_of(self._matches(effort), _SOLVERS, seconds, seeds_of(effort))
+        return runs_of(self._matches(effort), _SOLVERS, limit_of(effort, self.limit_s), seeds_of(effort))
 
     def table(self, effort: Effort, found: Mapping[Run, Result]) -> Table:
         standings, notes = standings_of(found[run] for run in self.jobs(effort)), Notes()

@@ -9,7 +9,7 @@ from statistics import fmean
 from muster_studies.effort import Effort
 from muster_studies.instances.coalitions import SKILL_SETS
 from muster_studies.peers.contest import OWN, Match, Result, Run
-from muster_studies.peers.timed_effort import QUICK_S, seeds_of
+from muster_studies.peers.timed_effort import limit_of, seeds_of
 from muster_studies.tables import Cell, Table
 
 
@@ -36,7 +36,7 @@ class TeamSet:
     published: str
 
     def runs(self, effort: Effort) -> list[Run]:
-        seconds = QUICK_S if effort.quick else self.limit_s
+        seconds = limit_of(effort, self.limit_s)
         return [
             Run(match=Match(mission=f"{self.family}-{k}", objective="makespan"), solver=OWN, seconds=seconds, seed=seed)
             for k in range(1 if effort.quick else self.instances)

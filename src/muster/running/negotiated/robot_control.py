@@ -8,6 +8,7 @@ from dataclasses import replace
 from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_of
 from muster.execution.monitor import exceeds
+from muster.execution.punctuality import MISSED
 from muster.execution.reallocation import usage_ahead
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.task_ledger import moved
@@ -35,9 +36,7 @@ _ITS_OWN = {
     "robot_stuck",
     "task_refused",
     "waits",
-    "window_missed",
-    "deadline_missed",
-    "within_missed",
+    *MISSED.values(),
 }
 """Events that nobody else knows of."""
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Observer
+from muster.execution.punctuality import MISSED
 from muster.execution.reallocation import reasons_in_one_line
 from muster.execution.report import Account
 from muster.execution.task_ledger import Ledger
@@ -16,7 +17,6 @@ from muster.mission.yaml_writer import plain
 from muster.motion.port import Telemetry
 from muster.verification import verify
 
-_MISSED = ("window_missed", "deadline_missed", "within_missed")
 _OF_A_TASK = ("cancel_task", "move_task", "delay_task")
 
 
@@ -77,7 +77,7 @@ class TeamLog:
         elif kind == "robot_stuck":
             self._lose(robot, f"did not get on at {at_s:g} s")
             self._causes.append({"kind": kind, "robot": robot})
-        elif kind in _MISSED and data["next_s"] is None:
+        elif kind in MISSED.values() and data["next_s"] is None:
             self.ledger.expire(task, str(data["reason"]))
         self.tell(at_s, kind, data)
 

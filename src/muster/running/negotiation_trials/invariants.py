@@ -16,7 +16,7 @@ from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import task_of
 from muster.negotiation.participation import rules_of
 from muster.negotiation.valuation import Valuer
-from muster.running.negotiation_trials.observer import Observer
+from muster.running.negotiation_trials.observer import Observer, is_of_one_sale
 from muster.running.negotiation_trials.scenario import Scenario
 from muster.verification import verify
 
@@ -99,8 +99,7 @@ def _is_one_team(task: str, nodes: Sequence[Negotiator]) -> bool:
     """Whether all robots that own a task of a team won it in one sale; the judge says whether they are enough."""
     base = nodes[0].epoch.base
     assert base is not None
-    sales = {(claim.price, claim.round) for node in nodes for claim in node.route if claim.task == task}
-    return len(sales) == 1 and task in nodes[0].rules.with_added(base.added).teams
+    return is_of_one_sale(task, nodes) and task in nodes[0].rules.with_added(base.added).teams
 
 
 def _begun(task: Task) -> Task:

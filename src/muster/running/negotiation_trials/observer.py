@@ -8,7 +8,7 @@ must not. An at-most-once task is never begun twice, whether robots are separate
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from muster.negotiation.negotiator import Negotiator
@@ -113,9 +113,8 @@ class Observer:
 
     def _won_together(self, task: str, robot: str, other: str) -> bool:
         """Whether robots own a task of a team by the same sale."""
-        claims = (claim for name in (robot, other) for claim in self.nodes[name].route if claim.task == task)
-        sales = {(claim.price, claim.round) for claim in claims}
-        return task in self.nodes[robot].rules.teams and len(sales) == 1
+        owners = [self.nodes[name] for name in (robot, other)]
+        return task in self.nodes[robot].rules.teams and is_of_one_sale(task, owners)
 
     def _clash(self, task: str, robot: str, other: str) -> None:
         if frozenset((robot, other)) in self._lost:
@@ -127,3 +126,8 @@ class Observer:
         if not (robot in began and other in began):
             self.counts[OWNED_TWICE] += 1
             self.broken.append(f"{robot} and {other} both own {task}")
+
+
+def is_of_one_sale(task: str, nodes: Iterable[Negotiator]) -> bool:
+    """Whether those of the robots that own a task won it in the same sale."""
+    return len({(claim.price, claim.round) for node in nodes for claim in node.route if claim.task == task}) == 1

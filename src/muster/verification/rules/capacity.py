@@ -30,8 +30,7 @@ class Capacity:
         """
         capacity = case.capacity_of(route.robot)
         if capacity is None:
-            together = task.is_for_team or task.starts_with or task.id in case.beginning_with
-            return None if together else False  # another of its team may have too little
+            return None if case.needs_others(task) else False  # another of its team may have too little
         if case.unit == "s" and not LegTimes.of(route.robot, case.mission.rules).is_constant:
             return None  # insertions are measured in metres
         usage = case.insertions(route).least_usage(task, case.first_gap(route, task), capacity)

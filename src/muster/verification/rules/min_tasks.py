@@ -25,5 +25,4 @@ class MinTasks:
         """Whether the route would still be too short; undecided where other robots have to work with it."""
         if len(route.steps) + 1 < route.robot.min_tasks:
             return True
-        together = task.is_for_team or task.starts_with or task.id in case.beginning_with
-        return None if together and any(robot.min_tasks > 1 for robot in case.mission.robots) else False
+        return None if case.needs_others(task) and any(robot.min_tasks > 1 for robot in case.mission.robots) else False
