@@ -2,8 +2,12 @@
 
 import math
 
-from muster import Mission, Robot, Rules, Task
+import pytest
+
+import muster
+from muster import Mission, Robot, Rules, Task, verify
 from muster.allocation.explanations import unassigned
+from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.remedies import remedies, smallest_as_is
 from muster.mission.model import TravelTable
@@ -55,3 +59,26 @@ def test_no_way_for_another_robot_of_the_team():
         ("unreachable", "there is no way for another robot of its team"),
         ("unreachable", "there is no way to it"),
     ]
+    assert verify(mission, muster.solve(mission, "greedy")).valid
+
+
+@pytest.mark.parametrize("allocator", ["greedy", "search"])
+def test_tasks_with_the_same_robots_as_one_that_is_inserted_last(allocator):
+    """No team for it is that of both others."""
+    robots = tuple(Robot(id=f"r_{k}", position=(k, 0)) for k in range(2))
+    tied = {"same_robot_as": ("last",)}
+    tasks = (task("last", 50), task("one", 2, **tied), task("two", 3, robots_needed=2, **tied))
+    mission = Mission(robots=robots, tasks=tasks)
+    plan = (
+        muster.solve(mission, allocator, iterations=200) if allocator == "search" else muster.solve(mission, allocator)
+    )
+    verdict = verify(mission, plan)
+    assert verdict.valid
+    assert verdict.tasks_completed == 2
+
+
+def test_a_bound_that_held_only_until_the_task_before_was_lost():
+    first, second = task("a", 100), task("b", 1, prerequisites=("a",), other_robot_than=("a",))
+    mission = Mission(robots=(Robot(id="r", position=(0, 0), work_capacity=10),), tasks=(first, second))
+    found = {item.task: [(r.reason, r.detail) for r in item.reasons] for item in impossible(Problem.compile(mission))}
+    assert found["b"] == [("prerequisite", "a comes before it and can never be done")]

@@ -180,6 +180,21 @@ def _nothing_else(possible, robot, name, lost, *groups):
     return not possible.by(robot, name)[-1]
 
 
+def _no_common_window(possible, robot, name, lost, windows):
+    """No plan does the task by the robot, and each task that is named has these windows."""
+    said = re.split(r", (?=\S+ from )", windows)
+    return not possible.by(robot, name)[-1] and all(_has_windows(possible.task(each.split()[0]), each) for each in said)
+
+
+def _has_windows(task, said):
+    spans = re.findall(rf"from {SECONDS}(?: to {SECONDS})?", said)
+    windows = sorted(task.window_s)
+    return len(spans) == len(windows) and all(
+        near(opens, window[0]) and (near(closes, window[1]) if closes else window[1] is None)
+        for (opens, closes), window in zip(spans, windows, strict=True)
+    )
+
+
 def _same_robot(possible, robot, name, lost, other, mate):
     tied = other in possible.task(name).same_robot_as or name in possible.task(other).same_robot_as
     return tied and mate == robot and robot not in possible.doers(other)
@@ -202,7 +217,7 @@ ALONE = (
     (rf"(\S+) may end only so long before what follows: it (ends) {_TIME}{_DEADLINE}", _held_back),
     (r"(\S+) comes before it and can never be done", _lost_before),
     (r"begins together with (\S+), which can never be done", _lost_with),
-    (r"begins together with .+, and from when all are ready no window is open to all", _nothing_else),
+    (r"begins together with .+, and from when all are ready no window is open to all: (.+)", _no_common_window),
     (r"begins together with .+, for which no different robots are left", _nothing_else),
     (r"the same robot must do (\S+), which comes with it, and cannot be (\S+)", _same_robot),
     (r"another robot must do (\S+), which comes with it, and only (\S+) can", _other_robot),

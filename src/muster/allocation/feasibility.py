@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -38,15 +38,24 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
     robots = [problem.robot_index[robot.id] for robot in problem.mission.robots]
     order = [problem.task_index[task.id] for task in problem.mission.tasks]
 
+    def lost_before(j: int) -> str:
+        """The first lost task that must be done before it, or begins with it."""
+        named = (*problem.prerequisites[j], *problem.timed_rules.beginning_with(j))
+        return next((problem.tasks[k].id for k in named if k in lost), "")
+
     def reasons(j: int) -> tuple[Reason, ...]:
-        return tuple(_reason(problem, i, j, Outlook(limits, float(limits.usage[i, j]), lost[j])) for i in robots)
+        befores = (lost[j], lost_before(j))  # a bound may have held only until what comes before it was lost
+        return tuple(
+            _reason(problem, i, j, [Outlook(limits, float(limits.usage[i, j]), before) for before in befores])
+            for i in robots
+        )
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in order if j in lost)
 
 
-def _reason(problem: Problem, i: int, j: int, outlook: Outlook) -> Reason:
-    """Why robot i can never do task j, which nobody can."""
-    found = ((rule.word, rule.never(problem, i, j, outlook)) for rule in problem.rules)
+def _reason(problem: Problem, i: int, j: int, outlooks: Sequence[Outlook]) -> Reason:
+    """Why robot i can never do task j, which nobody can; the first outlook counts in which there is a reason."""
+    found = ((rule.word, rule.never(problem, i, j, outlook)) for outlook in outlooks for rule in problem.rules)
     word, detail = next((word, detail) for word, detail in found if detail is not None)
     return Reason(problem.robots[i].id, word, detail)
 

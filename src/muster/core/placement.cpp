@@ -61,14 +61,16 @@ void Placement::look_at_relations(int unit) {
     for (const int other : problem_.same_robot(task)) {
       if (!timeline_.present(problem_.unit(other))) continue;
       std::ranges::fill(busy_, 0);
-      team_size_ = 0;
+      int size = 0;
       for (const int number : timeline_.visits_of(problem_.unit(other))) {
         if (timeline_.visit(number).place != other) continue;
         busy_[timeline_.visit(number).robot] = 1;
-        ++team_size_;
+        ++size;
       }
+      const bool differs = team_size_ >= 0 && team_size_ != size;  // no team is the same as both
+      team_size_ = size;
       for (int robot = 0; robot < problem_.robots(); ++robot) {
-        if (!busy_[robot]) exclude(robot);
+        if (!busy_[robot] || differs) exclude(robot);
       }
       std::ranges::fill(busy_, 0);
     }

@@ -30,5 +30,7 @@ class Unreachable:
             yield Violation(self.kind, route.robot.id, None, f"no way from {here} to where the route must end")
 
     def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
-        """Whether no place in the route has a way to the task, along it and on."""
-        return not case.insertions(route).is_reachable(task, case.first_gap(route, task))
+        """Whether no place in the route has a way to the task, along it and on; undecided if others may have none."""
+        if not case.insertions(route).is_reachable(task, case.first_gap(route, task)):
+            return True
+        return None if case.needs_others(task) else False
