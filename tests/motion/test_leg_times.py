@@ -56,15 +56,15 @@ def test_a_trapezoid_and_a_triangle():
 def test_constant_timing_takes_the_speed_alone():
     mission = mission_of(ROBOTS[4], (10.0, 0.0, 0.0), timing="constant")
     assert muster.solve(mission, "greedy").makespan_s == 11.0
-    assert LegTimes.of(mission.robots[0], mission.rules).is_constant
+    assert LegTimes.in_mission(mission.robots[0], mission).is_constant
 
 
 def test_a_right_angle_is_turned_by_what_drives_where_it_looks():
     turning, sliding = (
         Robot(id="r", position=(0, 0), yaw_rate_radps=0.5, kinematics=k) for k in ("differential-drive", "holonomic")
     )
-    assert LegTimes.of(turning, Rules()).turn_s == math.pi
-    assert LegTimes.of(sliding, Rules()).turn_s == 0.0
+    assert LegTimes.of(turning, Rules(), over_map=False).turn_s == math.pi
+    assert LegTimes.of(sliding, Rules(), over_map=False).turn_s == 0.0
 
 
 def test_longer_legs_take_longer():

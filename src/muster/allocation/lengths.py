@@ -23,6 +23,8 @@ class Measured:
         (work classes, n) what tasks cost, and (m,) each robot's class.
     legs
         by work class: for each task whose action has geometry the lengths of the legs between its way points.
+    over_map
+        whether they are of shortest ways over a map, which have bends.
     """
 
     table: Floats
@@ -30,6 +32,7 @@ class Measured:
     costs: Floats
     work_classes: npt.NDArray[np.int32]
     legs: tuple[Mapping[int, tuple[float, ...]], ...]
+    over_map: bool = False
 
     def part(self, robots: Sequence[int], places: Sequence[int], tasks: Sequence[int]) -> Measured:
         """The lengths of some robots between some places, and of some tasks; with the classes of these robots alone."""
@@ -42,4 +45,5 @@ class Measured:
             self.costs[rows][:, tasks],
             work_classes.astype(np.int32),
             tuple({number_in[j]: m for j, m in self.legs[row].items() if j in number_in} for row in rows.tolist()),
+            self.over_map,
         )

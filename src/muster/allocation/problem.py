@@ -406,7 +406,8 @@ class Problem:
     @cached_property
     def leg_times(self) -> tuple[LegTimes, ...]:
         """For each robot how long legs take."""
-        return tuple(LegTimes.of(robot, self.mission) for robot in self.robots)
+        over_map = self.mission.travel_rule == "map" if self.known is None else self.known.over_map
+        return tuple(LegTimes.of(robot, self.mission.rules, over_map=over_map) for robot in self.robots)
 
     def metres(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
         """(len(places), len(to)) metres that robot i travels between places."""

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.model import Mission, Point, Robot
+from muster.mission.model import Mission, Point, Robot, Rules
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 
 _RIGHT_ANGLE = math.pi / 2
@@ -44,10 +44,10 @@ class LegTimes:
     over_map: bool = False
 
     @classmethod
-    def of(cls, robot: Robot, mission: Mission) -> LegTimes:
+    def of(cls, robot: Robot, rules: Rules, *, over_map: bool) -> LegTimes:
         climb = robot.climb_mps if robot.kind == "air" else None
         stated = (robot.acceleration_mps2, robot.yaw_rate_radps, climb)
-        if mission.rules.timing == "constant" or stated == (None, None, None):
+        if rules.timing == "constant" or stated == (None, None, None):
             return cls(robot.speed_mps)
         limits = limits_of(robot)
         turns = kinematics_named(robot.kinematics).faces_its_way
@@ -56,8 +56,13 @@ class LegTimes:
             limits.acceleration_mps2,
             math.inf if climb is None else climb,
             _RIGHT_ANGLE / limits.yaw_rate_radps if turns else 0.0,
-            over_map=mission.travel_rule == "map",
+            over_map=over_map,
         )
+
+    @classmethod
+    def in_mission(cls, robot: Robot, mission: Mission) -> LegTimes:
+        """By the mission's own rules and travel."""
+        return cls.of(robot, mission.rules, over_map=mission.travel_rule == "map")
 
     @property
     def is_constant(self) -> bool:
@@ -86,6 +91,18 @@ class LegTimes:
         seconds = pieces * self._ramped(metres / pieces, rise_m / pieces)
         return np.where(metres > 0, seconds + self.turn_s * (1 + turned / _RIGHT_ANGLE), metres)
 
+    def rest_seconds(self, metres: float, rise_m: float = 0.0, apart_m: float = math.inf) -> float:
+        """The time of the rest of a leg for a robot under way: it need not turn nor gather speed any more."""
+        whole = float(self.seconds(metres, rise_m, apart_m))
+        if self.is_constant or metres <= 0:
+            return whole
+        to_speed = (2.0 - math.sqrt(2.0)) * math.sqrt(metres / self.acceleration_mps2)
+        return whole - self.turn_s - min(self.speed_mps / self.acceleration_mps2 / 2, to_speed)
+
+    def least_seconds(self, metres: float, rise_m: float = 0.0) -> float:
+        """The least time of a leg: without any turn."""
+        return metres / self.speed_mps if self.is_constant else float(self._ramped(metres, rise_m))
+
     def work_seconds(self, points: Sequence[Point], metres: Sequence[float]) -> float:
         """The time of work that drives: a leg from each point to the next, of so many metres, inf where there is none.
 
@@ -108,6 +125,7 @@ class LegTimes:
 
     def _ramped(self, metres: Any, rise_m: Any) -> Any:
         """Straight on, from rest to rest."""
+        metres, rise_m = np.asarray(metres, dtype=np.float64), np.asarray(rise_m, dtype=np.float64)
         with np.errstate(divide="ignore", invalid="ignore"):
             climbing = np.where(rise_m > 0, self.climb_mps * metres / rise_m, math.inf)
             speed = np.minimum(self.speed_mps, climbing)

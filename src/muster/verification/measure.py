@@ -65,7 +65,7 @@ def _measured(
     mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Task], work_s: Mapping[str, float]
 ) -> MeasuredRoute:
     in_time = mission.rules.usage == "time"
-    times = LegTimes.of(robot, mission)
+    times = LegTimes.in_mission(robot, mission)
     steps: list[Step] = []
     travelled = worked = 0.0
     here = place_of_start(robot)
@@ -103,7 +103,7 @@ def work_seconds(mission: Mission, travel: Travel, robot: Robot, task: Task) -> 
         duration = task.action.duration_s
     if duration is not None:
         return duration / robot.efficiency
-    times, metres = LegTimes.of(robot, mission), travel.work_metres(robot, task) or 0.0
+    times, metres = LegTimes.in_mission(robot, mission), travel.work_metres(robot, task) or 0.0
     doing = None if times.is_constant else doing_at(robot, task)
     if not isinstance(doing, TaskMotion) or metres == 0.0:
         return metres / robot.speed_mps
