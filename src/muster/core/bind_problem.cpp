@@ -73,13 +73,14 @@ void bind_problem(nb::module_& m) {
       .def(
           "__init__",
           [](Problem* self, const std::string& objective, bool usage_is_time, Numbers capacity, Numbers speed,
-             Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost,
-             Indices work_class, Numbers work_seconds, Indices time_class, Numbers priority, Indices kind, Flags allowed,
-             const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Indices place_class, Numbers table,
-             Indices travel_class, const Windows& windows, Numbers deadline, Numbers due, Numbers available_until,
-             Numbers after, Numbers within, Indices unit, const Parts& parts, Numbers abilities, Numbers needs,
-             const std::vector<std::vector<int>>& same_robot, const std::vector<std::vector<int>>& other_robot,
-             Indices min_tasks, Numbers acceleration, Numbers climb, Numbers turn, bool over_map, bool makespan_includes_return) {
+             Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost, Indices work_class,
+             Numbers work_seconds, Indices time_class, Numbers priority, Indices kind, Flags allowed,
+             const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Indices place_class,
+             Numbers table, Indices travel_class, const Windows& windows, Numbers deadline, Numbers due,
+             Numbers available_until, Numbers after, Numbers within, Indices unit, const Parts& parts,
+             Numbers abilities, Numbers needs, const std::vector<std::vector<int>>& same_robot,
+             const std::vector<std::vector<int>>& other_robot, Indices min_tasks, Numbers acceleration, Numbers climb,
+             Numbers turn, bool over_map, bool makespan_includes_return) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 3 || entry.shape(2) != 3 || exit.ndim() != 3 || exit.shape(2) != 3 || !table_fits) {
@@ -126,12 +127,12 @@ void bind_problem(nb::module_& m) {
             data.makespan_includes_return = makespan_includes_return;
             new (self) Problem(std::move(data));
           },
-          nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "available_from"_a,
-          "must_end"_a, "fixed"_a, "actuation_cost"_a, "work_class"_a, "work_seconds"_a, "time_class"_a, "priority"_a, "kind"_a,
-          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a, "windows"_a, "deadline"_a,
-          "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a, "abilities"_a, "needs"_a,
-          "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a, "turn"_a, "over_map"_a,
-          "makespan_includes_return"_a,
+          nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "available_from"_a, "must_end"_a,
+          "fixed"_a, "actuation_cost"_a, "work_class"_a, "work_seconds"_a, "time_class"_a, "priority"_a, "kind"_a,
+          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
+          "windows"_a, "deadline"_a, "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a,
+          "abilities"_a, "needs"_a, "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a,
+          "turn"_a, "over_map"_a, "makespan_includes_return"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
@@ -143,7 +144,8 @@ void bind_problem(nb::module_& m) {
           "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_robot`, `other_robot`; by "
           "robot `available_until`, `min_tasks` (of a route that has any); `after` and `within` by prerequisite; "
           "`abilities` (m, a) and `needs` (n, a); by "
-          "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer than "
+          "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer "
+          "than "
           "the straight way has bends. Raises ValueError if shapes do "
           "not fit.")
       .def_prop_ro("tasks", &Problem::tasks)

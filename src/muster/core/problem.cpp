@@ -45,8 +45,8 @@ Problem::Problem(ProblemData data)
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
   const auto places = static_cast<std::size_t>(places_);
   require(robots > 0, "a problem needs a robot");
-  require(data_.speed.size() == robots && data_.available_from.size() == robots &&
-              data_.must_end.size() == robots && data_.fixed.size() == robots,
+  require(data_.speed.size() == robots && data_.available_from.size() == robots && data_.must_end.size() == robots &&
+              data_.fixed.size() == robots,
           "arrays of robots differ in length");
   require(std::ranges::all_of(data_.fixed, [](int count) { return count >= 0; }),
           "a number of fixed tasks is negative");
@@ -58,9 +58,9 @@ Problem::Problem(ProblemData data)
           "actuation costs have the wrong size");
   require(data_.time_class.size() == robots, "time classes need a value for each robot");
   require(std::ranges::all_of(data_.time_class, [](int c) { return c >= 0; }), "a time class is negative");
-  require(data_.work_seconds.size() ==
-              (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.time_class))) * tasks,
-          "times of work have the wrong size");
+  require(
+      data_.work_seconds.size() == (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.time_class))) * tasks,
+      "times of work have the wrong size");
   require(std::ranges::all_of(data_.kind, [](int k) { return k >= 0; }), "a kind is negative");
   require(data_.allowed.size() == (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.kind))) * tasks,
           "what kinds may do has the wrong size");
@@ -122,14 +122,14 @@ void Problem::check_times() const {
 // The time of a leg from rest to rest by the robot's motion profile: `LegTimes.seconds` of muster.motion.leg_times.
 double Problem::leg_seconds(int robot, int from, int to, double metres) const {
   constexpr double kStraight = 0.05;  // radians
-  constexpr double kPieces = 3.0;
+  constexpr double kPieces = 3.0, kPiecesSliding = 2.0;
   if (!(metres > 0.0) || metres == kInfinity) return metres;
   const int own = data_.place_class[robot];
   const std::size_t first = static_cast<std::size_t>(own) * places_;
   const double rise = std::abs(data_.exit[3 * (first + from) + 2] - data_.entry[3 * (first + to) + 2]);
   double turned = 0.0;
   if (data_.over_map) turned = 2.0 * std::acos(std::min(1.0, straight(from, to, own) / metres));
-  const double pieces = turned > kStraight ? kPieces : 1.0;
+  const double pieces = turned <= kStraight ? 1.0 : data_.turn[robot] > 0.0 ? kPieces : kPiecesSliding;
   const double turns = 1.0 + turned / (0.5 * std::numbers::pi);
   return pieces * ramped(robot, metres / pieces, rise / pieces) + data_.turn[robot] * turns;
 }
