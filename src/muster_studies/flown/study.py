@@ -81,9 +81,7 @@ class Shipped:
         rows: list[tuple[Cell, ...]] = []
         for job in self.jobs(effort):
             mission, times = job.mission, found[job]
-            rows.append(
-                (job.name, len(mission.robots), len(mission.tasks), times.planned_s, times.flown_s, times.off)
-            )
+            rows.append((job.name, len(mission.robots), len(mission.tasks), times.planned_s, times.flown_s, times.off))
         rows.append(("mean of |%|", "", "", None, None, _mean([abs(found[job].off) for job in self.jobs(effort)])))
         notes = (*_NOTES, "All with timing: profile, those too whose file says constant; without tags and events.")
         return Table(self.number, "Shipped missions whose robots have bodies", self.columns, tuple(rows), notes)

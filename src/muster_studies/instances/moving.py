@@ -1,4 +1,4 @@
-"""Random missions of robots with bodies and motion profiles: on the ground, in the air, mixed, with and without a map."""
+"""Random missions of robots with bodies and motion profiles: on the ground, in the air, both; with a map or without."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SETTINGS = tuple(
 
 
 def moving_mission(setting: Setting, seed: int) -> Mission:
-    """2 to 5 robots, 6 to 20 tasks: stays, patrols, searches, deliveries; an eighth wait for another, some for a time."""
+    """2 to 5 robots, 6 to 20 tasks: stays, patrols, searches, deliveries; some wait for another, some for a time."""
     draw = Random(f"{setting.name} {seed}")
     obstacles = _obstacles(draw) if setting.over_map else []
     robots = []
