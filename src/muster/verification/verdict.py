@@ -14,11 +14,13 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 KINDS = (
+    "mission",
     "unknown-robot",
     "unknown-task",
     "repeated-robot",
     "repeated-task",
     "skill",
+    "action",
     "suitability",
     "lock",
     "unreachable",
@@ -29,6 +31,7 @@ KINDS = (
     "shift",
     "team",
     "relation",
+    "min-tasks",
     "deadlock",
     "unassigned",
     "reason",
