@@ -68,10 +68,11 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     violations = [*other_mission(mission, plan), *violations, *_broken_rules(case)]
     violations += [found.violation] if isinstance(found, Deadlock) else found.broken
     verdict = _verdict(case, objective, None if isinstance(found, Deadlock) else found.times)
-    violations += left_out_faults(case, plan)
+    left_out, undecided = left_out_faults(case, plan)
+    violations += left_out
     violations += false_statements(plan, verdict, travel.tolerance)
     violations += book_faults(mission, plan)
-    return replace(verdict, violations=tuple(violations))
+    return replace(verdict, violations=tuple(violations), reasons_undecided=undecided)
 
 
 def _broken_rules(case: Case) -> Iterator[Violation]:
