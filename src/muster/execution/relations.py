@@ -44,6 +44,8 @@ def binding_of(task: str, ledger: Ledger, under_way: Collection[str], robots: Ma
     unfit = "" if only is None else _why_not_by(ledger.tasks[task], [robots[name] for name in only])
     if unfit:
         only, words = (), [f"{words[0]}, {unfit}"]
+    elif len({frozenset(begun[name]) for name in same}) > 1:
+        only = ()
     return Binding(
         only=only,
         never=frozenset(robot for name in other for robot in begun[name]),
