@@ -58,6 +58,7 @@ class Placement {
   bool may_begin(int unit, double begin) const;
   double lateness_of_team(int unit, double begin) const;
 
+  bool in_reach(int robot, int task, int at) const;
   double least_score(int robot, int at, double work) const;
   double least_score(const Offer& arrival) const;
   Offer arrival(int robot, int task, int at, double work) const;

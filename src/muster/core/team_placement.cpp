@@ -121,6 +121,7 @@ void Placement::make_offers(int unit, std::size_t candidate) {
     made.robot = -1;
     if (at_[candidate] < problem_.fixed(robot) || !usable(robot, tasks[k])) continue;
     if (trial_->append_only && at_[candidate] < timeline_.tasks_in(robot)) continue;
+    if (!in_reach(robot, tasks[k], at_[candidate])) continue;
     const double work = problem_.work_time(robot, tasks[k]);
     made = arrival(robot, tasks[k], at_[candidate], work);
     go_on(made, tasks[k]);
