@@ -39,6 +39,8 @@ Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
 
+_RETURN_ASKED = {"makespan-return": "objective makespan: makespan_includes_return"}
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:
@@ -176,12 +178,19 @@ class Problem:
     def asked(self) -> Mapping[str, str]:
         """What not every allocator can do, and the problem asks for: each with the place that does so first."""
         found = {word: where for rule in RULES for word, where in rule.asks(self).items() if where is not None}
-        return found | ({"lateness": "objective lateness"} if self.objective == "lateness" else {})
+        late = {"lateness": "objective lateness"} if self.objective == "lateness" else {}
+        return found | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})
+
+    @property
+    def _makespan_includes_ways_to_ends(self) -> bool:
+        rules = self.mission.rules
+        with_ends = any(robot.place_at_end(rules) is not None for robot in self.robots)
+        return self.objective == "makespan" and rules.makespan_includes_return and with_ends
 
     @property
     def has_timed_rules(self) -> bool:
         """Whether anything but prerequisites depends on times, teams, relations or on what a whole route is."""
-        return bool(self.asked)
+        return bool(self.asked.keys() - _RETURN_ASKED.keys())
 
     @cached_property
     def dependants(self) -> list[list[int]]:

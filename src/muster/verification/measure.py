@@ -58,12 +58,13 @@ def all_measured(mission: Mission, travel: Travel, tasks_of: Mapping[str, Sequen
         for task in tasks_of.get(robot.id, ()):
             seconds = work_seconds(mission, travel, robot, task)
             slowest[task.id] = max(seconds, slowest.get(task.id, 0.0))
-    return tuple(_measured(mission, travel, robot, tasks_of.get(robot.id, ()), slowest) for robot in mission.robots)
+    return tuple(measured(mission, travel, robot, tasks_of.get(robot.id, ()), slowest) for robot in mission.robots)
 
 
-def _measured(
+def measured(
     mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Task], work_s: Mapping[str, float]
 ) -> MeasuredRoute:
+    """Measure one robot's route; `work_s` is how long each task takes."""
     in_time = mission.rules.usage == "time"
     times = LegTimes.in_mission(robot, mission)
     steps: list[Step] = []
