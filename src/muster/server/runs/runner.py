@@ -21,7 +21,8 @@ from typing import Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, plan_from
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
 from muster.running.worlds import WORLDS
 from muster.server.runs.log_recorder import LogRecorder
