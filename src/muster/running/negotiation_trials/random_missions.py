@@ -48,7 +48,7 @@ def random_mission(random: Random, *, robots: int, tasks: int, once: float, free
 
 
 def with_times(mission: Mission, random: Random) -> Mission:
-    """The mission with windows, deadlines, due times, lags, shifts, teams and relations."""
+    """The mission with windows, deadlines, due times, lags, shifts, teams, relations and ways back that count."""
     rules = replace(mission.rules, objective=random.choice(OBJECTIVES))
     robots = tuple(
         replace(robot, available_until_s=random.uniform(150, 500)) if random.random() < 0.3 else robot
@@ -57,6 +57,7 @@ def with_times(mission: Mission, random: Random) -> Mission:
     able = tuple(replace(robot, abilities={LIFT: random.choice((1.0, 2.0))}) for robot in robots)
     timed = [_with_times(task, random) for task in mission.tasks]
     tasks = [_with_others(task, timed[:k], random) for k, task in enumerate(timed)]
+    rules = replace(rules, makespan_includes_return=random.random() < 0.8)
     return replace(mission, rules=rules, robots=able, tasks=tuple(tasks))
 
 
