@@ -1,6 +1,7 @@
 """Tasks that no plan does together: examples with exact numbers, and all plans there are."""
 
 import math
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -13,7 +14,7 @@ from tests.random_missions import random_mission
 from muster.allocation.conflicts import Conflict, Together, together
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
-from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.model import Lag, Mission, Robot, Rules, Task
 from muster.verification import verify
 
 
@@ -203,3 +204,20 @@ def test_little_is_unknown():
     assert len(conflicts) > 10
     assert all(one.minimal for one in conflicts)
     assert not any(one.unknown for one in found)
+
+
+def test_lags_that_exclude_each_other_are_named_with_their_numbers():
+    lags = {"b": {"a": Lag(after_s=100)}, "c": {"a": Lag(within_s=60), "b": Lag(after_s=5)}, "a": {}}
+    tasks = [task(name, 1, 0, duration_s=10, prerequisites=tuple(of), lags=of) for name, of in sorted(lags.items())]
+    (lost,) = impossible(Problem.compile(mission([robot("r"), robot("s"), robot("t")], tasks)))
+    first, second, third = (
+        "c begins at most 60 s after a ends",
+        "b begins at least 100 s after a ends",
+        "c begins at least 5 s after b ends",
+    )
+    assert lost.task == "c"
+    assert {(reason.reason, reason.detail) for reason in lost.reasons} == {
+        ("prerequisite", f"{first}; {second}; {third}: with the work 55 s too long")
+    }
+    looser = [replace(tasks[2], lags={"a": Lag(within_s=115), "b": Lag(after_s=5)})]
+    assert not impossible(Problem.compile(mission([robot("r"), robot("s"), robot("t")], [*tasks[:2], *looser])))

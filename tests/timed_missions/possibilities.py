@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 
+from muster.mission.model import Lag
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.places import CLOSE, SECONDS, near, seconds
@@ -166,6 +167,24 @@ def _too_far(possible, robot, name, lost, within, other, way):
     return near(within, lag.within_s) and any(near(way, one) for one in ways) and not possible.can([name])
 
 
+def _lags_exclude(possible, robot, name, lost, said, _):
+    """No plan does the task by the robot, and each lag that is named is one of the mission."""
+    return not possible.by(robot, name)[-1] and all(_is_lag(possible, part) for part in said.split("; "))
+
+
+def _is_lag(possible, said):
+    lag = re.fullmatch(rf"(\S+) begins at (least|most) {SECONDS} after (\S+) ends", said)
+    if lag is None:
+        task, other = re.fullmatch(r"(\S+) begins together with (\S+)", said).groups()
+        unit_of = possible.every.meaning.unit_of
+        return unit_of[possible.number[task]] == unit_of[possible.number[other]]
+    task, how, time, before = lag.groups()
+    given = possible.task(task).lags.get(before, Lag())
+    return before in possible.task(task).prerequisites and near(
+        time, given.after_s if how == "least" else given.within_s
+    )
+
+
 def _lost_before(possible, robot, name, lost, other):
     return other in lost and other in possible.task(name).prerequisites
 
@@ -225,6 +244,7 @@ ALONE = (
         rf"begins at most {SECONDS} after (\S+) ends, and the robot that does both takes {SECONDS} to come to it",
         _too_far,
     ),
+    (rf"(\S+ begins at (?:least|most) .+|\S+ begins together .+): with the work {SECONDS} too long", _lags_exclude),
     (r"(lacks .+|type \S+ scores .+|only .+ may do it|fits no part of the team: .+)", _nothing_else),
     (r"does at least \d+ tasks or none, and (may do only \d+ tasks?|can never do so many)", _nothing_else),
     (r"needs .+; .+", _nothing_else),

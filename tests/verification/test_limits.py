@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.mission.model import Lag, Mission, Robot, Task
+from muster.mission.model import Lag, Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route
 from muster.verification import verify
 
@@ -74,3 +74,36 @@ def test_a_team_begins_when_all_are_there_and_takes_as_long_as_the_slowest():
     assert verdict.valid
     assert begins(verdict) == {("r", "a"): 5, ("s", "a"): 5}
     assert (verdict.makespan_s, verdict.tasks_completed) == (9, 1)
+
+
+def test_lags_that_exclude_each_other_are_named_with_their_numbers():
+    lags = {"b": {"a": Lag(after_s=100)}, "c": {"a": Lag(within_s=60), "b": Lag(after_s=5)}, "a": {}}
+    tasks = tuple(
+        Task(id=name, position=(k, 0), duration_s=10, prerequisites=tuple(lags[name]), lags=lags[name])
+        for k, name in enumerate("abc")
+    )
+    robots = tuple(Robot(id=name, position=(0, 0)) for name in ("r", "s", "t"))
+    mission = Mission(rules=Rules(timing="constant"), robots=robots, tasks=tasks)
+    (said,) = verify(mission, Plan(routes=tuple(map(Route, "rst", (("a",), ("b",), ("c",)))))).violations
+    first, _, others = said.detail.partition(": ")
+    assert (said.kind, said.task, first) == ("prerequisite", "c", "no times keep all of these")
+    assert set(others.split("; ")) == {
+        "b begins at least 100 s after a ends",
+        "c begins at least 5 s after b ends",
+        "c begins at most 60 s after a ends",
+        "a takes 10 s, b takes 10 s",
+    }
+
+
+def test_a_way_that_is_longer_than_a_lag_is_named():
+    """One robot does all three: it comes to c, 60 m away, in 60 s and not in 30 s."""
+    tasks = (
+        Task(id="a", position=(0, 0)),
+        Task(id="b", position=(0, 0), duration_s=7),
+        Task(id="c", position=(60, 0), prerequisites=("a",), lags={"a": Lag(within_s=30)}),
+    )
+    mission = Mission(rules=Rules(timing="constant"), robots=(Robot(id="r", position=(0, 0)),), tasks=tasks)
+    (said,) = verify(mission, Plan(routes=(Route("r", ("a", "b", "c")),))).violations
+    assert "r comes to c 60 s after b ends" in said.detail
+    assert "c begins at most 30 s after a ends" in said.detail
+    assert said.detail.endswith("takes 7 s") or "b takes 7 s" in said.detail

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from muster.allocation.bottleneck import bottleneck
+from muster.allocation.lag_cycles import lag_cycle
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.deadline import too_late
 from muster.allocation.rules.times import spans
@@ -121,7 +122,7 @@ class Limits:
     def held_back(self) -> dict[int, str]:
         """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
         tasks = range(len(self.problem.tasks)) if self.is_timed else ()
-        found = {j: _too_far(self, j) or _held_back(self, j) for j in tasks}
+        found = {j: _too_far(self, j) or lag_cycle(self, [j, *self.must_also(j)]) or _held_back(self, j) for j in tasks}
         return {j: late for j, late in found.items() if late}
 
     @cached_property

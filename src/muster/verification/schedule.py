@@ -9,7 +9,7 @@ earliest schedule.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from itertools import groupby, pairwise
@@ -57,6 +57,19 @@ class _Node:
     awaited: list[tuple[str, float, float]] = field(default_factory=list)  # prerequisite, least and most lag
 
 
+@dataclass(frozen=True)
+class _Bound:
+    """What raises the begin of a node: the end of a task, the begin of one that waits for it, and seconds.
+
+    By a leg of `robot`, or without one by a lag: the most if `delays` the task before, else the least.
+    """
+
+    before: str
+    seconds: float
+    robot: str | None = None
+    delays: str | None = None
+
+
 def is_after(time: float, limit: float) -> bool:
     """Whether a time is later than a limit, by more than rounding."""
     return time > limit + ROUNDING * max(1.0, abs(limit))
@@ -93,6 +106,7 @@ class _Graph:
         for name, task in self.task.items():
             self.nodes[self.node_of[name]].awaited.extend(self._lags(task))
         self.begin = dict.fromkeys(self.nodes, 0.0)
+        self.raised_by: dict[str, _Bound] = {}  # what has raised the begin of a node last, where no window has
 
     def _limit(self, limit: float) -> float:
         return limit - self.margin * max(1.0, abs(limit)) if math.isfinite(limit) else limit
@@ -139,7 +153,7 @@ class _Graph:
             if self._windows_passed() != jumps:
                 jumps, passes = self._windows_passed(), 0
             if passes > lagged + 1:
-                return Deadlock(delayed)
+                return Deadlock(self._too_long(delayed))
         return Schedule(self._times(), tuple(self._broken()))
 
     def _order(self) -> list[str] | Deadlock:
@@ -156,16 +170,33 @@ class _Graph:
     def _end(self, task: str) -> float:
         return self.begin[self.node_of[task]] + self.work[task]
 
-    def _arrival(self, leg: tuple[str | None, str, float]) -> float:
-        before, _, seconds = leg
-        return seconds + (0.0 if before is None else self._end(before))
+    def _bounds(self, name: str) -> Iterator[tuple[float, _Bound | None]]:
+        """When a node may begin at the earliest, by each leg and prerequisite."""
+        for before, robot, seconds in self.nodes[name].legs:
+            if before is None:
+                yield seconds, None
+            else:
+                yield seconds + self._end(before), _Bound(before, seconds, robot)
+        for before, after, _ in self.nodes[name].awaited:
+            yield after + self._end(before), _Bound(before, after)
 
     def _earliest(self, name: str) -> float:
         """The begin of a node from what comes before it, and at least what it is now."""
-        node = self.nodes[name]
-        bounds = [self._arrival(leg) for leg in node.legs]
-        bounds += [self._end(before) + after for before, after, _ in node.awaited]
-        return self._open(node, max(self.begin[name], *bounds))
+        time = self.begin[name]
+        for bound, why in self._bounds(name):
+            if bound > time:
+                time = bound
+                self._raise(name, why)
+        later = self._open(self.nodes[name], time)
+        if later > time:
+            self._raise(name, None)
+        return later
+
+    def _raise(self, name: str, why: _Bound | None) -> None:
+        if why is None:
+            self.raised_by.pop(name, None)
+        else:
+            self.raised_by[name] = why
 
     def _open(self, node: _Node, time: float) -> float:
         """The first time from `time` on that lies in a window of each task; `time` where none is left."""
@@ -190,18 +221,51 @@ class _Graph:
             for _, last in windows
         )
 
-    def _delay_prerequisites(self) -> Violation | None:
+    def _delay_prerequisites(self) -> str | None:
         """Begin later what must not have ended too long before its dependant begins; the last such, if any."""
         found = None
         for own, node in self.nodes.items():
             for name, _, within in node.awaited:
                 least = self.begin[own] - within - self.work[name]
-                if is_after(least, self.begin[self.node_of[name]]):
-                    self.begin[self.node_of[name]] = least
-                    task = next(t.id for t in node.tasks if name in t.prerequisites)
-                    detail = f"cannot begin within {within:g} s after {name} has ended, however late that begins"
-                    found = Violation("prerequisite", None, task, detail)
+                delayed = self.node_of[name]
+                if is_after(least, self.begin[delayed]):
+                    self.begin[delayed], found = least, delayed
+                    self.raised_by[delayed] = _Bound(name, within, delays=own)
         return found
+
+    def _waiting(self, node: str, before: str) -> str:
+        """The task of a node that waits for a prerequisite."""
+        return next(task.id for task in self.nodes[node].tasks if before in task.prerequisites)
+
+    def _too_long(self, delayed: str) -> Violation:
+        """The cycle of bounds that raise each other for ever, in order; `delayed` is a node that they raise."""
+        name = delayed
+        for _ in self.nodes:
+            name = self._raised_from(name)
+        cycle = [name]
+        while (before := self._raised_from(cycle[0])) != name:
+            cycle.insert(0, before)
+        bounds = [self.raised_by[node] for node in cycle if node in self.raised_by]
+        late = next((bound.delays for bound in bounds if bound.delays), delayed)
+        work = ", ".join(f"{b.before} takes {self.work[b.before]:,.10g} s" for b in bounds if not b.delays)
+        said = "; ".join([*map(self._said, (node for node in cycle if node in self.raised_by)), work])
+        detail = f"no times keep all of these: {said}" if work else "its lags and windows leave no times"
+        return Violation("prerequisite", None, self.nodes[late].tasks[0].id, detail)
+
+    def _raised_from(self, name: str) -> str:
+        """The node that has raised the begin of a node; itself where a window has."""
+        bound = self.raised_by.get(name)
+        if bound is None:
+            return name
+        return bound.delays or self.node_of[bound.before]
+
+    def _said(self, name: str) -> str:
+        bound = self.raised_by[name]
+        if bound.delays:
+            return f"{self._waiting(bound.delays, bound.before)} begins at most {_after(bound)}"
+        if bound.robot:
+            return f"{bound.robot} comes to {self._task_after(bound.robot, bound.before)} {_after(bound)}"
+        return f"{self._waiting(name, bound.before)} begins at least {_after(bound)}"
 
     def _times(self) -> dict[tuple[str, str], Times]:
         times = {}
@@ -258,6 +322,10 @@ class _Graph:
     def _task_after(self, robot: str, before: str) -> str:
         steps = next(route.steps for route in self.routes if route.robot.id == robot)
         return next(after.task.id for first, after in pairwise(steps) if first.task.id == before)
+
+
+def _after(bound: _Bound) -> str:
+    return f"{bound.seconds:,.10g} s after {bound.before} ends"
 
 
 def _in_windows(windows: Sequence[tuple[float, float]], begin: float) -> bool:
