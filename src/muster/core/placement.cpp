@@ -158,6 +158,7 @@ void Placement::try_place(int robot, int task, int at) {
   Offer there = arrival(robot, task, at, work);
   if (hopeless(there)) return;
   go_on(there, task);
+  if (hopeless(there)) return;
   const int unit = problem_.unit(task);
   const double begin = timeline_.open(unit, std::max(ready_, there.arrive));
   if (!timeline_.in_time(begin, latest_) || !timeline_.in_time(begin + work, there.latest)) return;
