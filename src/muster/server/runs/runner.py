@@ -95,7 +95,8 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
         )
         plan = plan_from(begin["plan"], "the plan")
         with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
-            run_loop = RunLoop(world_run, recorder, inbox, outbox, speed=begin["speed"], ended=ended.is_set)
+            how = {"speed": begin["speed"], "starts_at": mission.starts_at, "ended": ended.is_set}
+            run_loop = RunLoop(world_run, recorder, inbox, outbox, **how)
             if real:
                 run_loop.recall(log)
             else:
