@@ -156,8 +156,9 @@ void Placement::try_place(int robot, int task, int at) {
   const bool sees_usage = problem_.objective() != Objective::makespan;
   if (!sees_usage && least_score(robot, at, work) >= best_.score) return;
   Offer there = arrival(robot, task, at, work);
-  if (!sees_usage && least_score(there) >= best_.score) return;
+  if (hopeless(there)) return;
   go_on(there, task);
+  if (hopeless(there)) return;
   const int unit = problem_.unit(task);
   const double begin = timeline_.open(unit, std::max(ready_, there.arrive));
   if (!timeline_.in_time(begin, latest_) || !timeline_.in_time(begin + work, there.latest)) return;
@@ -224,6 +225,15 @@ double Placement::least_score(const Offer& arrival) const {
   InsertionScore score(Objective::makespan, peak_);
   score.add(arrival, begin, arrival.work, 0.0);
   return score.value(begin, tail_, 0.0);
+}
+
+// Of objective `makespan`: whether no team with this member costs less than the best that is known, or ends the mission
+// in time.
+bool Placement::hopeless(const Offer& offer) const {
+  if (problem_.objective() != Objective::makespan) return false;
+  const double begin = std::max(ready_, offer.arrive);
+  const double end = begin + std::max(tail_, offer.work + offer.onward);
+  return end > trial_->latest_end || least_score(offer) >= best_.score;
 }
 
 // A task between two stops up to its end, as if the way on took no time.

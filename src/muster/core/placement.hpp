@@ -43,7 +43,9 @@ class Placement {
   void walk_cuts(int unit, Try&& attempt);
   void gather_cuts(int unit);
   bool pass(std::size_t candidate, double cut);
+  bool offered(std::size_t candidate) const;
   void make_offers(int unit, std::size_t candidate);
+  bool may_join(Offer& offer, int task) const;
   void try_cut(int unit);
   void try_key(int unit, int key);
   double key_of(const Offer& offer, int key) const;
@@ -61,6 +63,7 @@ class Placement {
   bool in_reach(int robot, int task, int at) const;
   double least_score(int robot, int at, double work) const;
   double least_score(const Offer& arrival) const;
+  bool hopeless(const Offer& offer) const;
   Offer arrival(int robot, int task, int at, double work) const;
   void go_on(Offer& offer, int task) const;
   void measure_usage(Offer& offer, int task) const;

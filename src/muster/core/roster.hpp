@@ -27,6 +27,7 @@ struct Trial {
   double blink = 0.0;                            // how often a place is overlooked
   Random* random = nullptr;                      // for that
   const class Neighbours* neighbours = nullptr;  // for `most_places`
+  double latest_end = kNever;                    // of objective `makespan`: no place at which the mission ends later
   const std::vector<char>* robots = nullptr;     // by robot, whether it may be a member; none: all
 };
 

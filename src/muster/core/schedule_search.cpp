@@ -104,7 +104,9 @@ void ScheduleSearch::anneal(int steps, double hot, double cold) {
 void ScheduleSearch::step(double temperature) {
   const double most = current_ - temperature * std::log(random_.uniform() + 1e-300);
   ruin();
-  if (roster_.settle() && recreate(most)) {
+  const bool complete = roster_.settle() && recreate(most);
+  trial_.latest_end = kNever;
+  if (complete) {
     const bool possible = roster_.finish(trial_) && roster_.admissible();
     const double next = possible ? cost() : kNever;
     if (next < most) {
@@ -132,6 +134,7 @@ bool ScheduleSearch::recreate(double most) {
     more = false;
     for (int& unit : pending_) {
       if (unit < 0 || roster_.present(unit) || !roster_.ready(unit)) continue;
+      if (sees_end_) limit_end(most);
       const UnitInsertion* insertion = roster_.best_insertion(unit, trial_);
       const int tried = std::exchange(unit, -1);
       if (!insertion) {
@@ -140,12 +143,16 @@ bool ScheduleSearch::recreate(double most) {
       }
       if (!roster_.insert(*insertion)) return false;
       more = true;
-      if (sees_end_ && roster_.peak() > most) return false;
+      if (sees_end_ && roster_.peak() > trial_.latest_end) return false;
     }
     more &= problem_.has_prerequisites();
   }
   return true;
 }
+
+// Of objective `makespan`: when the mission may end, if it is to cost no more than `most`. Robots' own ends only rise
+// with what is put in.
+void ScheduleSearch::limit_end(double most) { trial_.latest_end = most - kTie * ties(); }
 
 double ScheduleSearch::distance_from_start(int unit) const {
   const int task = problem_.tasks_of_unit(unit).front();

@@ -30,6 +30,7 @@ class ScheduleSearch {
   void fill();
   void step(double temperature);
   bool recreate(double most);
+  void limit_end(double most);
   void order_pending();
 
   void ruin();

@@ -19,8 +19,10 @@ void Placement::try_cuts(int unit) {
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     if (std::ranges::any_of(tasks, [&](int task) { return usable(robot, task); })) candidates_.push_back(robot);
   }
-  offers_.resize(tasks.size() * candidates_.size());
+  offers_.assign(tasks.size() * candidates_.size(), Offer{});
   gather_cuts(unit);
+  works_.assign(tasks.size(), 0.0);
+  tail_ = timeline_.tail_after(unit, works_);
   for (auto& moved : moved_) moved.assign(candidates_.size(), 1);
   for (auto& ranking : rankings_) {
     for (auto& ranked : ranking) ranked.clear();
@@ -38,7 +40,9 @@ void Placement::walk_cuts(int unit, Try&& attempt) {
     bool any_moved = false;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       if (!pass(c, cut)) continue;
+      const bool could = offered(c);
       make_offers(unit, c);
+      if (!could && !offered(c)) continue;
       any_moved = true;
       for (auto& moved : moved_) moved[c] = 1;
     }
@@ -113,6 +117,14 @@ bool Placement::pass(std::size_t candidate, double cut) {
   return std::exchange(at_[candidate], at) != at;
 }
 
+// Whether a robot could do any task of the unit where it stands.
+bool Placement::offered(std::size_t candidate) const {
+  for (std::size_t k = candidate; k < offers_.size(); k += candidates_.size()) {
+    if (offers_[k].robot >= 0) return true;
+  }
+  return false;
+}
+
 void Placement::make_offers(int unit, std::size_t candidate) {
   const int robot = candidates_[candidate];
   const auto tasks = problem_.tasks_of_unit(unit);
@@ -124,13 +136,18 @@ void Placement::make_offers(int unit, std::size_t candidate) {
     if (!in_reach(robot, tasks[k], at_[candidate])) continue;
     const double work = problem_.work_time(robot, tasks[k]);
     made = arrival(robot, tasks[k], at_[candidate], work);
-    go_on(made, tasks[k]);
-    measure_usage(made, tasks[k]);
-    if (!timeline_.in_time(std::max(ready_, made.arrive) + work, made.latest) ||
-        !problem_.fits(robot, made.usage + made.growth)) {
-      made.robot = -1;
-    }
+    if (!may_join(made, tasks[k])) made.robot = -1;
   }
+}
+
+// Measures the rest of an offer; tells whether its robot could be a member of the best team.
+bool Placement::may_join(Offer& offer, int task) const {
+  if (hopeless(offer)) return false;
+  go_on(offer, task);
+  if (hopeless(offer)) return false;
+  measure_usage(offer, task);
+  return timeline_.in_time(std::max(ready_, offer.arrive) + offer.work, offer.latest) &&
+         problem_.fits(offer.robot, offer.usage + offer.growth);
 }
 
 // Robots are ranked by what they cost the objective, by when they come, by how long the mission takes through them, or
