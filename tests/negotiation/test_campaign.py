@@ -30,7 +30,7 @@ def test_nothing_fails_with_rules_of_time(first):
 
 
 def test_missions_with_rules_of_time_have_all_of_them():
-    words = Counter(word for seed in range(60) for word in Problem.compile(scenario_of(seed, timed=True).mission).asked)
+    words = Counter(word for seed in range(90) for word in Problem.compile(scenario_of(seed, timed=True).mission).asked)
     assert all(words[word] > 5 for word in AGREED)
     assert {task.id for task in scenario_of(3, timed=True).mission.tasks} == {
         task.id for task in scenario_of(3).mission.tasks
