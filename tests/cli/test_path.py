@@ -176,11 +176,11 @@ def test_check_tells_of_a_robot_in_a_wall_in_both_forms(muster, tmp_path):
 
 
 def test_a_smooth_path_turns_no_sharper_than_the_robot_can(muster):
-    """rover0 of `floor` drives 0.8 m/s and turns a quarter a second."""
+    """rover0 of `floor` drives 0.8 m/s and turns by 1.571 rad/s."""
     ends = ("floor", "--from", "2,2", "--to", "36,20", "--smooth")
     for planner in ("shortest", "a-star"):
         found = answer(muster, *ends, "--robot", "rover0", "--planner", planner)
-        assert found["turning_radius_m"] == pytest.approx(0.8 / (math.pi / 2))
+        assert found["turning_radius_m"] == pytest.approx(0.8 / 1.571)
         assert found["max_curvature_per_m"] <= 1.001 / found["turning_radius_m"]
     wide = answer(muster, *ends, "--turning-radius", "3")
     assert wide["max_curvature_per_m"] == pytest.approx(1 / 3, rel=1e-3)
