@@ -12,6 +12,7 @@ from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.auction_5 import AUCTION_5
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure
+from muster_studies.flown import FLOWN
 from muster_studies.localisation import LOCALISATION
 from muster_studies.market_5 import MARKET_5
 from muster_studies.market_rescue import MARKET_RESCUE
@@ -68,6 +69,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     MARKET_5,
     LOCALISATION,
     ROTORS,
+    FLOWN,
     NEGOTIATION,
 )
 

@@ -53,14 +53,15 @@ def test_quiet_does_not_hide_errors(verb, plan, muster):
     assert muster(*arguments) == (2, "", "none.yaml: No such file or directory; expected a file to read\n")
 
 
-@pytest.mark.parametrize("verb", ["verify", "explain"])
-def test_a_plan_that_names_another_mission(verb, plan, muster):
+def test_a_plan_that_names_another_mission_is_refused(plan, muster):
     text = Path("yard.yaml").read_text(encoding="utf-8")
     Path("other.yaml").write_text(text.replace("name: yard", "name: harbour"), encoding="utf-8")
-    _, out, _ = muster(verb, "yard.yaml", plan)
-    warning = 'warning: plan.json: mission: "yard"; expected "harbour"; the plan may be of another mission\n'
-    assert muster(verb, "other.yaml", plan) == (0, out, warning)
-    assert muster(verb, "other.yaml", plan, "-q") == (0, out, "")
+    code, out, err = muster("verify", "other.yaml", plan)
+    assert (code, err) == (1, "")
+    assert "the plan is of yard; expected harbour, or no name" in " ".join(out.split())
+    code, out, err = muster("explain", "other.yaml", plan)
+    assert (code, out) == (2, "")
+    assert "mission: the plan is of yard; expected" in err
 
 
 @pytest.mark.parametrize("verb", ["verify", "explain"])

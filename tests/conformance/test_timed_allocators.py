@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 import pytest
 from tests.timed_missions.meaning import Meaning
@@ -27,6 +28,10 @@ CASES = {
     "relation": {"other_robot_than": ("a",)},
     "starts-with": {"starts_with": ("a",)},
 }
+RULES_OF = {
+    "lateness": {"objective": "lateness"},
+    "makespan-return": {"objective": "makespan", "makespan_includes_return": True, "return_to_start": True},
+}
 OF_ROBOTS = {"shift": {"available_until_s": 200.0}, "min-tasks": {"min_tasks": 2}}
 
 
@@ -34,7 +39,7 @@ def mission_of(word):
     """A mission that asks for one capability."""
     robots = tuple(replace(robot, **OF_ROBOTS.get(word, {})) for robot in ROBOTS)
     task = replace(TASK, **CASES.get(word, {}))
-    rules = muster.Rules(timing="constant", objective="lateness" if word == "lateness" else "total+max")
+    rules = muster.Rules(**{"timing": "constant", **RULES_OF.get(word, {})})
     tasks = (muster.Task(id="a", position=(1.0, 1.0), duration_s=5, due_s=3.0), task)
     return muster.Mission(name=word, rules=rules, robots=robots, tasks=tasks)
 
@@ -73,6 +78,39 @@ def test_each_rule_is_kept_or_refused_by_name(allocator, word):
             muster.ParameterError, match=rf"{re.escape(allocator)} cannot do .*\({word}\); expected .*greedy"
         ):
             muster.solve(mission, allocator, iterations=1)
+
+
+RETURNING = [name for name, allocator in ALLOCATORS.items() if "makespan-return" in allocator.can]
+RANDOM_RETURNS = range(8)
+
+
+def returning(seed, *, counted):
+    """Robots of several speeds that go back to where they start, which the makespan counts or not."""
+    random = Random(seed)
+    rules = replace(mission_of("makespan-return").rules, makespan_includes_return=counted)
+
+    def point():
+        return random.uniform(0, 50), random.uniform(0, 50)
+
+    robots = tuple(muster.Robot(id=f"r_{k}", position=point(), speed_mps=random.choice((0.5, 1, 2))) for k in range(3))
+    tasks = tuple(muster.Task(id=f"t_{k}", position=point(), duration_s=random.uniform(0, 20)) for k in range(6))
+    return muster.Mission(name="returning", rules=rules, robots=robots, tasks=tasks)
+
+
+@pytest.mark.parametrize("allocator", RETURNING)
+def test_plans_are_better_where_the_return_counts(allocator):
+    """An allocator that can count the return finds routes that end earlier, on average, than without counting it."""
+    counted = [solved(returning(seed, counted=True), allocator, 1) for seed in RANDOM_RETURNS]
+    not_counted = [solved(returning(seed, counted=False), allocator, 1) for seed in RANDOM_RETURNS]
+    for seed, plan in zip(RANDOM_RETURNS, counted, strict=True):
+        holds_true(returning(seed, counted=True), plan)
+    judged = [muster.verify(returning(seed, counted=True), bare(plan)) for seed, plan in enumerate(not_counted)]
+    assert sum(plan.objective_value for plan in counted) < sum(verdict.makespan_s for verdict in judged)
+
+
+def bare(plan):
+    """The routes of a plan."""
+    return muster.Plan(routes=tuple(muster.Route(route.robot, route.tasks) for route in plan.routes))
 
 
 @pytest.mark.parametrize("allocator", [name for name, a in ALLOCATORS.items() if a.can == ALL])

@@ -65,7 +65,7 @@ def test_geojson_has_every_thing(seen):
         "robot": ROBOTS,
     }
     (a,) = [f for f in features if f["properties"]["name"] == "a"]
-    assert (a["properties"]["robot"], a["properties"]["order"]) == ("d2", 1)
+    assert (a["properties"]["robots"], a["properties"]["orders"]) == (["d2"], [1])
     assert a["properties"]["ends_s"] == pytest.approx(np.linalg.norm([97, 40, 20]) / 4 + 10)
     assert metres(*a["geometry"]["coordinates"]) == pytest.approx((100, 40, 20), abs=1e-3)
 
@@ -150,7 +150,7 @@ def test_csv_has_a_line_for_each_visit_and_each_task_left_out(tmp_path):
     head, *lines = [line.split(",") for line in csv_text(mission, verdict, Earth.of(mission, "a test")).splitlines()]
     assert head == [
         *("robot", "order", "task", "x", "y", "z", "lat_deg", "lon_deg"),
-        *("arrives_s", "starts_s", "ends_s", "usage_m"),
+        *("arrives_s", "starts_s", "ends_s", "usage_m", "waits_s", "late_s", "with"),
     ]
     assert [line[:3] for line in lines] == [
         ["d1", "1", "b"],
@@ -160,11 +160,12 @@ def test_csv_has_a_line_for_each_visit_and_each_task_left_out(tmp_path):
         ["rover", "1", "g"],
         ["", "", "left"],
     ]
-    a = [float(word) for word in lines[2][3:]]
+    a = [float(word) for word in lines[2][3:-2]]
     away = np.linalg.norm([97, 40, 20])
     assert a[:3] == [100, 40, 20]
     assert a[3:5] == pytest.approx((LAT, LON), abs=0.01)
-    assert a[5:] == pytest.approx([away / 4, away / 4, away / 4 + 10, away], abs=1e-4)
+    assert a[5:] == pytest.approx([away / 4, away / 4, away / 4 + 10, away, 0], abs=1e-4)
+    assert lines[2][-2:] == ["", ""]
 
 
 def test_csv_needs_no_origin(tmp_path):

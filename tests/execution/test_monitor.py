@@ -7,12 +7,14 @@ from muster import Robot
 from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck
 from muster.execution.robot_state import Activity, RobotState
 from muster.mission.errors import ParameterError
+from muster.motion.leg_times import LegTimes
 from muster.motion.port import Waypoint
 
 
 def driving(speed=1.0, way=100.0):
-    point = Point(Robot(id="r", position=(0, 0), speed_mps=speed))
-    state = RobotState(Robot(id="r", position=(0, 0), speed_mps=speed), point, None, in_time=False, last_heard_s=0.0)
+    robot = Robot(id="r", position=(0, 0), speed_mps=speed)
+    point = Point(robot)
+    state = RobotState(robot, point, None, LegTimes(speed), in_time=False, last_heard_s=0.0)
     point.step(0.0)
     state.hear(0.0)
     state.send(0.0, Activity.DRIVING, [Waypoint((way, 0.0, 0.0))])
@@ -77,7 +79,7 @@ def at_work(name, place, point, held_s=100.0, activity=Activity.WORKING):
     robot = Robot(id=name, position=place, radius_m=0.3)
     port = Point(robot)
     port.step(0.0)
-    state = RobotState(robot, port, None, in_time=False, last_heard_s=0.0)
+    state = RobotState(robot, port, None, LegTimes(1.0), in_time=False, last_heard_s=0.0)
     state.hear(0.0)
     state.send(0.0, activity, [Waypoint((*point, 0.0), hold_s=held_s)])
     return state

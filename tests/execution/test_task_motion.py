@@ -8,6 +8,7 @@ from muster import Robot, Task
 from muster.execution.task_motion import path_length, place, straight, work_of
 from muster.mission.model import Action, Camera
 from muster.motion.actions import Impossible, plan
+from muster.motion.leg_times import LegTimes
 
 
 def around(robot, start, goal):
@@ -16,7 +17,7 @@ def around(robot, start, goal):
 
 
 def work(task, robot, way=straight):
-    return work_of(task, robot, plan, way)
+    return work_of(task, robot, plan, way, LegTimes(robot.speed_mps))
 
 
 def stays(work):

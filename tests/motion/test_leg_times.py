@@ -1,6 +1,7 @@
 """The time of a leg by the motion profile: in Python, in the core, and in the simulated world."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -53,18 +54,44 @@ def test_a_trapezoid_and_a_triangle():
     assert LegTimes(2.0, turn_s=1.5).seconds([4.0, 0.0]).tolist() == [3.5, 0.0]
 
 
+def test_a_bent_way_is_turned_by_the_least_angle_and_has_stops():
+    sliding = LegTimes(1.0, acceleration_mps2=0.5, over_map=True)
+    turning = replace(sliding, turn_s=3.0)
+    apart = 24.0 * math.cos(math.pi / 6)  # two equal pieces that make an angle of 60 degrees
+    assert sliding.seconds(24.0, 0.0, apart) == pytest.approx(24.0 + 2 * 2.0)
+    assert turning.seconds(24.0, 0.0, apart) == pytest.approx(24.0 + 3 * 2.0 + 3.0 * (1 + 60 / 90))
+    assert turning.seconds(24.0, 0.0, 24.0) == 24.0 + 2.0 + 3.0
+    assert replace(turning, over_map=False).seconds(24.0, 0.0, apart) == 24.0 + 2.0 + 3.0
+
+
+def test_work_that_drives_stops_and_turns_at_each_way_point():
+    times = LegTimes(1.0, acceleration_mps2=1.0, turn_s=2.0)
+    square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)]
+    assert times.work_seconds(square, [4.0] * 4) == pytest.approx(4 * 5.0 + 4 * 2.0)
+    assert times.work_seconds(square[:1], []) == 0.0
+    assert LegTimes(2.0).work_seconds(square, [4.0] * 4) == 8.0
+
+
+def test_the_rest_of_a_leg_takes_less_than_a_leg():
+    times = LegTimes(1.0, acceleration_mps2=0.5, turn_s=2.0)
+    assert times.rest_seconds(10.0) == pytest.approx(10.0 + 1.0)
+    assert times.rest_seconds(0.5) == pytest.approx(math.sqrt(2 * 0.5 / 0.5))
+    assert times.rest_seconds(0.0) == 0.0
+    assert times.least_seconds(10.0) == 12.0
+
+
 def test_constant_timing_takes_the_speed_alone():
     mission = mission_of(ROBOTS[4], (10.0, 0.0, 0.0), timing="constant")
     assert muster.solve(mission, "greedy").makespan_s == 11.0
-    assert LegTimes.of(mission.robots[0], mission.rules).is_constant
+    assert LegTimes.in_mission(mission.robots[0], mission).is_constant
 
 
 def test_a_right_angle_is_turned_by_what_drives_where_it_looks():
     turning, sliding = (
         Robot(id="r", position=(0, 0), yaw_rate_radps=0.5, kinematics=k) for k in ("differential-drive", "holonomic")
     )
-    assert LegTimes.of(turning, Rules()).turn_s == math.pi
-    assert LegTimes.of(sliding, Rules()).turn_s == 0.0
+    assert LegTimes.of(turning, Rules(), over_map=False).turn_s == math.pi
+    assert LegTimes.of(sliding, Rules(), over_map=False).turn_s == 0.0
 
 
 def test_longer_legs_take_longer():

@@ -222,6 +222,13 @@ def test_nothing_passes_where_prisms_touch(prisms):
     assert expected * (1 - 1e-6) <= in_air(prisms, (10, 20, 4), (30, 20, 4)) <= expected * 1.005
 
 
+def test_a_gap_much_narrower_than_the_prisms_beside_it_is_the_shortest_way():
+    """Over both, or around them, is a way too: the gap is seen before it is needed."""
+    prisms = [Prism(shapely.box(19.5, a, 20.5, b), -math.inf, 9) for a, b in ((-1, 18), (18.02, 39))]
+    expected = 1 + 2 * math.hypot(9.5, 1.98)
+    assert expected * (1 - 1e-6) <= in_air(prisms, (10, 20, 4), (30, 20, 4)) <= expected * 1.005
+
+
 def test_the_boundary_of_the_air():
     corner = shapely.Polygon([(0, 0), (40, 0), (40, 10), (10, 10), (10, 40), (0, 40)])
     found = in_air([], (5, 35, 1), (35, 5, 1), corner)

@@ -6,6 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.random_missions import random_mission
+from tests.timed_missions.meaning import Meaning
+from tests.timed_missions.missions import timed_mission
+from tests.timed_missions.places import Places
 
 import muster
 from muster.mission.model import Map, Mission, Robot, Rules, Task, TravelTable, Zone
@@ -127,3 +130,78 @@ def test_reasons_name_robots_of_the_mission_and_known_words():
     ):
         plan = Plan(routes=(Route("r", ()),), unassigned=(Unassigned("a", (Reason(*reason, "..."),)),))
         assert found(mission, plan) == ([("reason", reason[0], "a")] if is_false else [])
+
+
+# --- with rules of time, teams and relations --------------------------------------------------------------------------
+
+
+def reasons_judged(seed):
+    """For each task left out, robot and word: whether it is true, whether the robot could do it, and the verdict."""
+    mission = timed_mission(seed)
+    number = Meaning(mission).number
+    plan = muster.solve(mission, "greedy", seed=seed)
+    by_robot = {route.robot: tuple(number[name] for name in route.tasks) for route in plan.routes}
+    routes = tuple(by_robot[robot.id] for robot in mission.robots)
+    for item in plan.unassigned:
+        for i, robot in enumerate(mission.robots):
+            places = Places(mission, (), routes, i, number[item.task])
+            for word in ("not-chosen", "window", "deadline", "shift", "team", "relation", "prerequisite", "capacity"):
+                verdict = verify(mission, with_reason(plan, item.task, robot.id, word))
+                said_of_it = {"relation": bool(places.all), "team": mission.tasks[places.j].is_for_team}
+                yield word, places.is_true(word) and said_of_it.get(word, True), bool(places.left()), verdict
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_true_reason_is_rejected_and_false_ones_are_found(seed):
+    for word, is_true, could, verdict in reasons_judged(seed):
+        assert not (is_true and not verdict.valid), word
+        is_contradicted = could == (word != "not-chosen")
+        assert verdict.valid != is_contradicted or verdict.reasons_undecided or (word != "not-chosen" and not could)
+
+
+def test_few_reasons_are_left_undecided():
+    verdicts = [verdict for seed in range(6) for *_, verdict in reasons_judged(seed)]
+    assert sum(verdict.reasons_undecided for verdict in verdicts) <= len(verdicts) / 10
+
+
+def late(**limits):
+    """A robot with nothing to do, and a task that it reaches at 10 s and ends at 15 s."""
+    shift = limits.pop("available_until_s", None)
+    robot = Robot(id="r", position=(0, 0), available_until_s=shift)
+    task = Task(id="a", position=(10, 0), duration_s=5, **limits)
+    return Mission(rules=Rules(timing="constant"), robots=(robot,), tasks=(task,))
+
+
+@pytest.mark.parametrize(
+    ("word", "kept", "broken"),
+    [
+        ("window", {"window_s": ((0, 11),)}, {"window_s": ((0, 9),)}),
+        ("deadline", {"deadline_s": 16}, {"deadline_s": 14}),
+        ("shift", {"available_until_s": 16}, {"available_until_s": 14}),
+    ],
+)
+def test_a_limit_that_keeps_nobody_out(word, kept, broken):
+    plan = Plan(routes=(Route("r", ()),), unassigned=(Unassigned("a", (Reason("r", word, "..."),)),))
+    (said,) = verify(late(**kept), plan).violations
+    assert said.detail == f"the plan says {word}, but the robot could do it with the rest of the plan as it is"
+    assert found(late(**broken), plan) == []
+    chosen = with_reason(plan, "a", "r", "not-chosen")
+    assert found(late(**kept), chosen) == []
+    assert found(late(**broken), chosen) == [("reason", "r", "a")]
+
+
+@pytest.mark.parametrize("limit", [15 * (1 + 1e-8), 15 * (1 - 1e-8)])
+def test_a_limit_that_is_too_close_is_left_undecided_and_counted(limit):
+    plan = Plan(routes=(Route("r", ()),), unassigned=(Unassigned("a", (Reason("r", "deadline", "..."),)),))
+    for word in ("deadline", "not-chosen"):
+        verdict = verify(late(deadline_s=limit), with_reason(plan, "a", "r", word))
+        assert (verdict.valid, verdict.reasons_undecided) == (True, 1)
+
+
+@pytest.mark.parametrize(("robots", "is_false"), [(2, True), (1, False)])
+def test_a_team_that_is_there(robots, is_false):
+    members = tuple(Robot(id=f"r_{k}", position=(k, 0)) for k in range(robots))
+    mission = Mission(robots=members, tasks=(Task(id="a", position=(3, 0), robots_needed=2),))
+    routes = tuple(Route(robot.id, ()) for robot in members)
+    plan = Plan(routes=routes, unassigned=(Unassigned("a", (Reason("r_0", "team", "..."),)),))
+    assert found(mission, plan) == ([("reason", "r_0", "a")] if is_false else [])

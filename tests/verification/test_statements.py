@@ -168,6 +168,7 @@ def test_a_plan_from_elsewhere_needs_only_routes(tmp_path):
         "tasks_completed": 3,
         "tasks_total": 4,
         "weight_completed": 7,
+        "reasons_undecided": 0,
     }
 
 

@@ -278,3 +278,11 @@ def test_the_objective_is_the_missions_unless_the_caller_names_another(name):
     verdict = verify(pair(), plan, objective="total")
     assert (verdict.valid, verdict.objective_name, verdict.value()) == (True, "total", 3)
     assert found(verify(pair(), plan, objective="max")) == [("objective", None, None)]
+
+
+@pytest.mark.parametrize(("named", "refused"), [("pair", False), (None, False), ("other", True)])
+def test_a_plan_that_names_another_mission(named, refused):
+    mission = Mission(name="pair", robots=(Robot(id="r", position=(0, 0)),), tasks=(Task(id="a", position=(1, 0)),))
+    found = verify(mission, Plan(mission=named, routes=(Route("r", ("a",)),))).violations
+    said = Violation("mission", None, None, "the plan is of other; expected pair, or no name")
+    assert found == ((said,) if refused else ())

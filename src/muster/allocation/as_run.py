@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 from muster.allocation import genetic, greedy_genetic, greedy_hill_climbing, hill_climbing
 from muster.allocation.bounds_of_mutation import AS_RUN
-from muster.allocation.capabilities import NONE
+from muster.allocation.capabilities import BY_OBJECTIVE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,26 +37,26 @@ HILL_CLIMBING_AS_RUN = replace(
     name="hill-climbing-as-run",
     summary="hill climbing as the thesis' runs of HCTA had it: trapped early",
     parameters=ClimbingParameters,
-    can=NONE,
+    can=BY_OBJECTIVE,
 )
 GENETIC_AS_RUN = replace(
     genetic.GENETIC,
     name="genetic-as-run",
     summary="the genetic algorithm as the thesis' runs of GenTA had it",
     parameters=GeneticParameters,
-    can=NONE,
+    can=BY_OBJECTIVE,
 )
 GREEDY_HILL_CLIMBING_AS_RUN = replace(
     greedy_hill_climbing.GREEDY_HILL_CLIMBING,
     name="greedy+hill-climbing-as-run",
     summary="greedy, then hill climbing as the thesis' runs of GrdHCTA had it",
     parameters=ClimbingParameters,
-    can=NONE,
+    can=BY_OBJECTIVE,
 )
 GREEDY_GENETIC_AS_RUN = replace(
     greedy_genetic.GREEDY_GENETIC,
     name="greedy+genetic-as-run",
     summary="greedy, then the genetic algorithm as the thesis' runs of GrdGenTA had it",
     parameters=GeneticParameters,
-    can=NONE,
+    can=BY_OBJECTIVE,
 )

@@ -8,13 +8,19 @@ from muster.allocation.problem import Problem
 from muster.allocation.rules import RULES
 from muster.mission.errors import ParameterError
 
-_WORDS = (*(word for rule in RULES for word in rule.asked), "lateness")
+RETURN = "makespan-return"
+"""That the makespan counts the ways to the ends of routes, `rules.makespan_includes_return`."""
+
+_WORDS = (*(word for rule in RULES for word in rule.asked), "lateness", RETURN)
 
 ALL = frozenset(_WORDS)
 """Everything that an allocator can be asked for beside what all can."""
 
 FOR_GOOD = ALL.difference(*(rule.asked for rule in RULES if not rule.for_good))
 """What can be asked of an allocator that never takes a task out of a route again."""
+
+BY_OBJECTIVE = frozenset({RETURN})
+"""What can be asked of an allocator that knows no such rules, and compares plans by their objective."""
 
 NONE: frozenset[str] = frozenset()
 

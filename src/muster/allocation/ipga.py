@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Decoded, Floats, Strings, random_strings, ranking, string_of
@@ -99,4 +100,5 @@ IPGA = Allocator(
     anytime=True,
     parameters=Parameters,
     algorithm=allocate,
+    can=BY_OBJECTIVE,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,20 +21,29 @@ class Measured:
         as `Problem.travel`.
     costs, work_classes
         (work classes, n) what tasks cost, and (m,) each robot's class.
+    legs
+        by work class: for each task whose action has geometry the lengths of the legs between its way points.
+    over_map
+        whether they are of shortest ways over a map, which have bends.
     """
 
     table: Floats
     classes: npt.NDArray[np.int32]
     costs: Floats
     work_classes: npt.NDArray[np.int32]
+    legs: tuple[Mapping[int, tuple[float, ...]], ...]
+    over_map: bool = False
 
     def part(self, robots: Sequence[int], places: Sequence[int], tasks: Sequence[int]) -> Measured:
         """The lengths of some robots between some places, and of some tasks; with the classes of these robots alone."""
         tables, classes = np.unique(self.classes[list(robots)], return_inverse=True)
         rows, work_classes = np.unique(self.work_classes[list(robots)], return_inverse=True)
+        number_in = {j: k for k, j in enumerate(tasks)}
         return Measured(
             self.table[tables][:, places][:, :, places],
             classes.astype(np.int32),
             self.costs[rows][:, tasks],
             work_classes.astype(np.int32),
+            tuple({number_in[j]: m for j, m in self.legs[row].items() if j in number_in} for row in rows.tolist()),
+            self.over_map,
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -53,18 +53,25 @@ class MapTravel:
     def costs(self) -> Floats:
         """(classes, n) metres along the way points of actions, else the typed costs; inf where there is no way."""
         costs = self.geometry.costs.copy()
-        for (k, j), doing in self.geometry.moving.items():
-            costs[k, j] = sum(self.robot_paths.leg_m(self.bodies[k], *leg) for leg in doing.legs)
+        for k, row in enumerate(self.legs):
+            for j, metres in row.items():
+                costs[k, j] = sum(metres)
         for k, j in self._crossed:
             if math.isinf(self.robot_paths.leg_m(self.bodies[k], *self._across(k, j))):
                 costs[k, j] = math.inf
         return costs
 
+    @cached_property
+    def legs(self) -> tuple[Mapping[int, tuple[float, ...]], ...]:
+        """As `Measured.legs`; inf where there is no way."""
+        return self.geometry.legs(lambda k, leg: self.robot_paths.leg_m(self.bodies[k], *leg))
+
     def measured(self, threads: int) -> Measured:
         """All lengths."""
         table = np.array([self.lengths(k, exits, threads) for k, exits in enumerate(self.exits)])
         classes = self.geometry.classes
-        return Measured(table, classes, np.where(np.isinf(self.costs), 0.0, self.costs), classes)
+        legs = tuple({j: m for j, m in row.items() if math.isfinite(sum(m))} for row in self.legs)
+        return Measured(table, classes, np.where(np.isinf(self.costs), 0.0, self.costs), classes, legs, over_map=True)
 
     def lengths(self, k: int, exits: Floats, threads: int) -> Floats:
         """(q, p) metres for class k from exits (q, 3) to the entry of each place; inf where there is no way.

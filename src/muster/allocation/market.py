@@ -19,6 +19,7 @@ from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.auction_terms import Terms
 from muster.allocation.auctioneer import Auctioneer, OnRound, Sales
 from muster.allocation.book_keeper import book_of
+from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
@@ -135,4 +136,5 @@ MARKET = Allocator(
     parameters=Parameters,
     algorithm=allocate,
     auctions=True,
+    can=BY_OBJECTIVE,
 )

@@ -18,6 +18,7 @@ import numpy as np
 
 from muster import core
 from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Bools, Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Best, Floats, Strings, fitness, ranking, spun
@@ -138,4 +139,5 @@ PARTICLE_SWARM = Allocator(
     anytime=True,
     parameters=Parameters,
     algorithm=allocate,
+    can=BY_OBJECTIVE,
 )

@@ -21,6 +21,7 @@ from muster.allocation.task_geometry import TaskGeometry
 from muster.allocation.timed_arrays import timed_arrays
 from muster.allocation.timed_rules import TimedRules
 from muster.allocation.travel import require_room, straight_table, travel_table
+from muster.allocation.work_times import work_times
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Task
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
+
+_RETURN_ASKED = {"makespan-return": "objective makespan: makespan_includes_return"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,12 +178,19 @@ class Problem:
     def asked(self) -> Mapping[str, str]:
         """What not every allocator can do, and the problem asks for: each with the place that does so first."""
         found = {word: where for rule in RULES for word, where in rule.asks(self).items() if where is not None}
-        return found | ({"lateness": "objective lateness"} if self.objective == "lateness" else {})
+        late = {"lateness": "objective lateness"} if self.objective == "lateness" else {}
+        return found | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})
+
+    @property
+    def _makespan_includes_ways_to_ends(self) -> bool:
+        rules = self.mission.rules
+        with_ends = any(robot.place_at_end(rules) is not None for robot in self.robots)
+        return self.objective == "makespan" and rules.makespan_includes_return and with_ends
 
     @property
     def has_timed_rules(self) -> bool:
         """Whether anything but prerequisites depends on times, teams, relations or on what a whole route is."""
-        return bool(self.asked)
+        return bool(self.asked.keys() - _RETURN_ASKED.keys())
 
     @cached_property
     def dependants(self) -> list[list[int]]:
@@ -276,19 +286,20 @@ class Problem:
             usage_is_time=self.in_time,
             capacity=self.capacity,
             speed=_floats(r.speed_mps for r in self.robots),
-            efficiency=_floats(r.efficiency for r in self.robots),
             available_from=_floats(r.available_from_s for r in self.robots),
             must_end=np.array([r.place_at_end(self.mission.rules) is not None for r in self.robots], dtype=np.bool_),
             fixed=np.array([len(self.beginning(i)) for i in range(len(self.robots))], dtype=np.int32),
             actuation_cost=measured.costs,
             work_class=measured.work_classes,
-            duration=self._duration,
+            work_seconds=self._work_times[0],
+            time_class=self._work_times[1],
             priority=_floats(t.priority for t in self.tasks),
             allowed=self.allowed_by_kind,
             kind=self.kinds,
             prerequisites=self.prerequisites,
-            entry=self._entries[0],
-            exit=self._exits[0],
+            entry=self._entries,
+            exit=self._exits,
+            place_class=self._task_geometry.classes,
             table=measured.table,
             travel_class=measured.classes,
             **timed_arrays(self, self.leg_times),
@@ -316,9 +327,12 @@ class Problem:
         if self.mission.travel_rule == "map":
             return self._over_map.measured(os.cpu_count() or 1)
         if self.mission.travel_rule == "matrix":
-            return Measured(*travel_table(self.mission, self.robots, self.tasks), geometry.costs, geometry.classes)
-        table = straight_table(self.mission, self._exits, self._entries)
-        return Measured(table, geometry.classes if len(table) else none, geometry.costs, geometry.classes)
+            table, classes = travel_table(self.mission, self.robots, self.tasks)
+        else:
+            table = straight_table(self.mission, self._exits, self._entries)
+            classes = geometry.classes if len(table) else none
+        legs = geometry.legs(lambda _, leg: math.dist(*leg))
+        return Measured(table, classes, geometry.costs, geometry.classes, legs)
 
     @cached_property
     def _task_geometry(self) -> TaskGeometry:
@@ -401,7 +415,8 @@ class Problem:
     @cached_property
     def leg_times(self) -> tuple[LegTimes, ...]:
         """For each robot how long legs take."""
-        return tuple(LegTimes.of(robot, self.mission.rules) for robot in self.robots)
+        over_map = self.mission.travel_rule == "map" if self.known is None else self.known.over_map
+        return tuple(LegTimes.of(robot, self.mission.rules, over_map=over_map) for robot in self.robots)
 
     def metres(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
         """(len(places), len(to)) metres that robot i travels between places."""
@@ -419,8 +434,9 @@ class Problem:
         metres, profile = self.metres(i, places, to), self.leg_times[i]
         if profile.is_constant:
             return np.asarray(metres / profile.speed_mps)
-        rise = np.abs(self._exits[0, places, 2][:, None] - self._entries[0, to, 2][None])
-        return np.asarray(profile.seconds(metres, rise))
+        k = self._task_geometry.classes[i]
+        apart = self._entries[k, to][None] - self._exits[k, places][:, None]
+        return np.asarray(profile.seconds(metres, np.abs(apart[..., 2]), np.linalg.norm(apart, axis=2)))
 
     def work_usage(self, i: int) -> Floats:
         """(n,) usage of robot i for the work of each task."""
@@ -428,9 +444,12 @@ class Problem:
 
     def work_seconds(self, i: int) -> Floats:
         """(n,) the time that robot i takes for the work of each task."""
-        robot = self.robots[i]
-        in_time = self._duration / robot.efficiency
-        return np.where(np.isnan(in_time), self._work_metres(i) / robot.speed_mps, in_time)
+        seconds, classes = self._work_times
+        return np.asarray(seconds[classes[i]])
+
+    @cached_property
+    def _work_times(self) -> tuple[Floats, npt.NDArray[np.int32]]:
+        return work_times(self.robots, self._duration, self.leg_times, self._task_geometry, self.measured)
 
     def _work_metres(self, i: int) -> Floats:
         measured = self.measured

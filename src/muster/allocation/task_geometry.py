@@ -5,7 +5,7 @@ Only tasks whose action has geometry differ between robots.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from muster.mission.model import Point, Robot, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
+from muster.motion.actions.action import Leg
 
 Floats = npt.NDArray[np.float64]
 Classes = npt.NDArray[np.int32]
@@ -68,6 +69,13 @@ class TaskGeometry:
             entries[at], exits[at] = doing.waypoints[0].position, doing.waypoints[-1].position
             costs[at] = doing.cost_m
         return cls(classes, firsts, entries, exits, costs, by_class, like, _reasons(found))
+
+    def legs(self, length: Callable[[int, Leg], float]) -> tuple[Mapping[int, tuple[float, ...]], ...]:
+        """By class: for each task with geometry the lengths of its legs; `length` is of a class and a leg."""
+        rows: tuple[dict[int, tuple[float, ...]], ...] = tuple({} for _ in self.firsts)
+        for (k, j), doing in self.moving.items():
+            rows[k][j] = tuple(length(k, leg) for leg in doing.legs)
+        return rows
 
     def refusal(self, i: int, j: int) -> str | None:
         """Why robot i cannot do task j, whatever the plan; None if it can."""

@@ -27,9 +27,10 @@ def timed_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, A
 
 def _profiles(profiles: Sequence[LegTimes]) -> dict[str, Any]:
     if all(profile.is_constant for profile in profiles):
-        return {"acceleration": _NONE, "climb": _NONE, "turn": _NONE}
+        return {"acceleration": _NONE, "climb": _NONE, "turn": _NONE, "over_map": False}
     return {
         "acceleration": np.array([profile.acceleration_mps2 for profile in profiles]),
         "climb": np.array([profile.climb_mps for profile in profiles]),
         "turn": np.array([profile.turn_s for profile in profiles]),
+        "over_map": any(profile.over_map for profile in profiles),
     }

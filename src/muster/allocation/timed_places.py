@@ -216,7 +216,8 @@ class TimedPlaces(InPlan):
     def _earliest(self, team: Sequence[Member], gaps: Sequence[range]) -> list[tuple[int, ...]]:
         """Combinations of gaps, those first at which the last member arrives first; of these the latest gaps."""
         most = max(1, int(_MOST_PLACES ** (1 / len(team))))
-        near = [_spread(list(some), most) for some in gaps]
+        all_of_them = math.prod(map(len, gaps)) <= _MOST_PLACES
+        near = [list(some) if all_of_them else _spread(list(some), most) for some in gaps]
         arrivals = [{gap: self._arrival(*member, gap) for gap in some} for member, some in zip(team, near, strict=True)]
 
         def order(at: tuple[int, ...]) -> tuple[float, int]:

@@ -14,7 +14,6 @@ from muster.mission.errors import Finding, ParameterError
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan, read_plan
-from muster.mission.value_types import shown
 
 if TYPE_CHECKING:
     from muster.verification import Verdict
@@ -120,8 +119,7 @@ def say_of_plan(
 ) -> None:
     """Print with -v which plan was read; without -q warnings about what it says of itself.
 
-    A plan of another mission is not refused: a mission may be renamed, and its plans hold as before. Rules that the
-    plan was made without hold here unless they are to `ignore`.
+    Rules that the plan was made without hold here unless they are to `ignore`.
     """
     if verbose:
         amount = f"{len(plan.routes)} routes, {sum(len(route.tasks) for route in plan.routes)} tasks"
@@ -130,9 +128,6 @@ def say_of_plan(
     if held and not quiet:
         expected = f"--ignore {','.join((*ignore, *held))}, or these rules hold"
         click.echo(f"warning: {Finding(str(file), None, 'ignored', ', '.join(held), expected)}", err=True)
-    if not quiet and plan.mission not in (None, mission.name):
-        expected = f"{shown(mission.name)}; the plan may be of another mission"
-        click.echo(f"warning: {Finding(str(file), None, 'mission', shown(plan.mission), expected)}", err=True)
 
 
 def require_admissible(mission: Mission, plan: Plan, file: Path, ignore: tuple[str, ...] = ()) -> Verdict:

@@ -72,6 +72,8 @@ def print_verdict(plan: Plan, verdict: Verdict) -> None:
     click.echo(f"weight completed  {verdict.weight_completed:g}")
     _print_ignored(verdict)
     _print_bound(plan.lower_bound, verdict, "; stated in the plan")
+    if verdict.reasons_undecided:
+        click.echo(f"reasons           {verdict.reasons_undecided} for tasks left out not decided")
     if verdict.valid:
         click.echo("valid             yes")
         return

@@ -73,16 +73,17 @@ void bind_problem(nb::module_& m) {
       .def(
           "__init__",
           [](Problem* self, const std::string& objective, bool usage_is_time, Numbers capacity, Numbers speed,
-             Numbers efficiency, Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost,
-             Indices work_class, Numbers duration, Numbers priority, Indices kind, Flags allowed,
-             const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Numbers table,
-             Indices travel_class, const Windows& windows, Numbers deadline, Numbers due, Numbers available_until,
-             Numbers after, Numbers within, Indices unit, const Parts& parts, Numbers abilities, Numbers needs,
-             const std::vector<std::vector<int>>& same_robot, const std::vector<std::vector<int>>& other_robot,
-             Indices min_tasks, Numbers acceleration, Numbers climb, Numbers turn, bool makespan_includes_return) {
+             Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost, Indices work_class,
+             Numbers work_seconds, Indices time_class, Numbers priority, Indices kind, Flags allowed,
+             const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Indices place_class,
+             Numbers table, Indices travel_class, const Windows& windows, Numbers deadline, Numbers due,
+             Numbers available_until, Numbers after, Numbers within, Indices unit, const Parts& parts,
+             Numbers abilities, Numbers needs, const std::vector<std::vector<int>>& same_robot,
+             const std::vector<std::vector<int>>& other_robot, Indices min_tasks, Numbers acceleration, Numbers climb,
+             Numbers turn, bool over_map, bool makespan_includes_return) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
-                entry.ndim() != 2 || entry.shape(1) != 3 || exit.ndim() != 2 || exit.shape(1) != 3 || !table_fits) {
+                entry.ndim() != 3 || entry.shape(2) != 3 || exit.ndim() != 3 || exit.shape(2) != 3 || !table_fits) {
               throw std::invalid_argument("an array has the wrong shape");
             }
             ProblemData data;
@@ -90,19 +91,20 @@ void bind_problem(nb::module_& m) {
             data.usage_is_time = usage_is_time;
             data.capacity = numbers(capacity);
             data.speed = numbers(speed);
-            data.efficiency = numbers(efficiency);
             data.available_from = numbers(available_from);
             data.must_end = flags(must_end);
             data.fixed.assign(fixed.data(), fixed.data() + fixed.size());
             data.actuation_cost = numbers(actuation_cost);
             data.work_class.assign(work_class.data(), work_class.data() + work_class.size());
-            data.duration = numbers(duration);
+            data.work_seconds = numbers(work_seconds);
+            data.time_class.assign(time_class.data(), time_class.data() + time_class.size());
             data.priority = numbers(priority);
             data.kind.assign(kind.data(), kind.data() + kind.size());
             data.allowed = flags(allowed);
             data.prerequisites = rows(prerequisites);
             data.entry = numbers(entry);
             data.exit = numbers(exit);
+            data.place_class.assign(place_class.data(), place_class.data() + place_class.size());
             data.table = numbers(table);
             data.travel_class.assign(travel_class.data(), travel_class.data() + travel_class.size());
             data.windows = windows_of(windows);
@@ -121,27 +123,30 @@ void bind_problem(nb::module_& m) {
             data.acceleration = numbers(acceleration);
             data.climb = numbers(climb);
             data.turn = numbers(turn);
+            data.over_map = over_map;
             data.makespan_includes_return = makespan_includes_return;
             new (self) Problem(std::move(data));
           },
-          nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "efficiency"_a, "available_from"_a,
-          "must_end"_a, "fixed"_a, "actuation_cost"_a, "work_class"_a, "duration"_a, "priority"_a, "kind"_a,
-          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "table"_a, "travel_class"_a, "windows"_a, "deadline"_a,
-          "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a, "abilities"_a, "needs"_a,
-          "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a, "turn"_a,
-          "makespan_includes_return"_a,
+          nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "available_from"_a, "must_end"_a,
+          "fixed"_a, "actuation_cost"_a, "work_class"_a, "work_seconds"_a, "time_class"_a, "priority"_a, "kind"_a,
+          "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
+          "windows"_a, "deadline"_a, "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a,
+          "abilities"_a, "needs"_a, "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a,
+          "turn"_a, "over_map"_a, "makespan_includes_return"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
-          "`actuation_cost` is (work classes, n) and `work_class` (m,); `kind` "
-          "is (m,) and `allowed` (kinds, n); `entry` and `exit` are (n + 2m, "
-          "3) metres in the map "
-          "frame for tasks, starts and ends of robots; or `table` is (classes, n + 2m, n + 2m) metres with each "
+          "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
+          "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
+          "3) metres in the map frame for tasks, starts and ends of robots, and `place_class` is (m,); `table`, where "
+          "ways are not straight, is (classes, n + 2m, n + 2m) metres with each "
           "robot's "
           "`travel_class`. What is empty of the rest no task or robot has: by task `windows`, `deadline`, `due`, "
           "`unit` "
           "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_robot`, `other_robot`; by "
           "robot `available_until`, `min_tasks` (of a route that has any); `after` and `within` by prerequisite; "
           "`abilities` (m, a) and `needs` (n, a); by "
-          "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles. Raises ValueError if shapes do "
+          "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer "
+          "than "
+          "the straight way has bends. Raises ValueError if shapes do "
           "not fit.")
       .def_prop_ro("tasks", &Problem::tasks)
       .def_prop_ro("robots", &Problem::robots)

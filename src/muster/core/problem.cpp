@@ -1,7 +1,9 @@
 #include "problem.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -35,7 +37,7 @@ void require(bool holds, const char* what) {
 
 Problem::Problem(ProblemData data)
     : data_(std::move(data)),
-      tasks_(static_cast<int>(data_.duration.size())),
+      tasks_(static_cast<int>(data_.priority.size())),
       robots_(static_cast<int>(data_.capacity.size())),
       places_(tasks_ + 2 * robots_),
       classes_(1),
@@ -43,27 +45,33 @@ Problem::Problem(ProblemData data)
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
   const auto places = static_cast<std::size_t>(places_);
   require(robots > 0, "a problem needs a robot");
-  require(data_.speed.size() == robots && data_.efficiency.size() == robots && data_.available_from.size() == robots &&
-              data_.must_end.size() == robots && data_.fixed.size() == robots,
+  require(data_.speed.size() == robots && data_.available_from.size() == robots && data_.must_end.size() == robots &&
+              data_.fixed.size() == robots,
           "arrays of robots differ in length");
   require(std::ranges::all_of(data_.fixed, [](int count) { return count >= 0; }),
           "a number of fixed tasks is negative");
-  require(data_.priority.size() == tasks && data_.kind.size() == robots, "arrays of tasks differ in length");
+  require(data_.kind.size() == robots, "kinds need a value for each robot");
   require(data_.work_class.size() == robots, "work classes need a value for each robot");
   require(std::ranges::all_of(data_.work_class, [](int c) { return c >= 0; }), "a work class is negative");
   require(data_.actuation_cost.size() ==
               (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.work_class))) * tasks,
           "actuation costs have the wrong size");
+  require(data_.time_class.size() == robots, "time classes need a value for each robot");
+  require(std::ranges::all_of(data_.time_class, [](int c) { return c >= 0; }), "a time class is negative");
+  require(
+      data_.work_seconds.size() == (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.time_class))) * tasks,
+      "times of work have the wrong size");
   require(std::ranges::all_of(data_.kind, [](int k) { return k >= 0; }), "a kind is negative");
   require(data_.allowed.size() == (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.kind))) * tasks,
           "what kinds may do has the wrong size");
   require(data_.prerequisites.first.size() == tasks + 1, "prerequisites need a row for each task");
   require(std::ranges::all_of(data_.prerequisites.values, [&](int j) { return 0 <= j && j < tasks_; }),
           "a prerequisite is no task");
-  if (data_.table.empty()) {
-    require(data_.entry.size() == 3 * places && data_.exit.size() == 3 * places,
-            "coordinates need a row for each place");
-  } else {
+  require(data_.place_class.size() == robots, "place classes need a value for each robot");
+  require(std::ranges::all_of(data_.place_class, [](int c) { return c >= 0; }), "a place class is negative");
+  const std::size_t drawn = (1 + static_cast<std::size_t>(*std::ranges::max_element(data_.place_class))) * places;
+  require(data_.entry.size() == 3 * drawn && data_.exit.size() == 3 * drawn, "coordinates need a row for each place");
+  if (!data_.table.empty()) {
     require(data_.travel_class.size() == robots, "travel classes need a value for each robot");
     require(std::ranges::all_of(data_.travel_class, [](int c) { return c >= 0; }), "a travel class is negative");
     classes_ = 1 + *std::ranges::max_element(data_.travel_class);
@@ -109,8 +117,29 @@ void Problem::check_times() const {
   require(fits(data_.acceleration.size(), robots) && data_.climb.size() == data_.acceleration.size() &&
               data_.turn.size() == data_.acceleration.size(),
           "motion profiles need a value for each robot");
-  require(data_.turn.empty() || data_.exit.size() == 3 * static_cast<std::size_t>(places_),
-          "motion profiles need coordinates");
+}
+
+// The time of a leg from rest to rest by the robot's motion profile: `LegTimes.seconds` of muster.motion.leg_times.
+double Problem::leg_seconds(int robot, int from, int to, double metres) const {
+  constexpr double kStraight = 0.05;  // radians
+  constexpr double kPieces = 3.0, kPiecesSliding = 2.0;
+  if (!(metres > 0.0) || metres == kInfinity) return metres;
+  const int own = data_.place_class[robot];
+  const std::size_t first = static_cast<std::size_t>(own) * places_;
+  const double rise = std::abs(data_.exit[3 * (first + from) + 2] - data_.entry[3 * (first + to) + 2]);
+  double turned = 0.0;
+  if (data_.over_map) turned = 2.0 * std::acos(std::min(1.0, straight(from, to, own) / metres));
+  const double pieces = turned <= kStraight ? 1.0 : data_.turn[robot] > 0.0 ? kPieces : kPiecesSliding;
+  const double turns = 1.0 + turned / (0.5 * std::numbers::pi);
+  return pieces * ramped(robot, metres / pieces, rise / pieces) + data_.turn[robot] * turns;
+}
+
+double Problem::ramped(int robot, double metres, double rise) const {
+  const double acceleration = data_.acceleration[robot];
+  const double climbing = rise > 0.0 ? data_.climb[robot] * metres / rise : kInfinity;
+  const double speed = std::min(data_.speed[robot], climbing);
+  const bool reaches = metres * acceleration >= speed * speed;
+  return reaches ? metres / speed + speed / acceleration : 2.0 * std::sqrt(metres / acceleration);
 }
 
 void Problem::find_units() {

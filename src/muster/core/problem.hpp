@@ -39,21 +39,23 @@ struct ProblemData {
   // Robots.
   std::vector<double> capacity;  // inf: unlimited
   std::vector<double> speed;
-  std::vector<double> efficiency;
   std::vector<double> available_from;
   std::vector<char> must_end;  // the route goes on to the robot's end
   std::vector<int> fixed;      // tasks at the beginning of the route that stay where they are
   // Tasks.
   std::vector<double> actuation_cost;  // work classes x tasks
   std::vector<int> work_class;         // of each robot
-  std::vector<double> duration;        // NaN: not given
+  std::vector<double> work_seconds;    // time classes x tasks
+  std::vector<int> time_class;         // of each robot
   std::vector<double> priority;
   std::vector<int> kind;      // of each robot
   std::vector<char> allowed;  // kinds x tasks
   Rows prerequisites;
-  // Travel: coordinates (places x 3), or a table (classes x places x places) with each robot's class.
+  // Travel: coordinates (place classes x places x 3) with each robot's class; or a table (classes x places x places)
+  // with each robot's class.
   std::vector<double> entry;
   std::vector<double> exit;
+  std::vector<int> place_class;
   std::vector<double> table;
   std::vector<int> travel_class;
   // Times, teams and relations; what is empty, no task or robot has.
@@ -68,6 +70,7 @@ struct ProblemData {
   Rows same_robot, other_robot;                  // symmetric
   std::vector<double> acceleration, climb;       // by robot; inf: no limit
   std::vector<double> turn;                      // by robot: seconds of the turn with which a leg begins
+  bool over_map = false;                         // what is longer than the straight way has bends
   bool makespan_includes_return = false;
 };
 
@@ -174,7 +177,7 @@ class Problem {
 
   // Whether the mission gives travel as tables.
   bool has_table() const { return given_table_; }
-  // Where a place is entered, in metres, by axis.
+  // Where a place is entered, in metres, by axis; for robots of the first class.
   double entry(int place, int axis) const { return data_.entry[3 * static_cast<std::size_t>(place) + axis]; }
   // Metres from the exit of one place to the entry of another.
   double distance(int travel_class, int from, int to) const {
@@ -186,25 +189,13 @@ class Problem {
 
   double travel_time(int robot, int from, int to) const {
     const double metres = distance(travel_class(robot), from, to);
-    if (data_.turn.empty()) return metres / data_.speed[robot];
-    return leg_seconds(robot, metres, std::abs(exit_z(from) - entry(to, 2)));
-  }
-  // The time of a leg from rest to rest by the robot's motion profile: `LegTimes.seconds` of muster.motion.leg_times.
-  double leg_seconds(int robot, double metres, double rise) const {
-    if (!(metres > 0.0)) return metres;
-    const double acceleration = data_.acceleration[robot];
-    const double climbing = rise > 0.0 ? data_.climb[robot] * metres / rise : kInfinity;
-    const double speed = data_.speed[robot] < climbing ? data_.speed[robot] : climbing;
-    const bool reaches = metres * acceleration >= speed * speed;
-    const double driven = reaches ? metres / speed + speed / acceleration : 2.0 * std::sqrt(metres / acceleration);
-    return driven + data_.turn[robot];
+    return data_.turn.empty() ? metres / data_.speed[robot] : leg_seconds(robot, from, to, metres);
   }
   double actuation_cost(int robot, int task) const {
     return data_.actuation_cost[static_cast<std::size_t>(data_.work_class[robot]) * tasks_ + task];
   }
   double work_time(int robot, int task) const {
-    const double duration = data_.duration[task];
-    return std::isnan(duration) ? actuation_cost(robot, task) / data_.speed[robot] : duration / data_.efficiency[robot];
+    return data_.work_seconds[static_cast<std::size_t>(data_.time_class[robot]) * tasks_ + task];
   }
   double travel_usage(int robot, int from, int to) const {
     return data_.usage_is_time ? travel_time(robot, from, to) : distance(travel_class(robot), from, to);
@@ -236,10 +227,12 @@ class Problem {
   void find_robots_allowed();
   void find_units();
   void check_times() const;
-  double exit_z(int place) const { return data_.exit[3 * static_cast<std::size_t>(place) + 2]; }
-  double straight(int from, int to) const {
-    const double* a = &data_.exit[3 * static_cast<std::size_t>(from)];
-    const double* b = &data_.entry[3 * static_cast<std::size_t>(to)];
+  double leg_seconds(int robot, int from, int to, double metres) const;
+  double ramped(int robot, double metres, double rise) const;
+  double straight(int from, int to, int place_class = 0) const {
+    const std::size_t first = static_cast<std::size_t>(place_class) * places_;
+    const double* a = &data_.exit[3 * (first + from)];
+    const double* b = &data_.entry[3 * (first + to)];
     const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
     return std::sqrt(dx * dx + dy * dy + dz * dz);
   }

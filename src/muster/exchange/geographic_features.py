@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 
 from muster.exchange.earth import Earth, Spot, anticlockwise
 from muster.exchange.itinerary import Itinerary
+from muster.exchange.task_times import clock, stops_of, task_properties, utc
 from muster.mission.model import Mission
-from muster.verification import Verdict
+from muster.verification import RouteFigures, Verdict
 
 Properties = dict[str, Any]
 
@@ -21,7 +23,9 @@ AREAS = ("boundary", "zone")
 class Feature:
     """A place (one point), a path (several points) or an area (corners, anticlockwise).
 
-    `heights_m` has for each point its height in the map frame; None in a mission in the plane.
+    `heights_m` has for each point its height in the map frame; None in a mission in the plane. `times` has for each
+    point of a route when the robot arrives, for its start when it leaves, and at last when the route ends; for a task
+    when work starts and ends. There is none where the mission does not start at a time in a zone.
     """
 
     kind: str
@@ -29,6 +33,7 @@ class Feature:
     spots: tuple[Spot, ...]
     heights_m: tuple[float, ...] | None
     properties: Properties
+    times: tuple[datetime, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -50,11 +55,14 @@ def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth:
     """The features of a plan."""
     spatial = mission.dimensions == 3
 
-    def feature(kind: str, name: str, points: Sequence[tuple[float, ...]], properties: Properties) -> Feature:
+    def feature(
+        kind: str, name: str, points: Sequence[tuple[float, ...]], own: Properties, times_s: Sequence[float] = ()
+    ) -> Feature:
         heights = tuple((*point, 0.0)[2] for point in points) if spatial else None
-        return Feature(kind, name, tuple(earth.spots(points)), heights, {"kind": kind, "name": name} | properties)
+        times = tuple(moment for seconds in times_s if (moment := utc(mission, seconds)) is not None)
+        return Feature(kind, name, tuple(earth.spots(points)), heights, {"kind": kind, "name": name} | own, times)
 
-    visits = _visits(verdict)
+    stops = stops_of(verdict)
     figures = {route.robot: route for route in verdict.routes}
     return Survey(
         mission=mission.name,
@@ -63,7 +71,13 @@ def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth:
             for r in mission.robots
         ),
         tasks=tuple(
-            feature("task", t.id, [t.position], {"type": t.type} | visits.get(t.id, {"robot": None}))
+            feature(
+                "task",
+                t.id,
+                [t.position],
+                {"type": t.type} | task_properties(mission, t, stops.get(t.id, ())),
+                [time for stop in stops.get(t.id, ())[:1] for time in (stop.visit.starts_s, stop.visit.ends_s)],
+            )
             for t in mission.tasks
         ),
         routes=tuple(
@@ -71,12 +85,8 @@ def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth:
                 "route",
                 i.robot.id,
                 [passage.place for passage in i.passages],
-                {
-                    "robot": i.robot.id,
-                    "tasks": list(figures[i.robot.id].tasks),
-                    f"usage_{verdict.usage_unit}": figures[i.robot.id].usage,
-                    "ends_s": i.passages[-1].leaves_s,
-                },
+                _route_properties(mission, i, figures[i.robot.id], verdict.usage_unit),
+                _times_s(i),
             )
             for i in team
             if len(i.passages) > 1
@@ -85,19 +95,17 @@ def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth:
     )
 
 
-def _visits(verdict: Verdict) -> dict[str, Properties]:
-    """For each task in the plan, who does it and when."""
-    return {
-        visit.task: {
-            "robot": route.robot,
-            "order": order,
-            "arrives_s": visit.arrives_s,
-            "starts_s": visit.starts_s,
-            "ends_s": visit.ends_s,
-        }
-        for route in verdict.routes
-        for order, visit in enumerate(route.visits, 1)
-    }
+def _times_s(itinerary: Itinerary) -> list[float]:
+    """When the robot leaves its start, arrives at each further point, and leaves the last one."""
+    start, *others = itinerary.passages
+    return [start.leaves_s, *(passage.arrives_s for passage in others), itinerary.passages[-1].leaves_s]
+
+
+def _route_properties(mission: Mission, itinerary: Itinerary, figures: RouteFigures, unit: str) -> Properties:
+    leaves_s, ends_s = figures.leaves_s, itinerary.passages[-1].leaves_s
+    own = {"robot": figures.robot, "tasks": list(figures.tasks), f"usage_{unit}": figures.usage, "ends_s": ends_s}
+    times = {"starts_at": clock(mission, leaves_s), "ends_at": clock(mission, ends_s)}
+    return own | {name: value for name, value in times.items() if value is not None}
 
 
 def _areas(mission: Mission) -> list[tuple[str, str, list[tuple[float, ...]], Properties]]:

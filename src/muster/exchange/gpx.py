@@ -1,6 +1,8 @@
 """A plan as GPX 1.1 (topografix.com/GPX/1/1): a way point for each place, then a route for each robot that has tasks.
 
-The order of elements is that of the schema. `ele` is metres above the ellipsoid, in 3-D missions alone.
+The order of elements is that of the schema. `ele` is metres above the ellipsoid, in 3-D missions alone. `time` is in
+UTC, as the standard asks: when work at a task starts, and when a robot arrives at a point of its route. There is none
+where the mission does not start at a time in a zone.
 """
 
 from __future__ import annotations
@@ -9,7 +11,7 @@ from xml.etree import ElementTree as Tree
 
 from muster.exchange.earth import Spot
 from muster.exchange.geographic_features import Feature, Survey
-from muster.exchange.xml_text import add, decimal, text_of
+from muster.exchange.xml_text import add, decimal, text_of, time_text
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
 
@@ -28,17 +30,19 @@ def gpx_text(survey: Survey) -> str:
         add(route, "name", feature.name)
         add(route, "desc", f"tasks {' '.join(feature.properties['tasks'])}")
         add(route, "number", number)
-        for spot in feature.spots:
-            _point(route, "rtept", spot, feature)
+        for k, spot in enumerate(feature.spots):
+            _point(route, "rtept", spot, feature, k)
     return text_of(root)
 
 
-def _point(parent: Tree.Element, tag: str, spot: Spot, feature: Feature) -> Tree.Element:
-    """A point; longitudes of GPX lie in [-180, 180)."""
+def _point(parent: Tree.Element, tag: str, spot: Spot, feature: Feature, k: int = 0) -> Tree.Element:
+    """The k-th point of a feature; longitudes of GPX lie in [-180, 180)."""
     lon = -180.0 if spot.lon >= 180 else spot.lon
     point = add(parent, tag, lat=decimal(spot.lat), lon=decimal(lon))
     if feature.heights_m is not None:
         add(point, "ele", spot.alt)
+    if feature.times:
+        add(point, "time", time_text(feature.times[k]))
     return point
 
 
@@ -47,6 +51,8 @@ def _told(feature: Feature) -> str:
     own = feature.properties
     if feature.kind == "robot":
         return f"start of robot {feature.name}"
-    if own["robot"] is None:
+    if not own["robots"]:
         return "left out"
-    return f"robot {own['robot']}, number {own['order']}, from {own['starts_s']:.1f} s to {own['ends_s']:.1f} s"
+    members = [f"robot {robot}, number {order}" for robot, order in zip(own["robots"], own["orders"], strict=True)]
+    late = f", {own['late_s']:.1f} s late" if own.get("late_s") else ""
+    return f"{' and '.join(members)}, from {own['starts_s']:.1f} s to {own['ends_s']:.1f} s{late}"

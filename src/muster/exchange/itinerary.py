@@ -12,6 +12,7 @@ from muster.execution.travel import way_of
 from muster.mission.errors import Finding, PlanError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.actions import plan as doing
+from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place
 from muster.motion.robot_paths import RobotPaths
 from muster.verification import RouteFigures, Verdict, Visit
@@ -94,7 +95,7 @@ def itineraries(mission: Mission, verdict: Verdict, robot_paths: RobotPaths | No
 def _itinerary(mission: Mission, robot: Robot, figures: RouteFigures, tasks: dict[str, Task], way: Way) -> Itinerary:
     passages = [Passage(place(robot.position), 0.0, figures.leaves_s)]
     for visit in figures.visits:
-        work = work_of(tasks[visit.task], robot, doing, way)
+        work = work_of(tasks[visit.task], robot, doing, way, LegTimes.in_mission(robot, mission))
         if not isinstance(work, Work):
             raise _no_way(mission, f"robot {robot.id} at task {visit.task}: {work.reason}")
         passages += _travel(mission, robot, passages[-1], work.entry, visit.arrives_s, way)[:-1]
@@ -132,8 +133,9 @@ def _work(work: Work, visit: Visit) -> list[Passage]:
 def _timed(work: Work) -> Iterator[tuple[Place, float, float, float | None]]:
     """Each way point of a work with the seconds, from the entry on, at which the robot arrives and leaves."""
     here, now = work.entry, 0.0
+    s_per_m = work.driven_s / work.way_m if work.way_m else 0.0
     for waypoint in work.waypoints:
-        arrives = now + math.dist(here, waypoint.position) / work.speed_mps
+        arrives = now + s_per_m * math.dist(here, waypoint.position)
         here, now = waypoint.position, arrives + waypoint.hold_s
         yield here, arrives, now, waypoint.heading
 

@@ -2,19 +2,22 @@
 
 Heights are those of the mission, over the ground (`relativeToGround`): KML's own zero is the mean sea level, which a
 height above the ellipsoid does not tell. Lines and areas are cut at the meridian of 180 degrees.
-The order of elements is that of the schema.
+The order of elements is that of the schema. A `TimeSpan` says in UTC when a task or a route starts and ends; there is
+none where the mission does not start at a time in a zone.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 from xml.etree import ElementTree as Tree
 
 from muster.exchange.antimeridian import cut_line, cut_ring
 from muster.exchange.earth import Spot
 from muster.exchange.geographic_features import AREAS, Feature, Survey
-from muster.exchange.xml_text import add, decimal, text_of
+from muster.exchange.xml_text import add, decimal, text_of, time_text
 
 _NAMESPACE = "http://www.opengis.net/kml/2.2"
 
@@ -36,11 +39,14 @@ def kml_text(survey: Survey) -> str:
 def _placemark(folder: Tree.Element, feature: Feature) -> None:
     mark = add(folder, "Placemark")
     add(mark, "name", feature.name)
+    if feature.times:
+        span = add(mark, "TimeSpan")
+        add(span, "begin", time_text(feature.times[0]))
+        add(span, "end", time_text(feature.times[-1]))
     data = add(mark, "ExtendedData")
     for name, value in feature.properties.items():
         if name != "name" and value is not None:
-            told = " ".join(value) if isinstance(value, list) else value
-            add(add(data, "Data", name=name), "value", told)
+            add(add(data, "Data", name=name), "value", _listed(value) if isinstance(value, list) else value)
     heights = (0.0,) * len(feature.spots) if feature.heights_m is None or feature.kind in AREAS else feature.heights_m
     spots = [replace(spot, alt=height) for spot, height in zip(feature.spots, heights, strict=True)]
     if feature.kind in AREAS:
@@ -57,6 +63,11 @@ def _placemark(folder: Tree.Element, feature: Feature) -> None:
         elif feature.kind == "route":
             add(shape, "tessellate", 1)
         add(shape, "coordinates", _coordinates(line))
+
+
+def _listed(items: Sequence[Any]) -> str:
+    """Names one after another; lists of numbers as JSON."""
+    return " ".join(items) if all(isinstance(item, str) for item in items) else json.dumps(items)
 
 
 def _parent(mark: Tree.Element, pieces: Sequence[Sequence[Spot]]) -> Tree.Element:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from datetime import datetime
 from typing import Any
 from xml.etree import ElementTree as Tree
 
@@ -21,6 +22,11 @@ def add(parent: Tree.Element, tag: str, text: object = None, **attributes: Any) 
 def decimal(number: float) -> str:
     """A number as `xsd:decimal`, which has no exponent; to nine places."""
     return f"{number:.9f}".rstrip("0").rstrip(".")
+
+
+def time_text(moment: datetime) -> str:
+    """A moment in UTC as `xsd:dateTime`."""
+    return moment.strftime("%Y-%m-%dT%H:%M:%S.") + f"{moment.microsecond // 1000:03d}Z"
 
 
 def text_of(root: Tree.Element) -> str:

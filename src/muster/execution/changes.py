@@ -15,6 +15,7 @@ from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
+from muster.motion.leg_times import LegTimes
 from muster.motion.port import RobotPort
 
 FAILED, SILENT, STUCK = "robot_fails", "robot_silent", "robot_stuck"
@@ -208,6 +209,7 @@ def new_robot_state(
         robot_as_it_holds(robot, ignored),
         ports[robot.id],
         None if home is None else place(home),
+        LegTimes.in_mission(robot, mission),
         in_time,
         last_heard_s=now,
         since_s=now,

@@ -14,7 +14,7 @@ from muster.execution.monitor import exceeds
 from muster.execution.peers import Gathering, Peers
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
-from muster.execution.task_motion import MotionPlanner, Way, Work, path_length, work_of
+from muster.execution.task_motion import MotionPlanner, Way, Work, path_length, travel_s, work_of
 from muster.execution.team_work import break_off
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
@@ -143,26 +143,28 @@ class Dispatch:
         return None if onward is None else [state.refuge, *onward]
 
     def _to_task(self, state: RobotState, task: str, now: float) -> Iterator[Change]:
-        work = work_of(self._ledger.tasks[task], state.robot, self._plan_motion, self._way)
+        work = work_of(self._ledger.tasks[task], state.robot, self._plan_motion, self._way, state.times)
         if isinstance(work, Impossible):
             yield from self.refuse(state, task, work.reason, now)
             return
         way = self.way(state, work.entry)
-        home = self._home_usage(state, work)
+        home = self._way_home(state, work)
         if way is None or home is None:
             yield from self.refuse(state, task, "unreachable: there is no way", now)
             return
         there = [Waypoint(point, label=task) for point in way]
         delay = self._ledger.delays_s.get(task, 0.0)
         lasts = work.lasts_s + delay
-        least = _least_usage(state, work, there, lasts) + home
+        home_usage, home_s = _usage_home(state, work, home)
+        least = _least_usage(state, work, there, lasts) + home_usage
         if exceeds(least, self._capacity(state)):
             yield from self.refuse(
                 state, task, f"capacity: {least:.2f} used with it, of {self._capacity(state):.2f}", now
             )
             return
-        state.work, state.work_s, state.delay_s, state.home_usage = work, lasts, delay, home
-        late = self._too_late(state, task, now + _drive_s(state, there))
+        state.work, state.work_s, state.delay_s = work, lasts, delay
+        state.home_usage, state.home_s = home_usage, home_s
+        late = self._too_late(state, task, now + _least_s(state, state.position, there))
         if late:
             state.work = None
             yield from self.refuse(state, task, late, now)
@@ -240,9 +242,9 @@ class Dispatch:
         ends_s, deadline = begin_s + state.work_s, what.deadline_s
         if deadline is not None and ends_s > deadline + TIME_ROUNDING_S:
             return f"deadline: would end at {ends_s:,.1f} s, after {deadline:,g} s"
-        until, home_s = state.robot.available_until_s, _home_s(state)
-        if until is not None and ends_s + home_s > until + TIME_ROUNDING_S:
-            return f"shift: would be back at {ends_s + home_s:,.1f} s, after {until:,g} s"
+        until, back_s = state.robot.available_until_s, ends_s + state.home_s
+        if until is not None and back_s > until + TIME_ROUNDING_S:
+            return f"shift: would be back at {back_s:,.1f} s, after {until:,g} s"
         return ""
 
     def _work(self, task: str, team: Sequence[RobotState], now: float) -> None:
@@ -318,15 +320,12 @@ class Dispatch:
         before = state.done[-1] if state.done and state.done[-1] in ahead else ""
         return ahead.get(before, 0.0) - ahead.get(task, 0.0)
 
-    def _home_usage(self, state: RobotState, work: Work) -> float | None:
-        """Usage from the exit of a task to where the route ends; None where there is no way."""
+    def _way_home(self, state: RobotState, work: Work) -> list[Waypoint] | None:
+        """The way from the exit of a task to where the route ends; None where there is none."""
         if state.home is None:
-            return 0.0
+            return []
         way = self._way(state.robot, work.exit, state.home)
-        if way is None:
-            return None
-        metres = path_length(work.exit, [Waypoint(point) for point in way])
-        return metres / state.robot.speed_mps if state.in_time else metres
+        return None if way is None else [Waypoint(point) for point in way]
 
 
 def _names(robots: Sequence[str]) -> dict[str, Any]:
@@ -343,13 +342,16 @@ def _words_for_absent(task: str, absent: Sequence[tuple[str, str]]) -> tuple[str
     return "start", f"waits for start with {first}: {', '.join(robot for robot, name in absent if name == first)}"
 
 
-def _drive_s(state: RobotState, there: Sequence[Waypoint]) -> float:
-    return path_length(state.position, there) / state.robot.speed_mps
+def _least_s(state: RobotState, start: Place, way: Sequence[Waypoint]) -> float:
+    """Seconds that a robot drives at least."""
+    rise_m = abs(way[-1].position[2] - start[2]) if way else 0.0
+    return state.times.least_seconds(path_length(start, way), rise_m)
 
 
-def _home_s(state: RobotState) -> float:
-    """Seconds from the exit of the current task to where the route ends."""
-    return state.home_usage if state.in_time else state.home_usage / state.robot.speed_mps
+def _usage_home(state: RobotState, work: Work, way: Sequence[Waypoint]) -> tuple[float, float]:
+    """What the way from the exit of a task to the end of the route uses, and the seconds that it takes at least."""
+    usage = travel_s(state.times, work.exit, way) if state.in_time else path_length(work.exit, way)
+    return usage, _least_s(state, work.exit, way)
 
 
 def _work_for(state: RobotState, lasts_s: float, now: float, *, stands: bool) -> None:
@@ -376,7 +378,6 @@ def _delayed(work: Work, by_s: float) -> list[Waypoint]:
 
 def _least_usage(state: RobotState, work: Work, there: Sequence[Waypoint], lasts_s: float) -> float:
     """Usage when a task is done, if nothing comes in the way, in the mission's unit."""
-    metres = path_length(state.position, there)
     if state.in_time:
-        return state.used + metres / state.robot.speed_mps + lasts_s
-    return state.used + metres + max(work.cost_m, work.way_m)
+        return state.used + _least_s(state, state.position, there) + lasts_s
+    return state.used + path_length(state.position, there) + max(work.cost_m, work.way_m)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from muster.execution.beginning import next_begin
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger
-from muster.execution.task_motion import MotionPlanner, Way, Work, path_length, work_of
+from muster.execution.task_motion import MotionPlanner, Way, Work, travel_s, work_of
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 
@@ -38,7 +38,7 @@ class Forecast:
     plan_motion: MotionPlanner
     way: Way
     _works: dict[tuple[str, str, Place | tuple[float, ...]], Work | None] = field(default_factory=dict)
-    _metres: dict[tuple[str, Place, Place], float] = field(default_factory=dict)
+    _legs_s: dict[tuple[str, Place, Place], float] = field(default_factory=dict)
 
     def begins(self, now: float, margin: float = 0.0) -> dict[str, float] | None:
         """When each task of the routes that has not begun begins; None if the routes have no schedule."""
@@ -57,7 +57,7 @@ class Forecast:
         what = self.ledger.tasks[task]
         key = (state.robot.id, task, what.position)
         if key not in self._works:
-            work = work_of(what, state.robot, self.plan_motion, self.way)
+            work = work_of(what, state.robot, self.plan_motion, self.way, state.times)
             self._works[key] = None if isinstance(work, Impossible) else work
         return self._works[key]
 
@@ -71,10 +71,10 @@ class Forecast:
         if work is None:
             return 0.0
         key = (state.robot.id, start, work.entry)
-        if key not in self._metres:
+        if key not in self._legs_s:
             points = self.way(state.robot, start, work.entry) or ()
-            self._metres[key] = path_length(start, [Waypoint(point) for point in points])
-        return self._metres[key] / state.robot.speed_mps
+            self._legs_s[key] = travel_s(state.times, start, [Waypoint(point) for point in points])
+        return self._legs_s[key]
 
 
 @dataclass
@@ -165,7 +165,7 @@ class _Times:
             if k == 0 and state.activity is Activity.WAITING:
                 legs.append(0.0)
             elif k == 0 and state.activity is Activity.DRIVING:
-                legs.append(state.travel_left_m / state.robot.speed_mps)
+                legs.append(state.travel_left_s)
             else:
                 legs.append(self.of.leg_s(state, place, name))
             work = self.of.work(state, name)

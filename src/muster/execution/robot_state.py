@@ -12,6 +12,7 @@ from enum import Enum
 
 from muster.execution.task_motion import Work, path_length, place
 from muster.mission.model import Robot
+from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
 
@@ -38,6 +39,8 @@ class RobotState:
         who it is, and how it is reached.
     home
         where its route must end; None: anywhere.
+    times
+        how long legs take it.
     in_time
         whether usage is time.
     route
@@ -49,6 +52,7 @@ class RobotState:
     robot: Robot
     port: RobotPort
     home: Place | None
+    times: LegTimes
     in_time: bool
     last_heard_s: float
     route: list[str] = field(default_factory=list)
@@ -79,6 +83,7 @@ class RobotState:
     warned_of: str = ""  # the task on the way to which its capacity was found too small
     left: Place | None = None  # the last place known to be free: a way point passed
     home_usage: float = 0.0  # from the exit of the current task to `home`, in the mission's unit
+    home_s: float = 0.0  # at least, for the same
     _order: int = 0
     _waypoints: tuple[Waypoint, ...] = ()
 
@@ -200,10 +205,19 @@ class RobotState:
             return self.used
         works = self.activity is Activity.WORKING
         if self.in_time:
-            before = 0.0 if works else self.travel_left_m / self.robot.speed_mps
+            before = 0.0 if works else self.travel_left_s
             return self.used + before + (self.work_left_s(now) if works else self.work_s)
         way = self.way_left_m if works else self.travel_left_m + self.work.way_m
         return self.used + way + self._stayed_cost
+
+    @property
+    def travel_left_s(self) -> float:
+        """Seconds to the entry of the current task, for a robot under way."""
+        metres = self.travel_left_m
+        if self.work is None:
+            return self.times.rest_seconds(metres)
+        here, entry = self.position, self.work.entry
+        return self.times.rest_seconds(metres, abs(entry[2] - here[2]), math.dist(here, entry))
 
     @property
     def travel_left_m(self) -> float:

@@ -10,6 +10,7 @@ from itertools import pairwise
 
 from muster.mission.model import Point, Robot, Task
 from muster.motion.actions import Impossible, TaskMotion, duration_of
+from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place, Waypoint
 
 MotionPlanner = Callable[[Task, Robot], TaskMotion | Impossible]
@@ -29,13 +30,13 @@ class Work:
         what it passes from where it enters the task, holds included; passing the last is the end of the work.
     cost_m
         usage of the work, by distance: what of it is not travelled is charged while the robot stays.
-    speed_mps
-        of the robot.
+    driven_s
+        seconds that the robot drives from the entry to the exit.
     """
 
     waypoints: tuple[Waypoint, ...]
     cost_m: float
-    speed_mps: float
+    driven_s: float
 
     @property
     def entry(self) -> Place:
@@ -53,7 +54,7 @@ class Work:
     @property
     def lasts_s(self) -> float:
         """Seconds that it takes, from the entry on."""
-        return self.way_m / self.speed_mps + sum(waypoint.hold_s for waypoint in self.waypoints)
+        return self.driven_s + sum(waypoint.hold_s for waypoint in self.waypoints)
 
     @property
     def stayed_cost_m(self) -> float:
@@ -61,25 +62,28 @@ class Work:
         return max(0.0, self.cost_m - self.way_m)
 
 
-def work_of(task: Task, robot: Robot, plan_motion: MotionPlanner, way: Way) -> Work | Impossible:
-    """How a robot does a task: what `doing` says, by `way` from each way point to the next.
+def work_of(task: Task, robot: Robot, plan_motion: MotionPlanner, way: Way, times: LegTimes) -> Work | Impossible:
+    """How a robot does a task: what `plan_motion` says, by `way` from each way point to the next.
 
-    What the task takes, if that is given, it takes over a map too: by what the ways are longer there the robot stays
-    less. Where they alone take longer, so does the work.
+    What the task takes, if that is given, it takes by the robot's motion profile and over a map too: by what driving
+    takes longer there the robot stays less. Where that alone takes longer, so does the work.
     """
     found = plan_motion(task, robot)
     if isinstance(found, Impossible):
         return found
-    waypoints = [found.waypoints[0]]
+    waypoints, metres = [found.waypoints[0]], list[float]()
     for before, waypoint in pairwise(found.waypoints):
         places = way(robot, before.position, waypoint.position)
         if places is None:
             return Impossible(f"unreachable: there is no way from {_told(before)} to {_told(waypoint)}")
-        waypoints += [*map(Waypoint, places[:-1]), waypoint]
-    way_m, straight_m = (path_length(points[0].position, points) for points in (waypoints, found.waypoints))
+        passed = [*map(Waypoint, places[:-1]), waypoint]
+        metres.append(path_length(before.position, passed))
+        waypoints += passed
+    driven_s = times.work_seconds([waypoint.position for waypoint in found.waypoints], metres)
     if duration_of(task) is not None or found.typed_cost is not None:
-        waypoints = list(_staying_less(waypoints, max(0.0, way_m - straight_m) / robot.speed_mps))
-    return Work(tuple(waypoints), way_m if found.typed_cost is None else found.typed_cost, robot.speed_mps)
+        straight_s = path_length(found.waypoints[0].position, found.waypoints) / robot.speed_mps
+        waypoints = list(_staying_less(waypoints, max(0.0, driven_s - straight_s)))
+    return Work(tuple(waypoints), sum(metres) if found.typed_cost is None else found.typed_cost, driven_s)
 
 
 def _staying_less(waypoints: Sequence[Waypoint], by_s: float) -> Iterator[Waypoint]:
@@ -102,6 +106,14 @@ def straight(robot: Robot, start: Place, goal: Place) -> Sequence[Place] | None:
 def place(point: Point) -> Place:
     """A point of a mission, which may lie in the plane, as a place."""
     return (point[0], point[1], point[2] if len(point) > 2 else 0.0)
+
+
+def travel_s(times: LegTimes, start: Place, waypoints: Sequence[Waypoint]) -> float:
+    """Seconds from rest at a place to rest at the last of the way points, by a way that passes the others."""
+    if not waypoints:
+        return 0.0
+    end = waypoints[-1].position
+    return float(times.seconds(path_length(start, waypoints), abs(end[2] - start[2]), math.dist(start, end)))
 
 
 def path_length(start: Place, waypoints: Sequence[Waypoint]) -> float:

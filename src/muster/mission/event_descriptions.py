@@ -12,6 +12,8 @@ def event_line(kind: str, data: Mapping[str, Any]) -> str:
         return _replanned(data)
     if kind == "found":
         return found_line(data)
+    if kind == "waits":
+        return f"waits: robot {data.get('robot')}, task {data.get('task')}, {data.get('words')}"
     parts = [f"{key} {_short(value)}" for key, value in data.items() if value not in ({}, [], ())]
     return f"{kind.replace('_', ' ')}: {', '.join(parts)}" if parts else kind.replace("_", " ")
 

@@ -88,6 +88,11 @@ class Windows:
         return pair_or_pairs({"type": "number", "minimum": 0})
 
 
+def moment_after(seconds: float, starts_at: str) -> datetime:
+    """The date and time so many seconds after the start."""
+    return datetime.fromisoformat(starts_at) + timedelta(seconds=seconds)
+
+
 def clock_text(seconds: float, starts_at: str) -> str:
     """The clock time so many seconds after the start, `10:00:30`; of later days `+1 10:00:30`."""
     start = datetime.fromisoformat(starts_at)

@@ -1,19 +1,27 @@
 """The time of a leg, from rest to rest, as a robot's motion profile has it: for planner and judge alike.
 
-The core has the same formula in `problem.hpp`. Without acceleration, yaw rate or climb rate in the mission, or with
-`rules.timing: constant`, a leg takes its length by the robot's speed.
+The core has the same formula for legs in `problem.hpp`. Without acceleration, yaw rate or climb rate in the mission, or
+with `rules.timing: constant`, a leg takes its length by the robot's speed.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from muster.mission.model import Robot, Rules
+from muster.mission.model import Mission, Point, Robot, Rules
 from muster.motion.kinematics.registry import kinematics_named, limits_of
+
+_RIGHT_ANGLE = math.pi / 2
+_STRAIGHT = 0.05  # rad: a robot does not slow down for a turn by less
+_PIECES, _PIECES_SLIDING = 3, 2
+"""Of a way with bends: what stopping at all its bends, and passing gentle ones, comes to on average. Measured against
+the kinematic world, see `muster study flown`."""
 
 
 @dataclass(frozen=True)
@@ -27,15 +35,18 @@ class LegTimes:
     turn_s
         of the turn by a right angle with which a leg begins, where the robot drives only where it looks: what the true
         turns come to on average.
+    over_map
+        whether a leg that is longer than the straight line between its ends has bends. In travel tables it has none.
     """
 
     speed_mps: float
     acceleration_mps2: float = math.inf
     climb_mps: float = math.inf
     turn_s: float = 0.0
+    over_map: bool = False
 
     @classmethod
-    def of(cls, robot: Robot, rules: Rules) -> LegTimes:
+    def of(cls, robot: Robot, rules: Rules, *, over_map: bool) -> LegTimes:
         climb = robot.climb_mps if robot.kind == "air" else None
         stated = (robot.acceleration_mps2, robot.yaw_rate_radps, climb)
         if rules.timing == "constant" or stated == (None, None, None):
@@ -46,27 +57,93 @@ class LegTimes:
             robot.speed_mps,
             limits.acceleration_mps2,
             math.inf if climb is None else climb,
-            math.pi / 2 / limits.yaw_rate_radps if turns else 0.0,
+            _RIGHT_ANGLE / limits.yaw_rate_radps if turns else 0.0,
+            over_map=over_map,
         )
+
+    @classmethod
+    def in_mission(cls, robot: Robot, mission: Mission) -> LegTimes:
+        """By the mission's own rules and travel."""
+        return cls.of(robot, mission.rules, over_map=mission.travel_rule == "map")
 
     @property
     def is_constant(self) -> bool:
         """Whether the time is proportional to the length."""
         return self == LegTimes(self.speed_mps)
 
-    def seconds(self, metres: Any, rise_m: Any = 0.0) -> Any:
-        """The time of legs of so many metres, whose ends are so many metres apart in height; shapes as NumPy's.
+    def seconds(self, metres: Any, rise_m: Any = 0.0, apart_m: Any = math.inf) -> Any:
+        """The time of legs; shapes as NumPy's.
 
         The speed rises to its limit and falls to rest again; on short legs it never gets there. Up and down the robot
-        keeps to its path and its climb rate.
+        keeps to its path and its climb rate. A leg over a map that is longer than the straight line turns by the least
+        angle that this takes, and stops between pieces of equal length: two where the robot can move sideways, else
+        three.
+
+        Parameters
+        ----------
+        metres
+            their lengths.
+        rise_m, apart_m
+            how far apart their ends are: in height, and by a straight line.
         """
         metres = np.asarray(metres, dtype=np.float64)
         if self.is_constant:
             return metres / self.speed_mps
+        turned = self._bends(metres, apart_m)
+        pieces = np.where(turned > _STRAIGHT, _PIECES if self.turn_s > 0 else _PIECES_SLIDING, 1)
+        seconds = pieces * self._ramped(metres / pieces, rise_m / pieces)
+        return np.where(metres > 0, seconds + self.turn_s * (1 + turned / _RIGHT_ANGLE), metres)
+
+    def rest_seconds(self, metres: float, rise_m: float = 0.0, apart_m: float = math.inf) -> float:
+        """The time of the rest of a leg for a robot under way: it need not turn nor gather speed any more."""
+        whole = float(self.seconds(metres, rise_m, apart_m))
+        if self.is_constant or metres <= 0:
+            return whole
+        to_speed = (2.0 - math.sqrt(2.0)) * math.sqrt(metres / self.acceleration_mps2)
+        return whole - self.turn_s - min(self.speed_mps / self.acceleration_mps2 / 2, to_speed)
+
+    def least_seconds(self, metres: float, rise_m: float = 0.0) -> float:
+        """The least time of a leg: without any turn."""
+        return metres / self.speed_mps if self.is_constant else float(self._ramped(metres, rise_m))
+
+    def work_seconds(self, points: Sequence[Point], metres: Sequence[float]) -> float:
+        """The time of work that drives: a leg from each point to the next, of so many metres, inf where there is none.
+
+        The robot stops at each of them, and turns there where it drives only where it looks; towards the second by a
+        right angle, as at the beginning of any leg.
+        """
+        if self.is_constant:
+            return sum(metres) / self.speed_mps
+        legs = [(a, b, m) for (a, b), m in zip(pairwise(points), metres, strict=True) if m > 0]
+        driven = sum(float(self.seconds(m, _rise_m(a, b), math.dist(a, b))) - self.turn_s for a, b, m in legs)
+        turned = sum(_turn(a, b, c) for (a, b, _), (_, c, _) in pairwise(legs))
+        return driven + self.turn_s * (bool(legs) + turned / _RIGHT_ANGLE)
+
+    def _bends(self, metres: Any, apart_m: Any) -> Any:
+        """By what angle legs turn on their way, at least, radians."""
+        if not self.over_map:
+            return np.zeros_like(metres)
         with np.errstate(divide="ignore", invalid="ignore"):
-            climbing = np.where(np.asarray(rise_m) > 0, self.climb_mps * metres / rise_m, math.inf)
+            return 2 * np.arccos(np.clip(np.where(metres > 0, apart_m / metres, 1.0), 0.0, 1.0))
+
+    def _ramped(self, metres: Any, rise_m: Any) -> Any:
+        """Straight on, from rest to rest."""
+        metres, rise_m = np.asarray(metres, dtype=np.float64), np.asarray(rise_m, dtype=np.float64)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            climbing = np.where(rise_m > 0, self.climb_mps * metres / rise_m, math.inf)
             speed = np.minimum(self.speed_mps, climbing)
             reaches = metres * self.acceleration_mps2 >= speed * speed
             driven = metres / speed + speed / self.acceleration_mps2
-        seconds = np.where(reaches, driven, 2.0 * np.sqrt(metres / self.acceleration_mps2))
-        return np.where(metres > 0, seconds + self.turn_s, metres)
+        return np.where(reaches, driven, 2.0 * np.sqrt(metres / self.acceleration_mps2))
+
+
+def _rise_m(start: Point, end: Point) -> float:
+    return abs(end[2] - start[2]) if len(start) > 2 else 0.0
+
+
+def _turn(before: Point, at: Point, after: Point) -> float:
+    """By what angle a robot turns at a point between two others, radians, as seen from above."""
+    (ax, ay), (bx, by) = (
+        tuple(q - p for p, q in zip(a[:2], b[:2], strict=True)) for a, b in ((before, at), (at, after))
+    )
+    return abs(math.atan2(ax * by - ay * bx, ax * bx + ay * by))

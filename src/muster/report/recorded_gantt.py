@@ -27,7 +27,7 @@ def plot_flown_gantt(recording: Recording) -> Axes:
     MissingExtraError
         if matplotlib is not installed.
     """
-    rows, until_s = _rows(recording), recording.duration_s
+    rows, until_s = recorded_rows(recording), recording.duration_s
     ax = new_chart_axes(len(rows))
     planned = [version.plan.makespan_s for version in recording.plans[:1] if version.plan.makespan_s is not None]
     chart = TimeChart(
@@ -45,7 +45,8 @@ def plot_flown_gantt(recording: Recording) -> Axes:
     return ax
 
 
-def _rows(recording: Recording) -> tuple[Row, ...]:
+def recorded_rows(recording: Recording) -> tuple[Row, ...]:
+    """What each robot did over time, a row each: the robots of the mission, then those that joined."""
     found = spans(recording.events, recording.duration_s)
     rows = []
     for robot in recording.robots:

@@ -1,18 +1,18 @@
-"""Limits of times in a time chart: windows, deadlines, due times, lateness, and teams; clock times at its axis."""
+"""Draws the marks of a time chart: windows, deadlines, due times, lateness, and teams; clock times at its axis."""
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Sequence
+from itertools import groupby
 from typing import Any
 
-from muster.mission.model import Mission, Task
+from muster.mission.model import Mission
 from muster.mission.time_types import clock_text
 from muster.report.styles import ALARM, QUIET_TEXT, TEXT
-from muster.report.time_chart import WORK_HEIGHT, Row, Work
+from muster.report.time_chart import WORK_HEIGHT, Row
+from muster.report.time_marks import DEADLINE, DUE, LATE, TEAM, WINDOW, TimeMark, time_marks
 
-WINDOW = "#CFE3F3"
+_SHADE = "#CFE3F3"
 _WINDOW_HEIGHT, _LATE_HEIGHT = 0.84, 0.08
 _BELOW = WORK_HEIGHT / 2 + 0.03
 """Where lateness is drawn: just below the bars of work, in rows."""
@@ -23,84 +23,69 @@ Entry = tuple[Any, str]
 
 def draw_limits(ax: Any, mission: Mission, rows: Sequence[Row]) -> list[Entry]:
     """Draw the limits of the tasks that are done, and who begins them together; the entries of a legend."""
-    done = list(_done(mission, rows))
-    entries = [*_draw_windows(ax, done), *_draw_ticks(ax, done), *_draw_lateness(ax, done), *_draw_teams(ax, rows)]
+    marks = time_marks(mission, rows)
+
+    def of(kind: str) -> list[TimeMark]:
+        return [mark for mark in marks if mark.kind == kind]
+
+    entries = [
+        *_draw_windows(ax, of(WINDOW)),
+        *_draw_ticks(ax, of(DEADLINE), "deadline", "-"),
+        *_draw_ticks(ax, of(DUE), "due time", ":"),
+        *_draw_lateness(ax, of(LATE)),
+        *_draw_teams(ax, of(TEAM)),
+    ]
     if mission.starts_at is not None:
         _name_clock_times(ax, mission.starts_at)
     return entries
 
 
-def _done(mission: Mission, rows: Sequence[Row]) -> Iterator[tuple[int, Work, Task]]:
-    tasks = {task.id: task for task in mission.tasks}
-    for number, row in enumerate(rows):
-        for work in row.work:
-            if work.task in tasks:  # else it came in while the mission was carried out
-                yield number, work, tasks[work.task]
-
-
-def _draw_windows(ax: Any, done: Sequence[tuple[int, Work, Task]]) -> list[Entry]:
+def _draw_windows(ax: Any, marks: Sequence[TimeMark]) -> list[Entry]:
     """Shade, in the row of the robot, each window as far as the chart reaches."""
     from matplotlib.patches import Patch
 
-    look: dict[str, Any] = {"facecolor": WINDOW, "alpha": 0.5, "linewidth": 0, "zorder": 0.3}
+    look: dict[str, Any] = {"facecolor": _SHADE, "alpha": 0.5, "linewidth": 0, "zorder": 0.3}
     last = ax.get_xlim()[1]
-    for number, _, task in done:
-        ends = [(opens, last if closes is None else min(closes, last)) for opens, closes in task.window_s]
-        spans = [(opens, closes - opens) for opens, closes in ends if opens < last]
-        if spans:
-            ax.broken_barh(spans, (number - _WINDOW_HEIGHT / 2, _WINDOW_HEIGHT), gid=f"window-{task.id}", **look)
-    return [(Patch(facecolor=WINDOW), "time window")] if any(task.window_s for _, _, task in done) else []
+    within = [mark for mark in marks if mark.from_s < last]
+    for (row, task), windows in groupby(within, key=lambda mark: (mark.row, mark.task)):
+        ends = [(mark.from_s, last if mark.until_s is None else min(mark.until_s, last)) for mark in windows]
+        spans = [(opens, closes - opens) for opens, closes in ends]
+        ax.broken_barh(spans, (row - _WINDOW_HEIGHT / 2, _WINDOW_HEIGHT), gid=f"window-{task}", **look)
+    return [(Patch(facecolor=_SHADE), "time window")] if within else []
 
 
-def _draw_ticks(ax: Any, done: Sequence[tuple[int, Work, Task]]) -> list[Entry]:
-    """Draw a stroke at each deadline, and a dotted one at each due time."""
+def _draw_ticks(ax: Any, marks: Sequence[TimeMark], name: str, stroke: str) -> list[Entry]:
+    """Draw a stroke at each deadline, or a dotted one at each due time."""
     from matplotlib.lines import Line2D
 
-    entries: list[Entry] = []
-    kinds = (
-        ("deadline", "-", [(n, t.deadline_s) for n, _, t in done]),
-        ("due", ":", [(n, t.due_s) for n, _, t in done]),
-    )
-    for name, stroke, all_of in kinds:
-        ticks = [(number, at_s) for number, at_s in all_of if at_s is not None and at_s <= ax.get_xlim()[1]]
-        look: dict[str, Any] = {"color": TEXT, "linewidth": 1.2, "linestyle": stroke}
-        for number, at_s in ticks:
-            high, low = number - _WINDOW_HEIGHT / 2, number + _WINDOW_HEIGHT / 2
-            ax.plot([at_s, at_s], [high, low], zorder=3.5, gid=name, **look)
-        if ticks:
-            entries.append((Line2D([], [], **look), "due time" if name == "due" else name))
-    return entries
+    look: dict[str, Any] = {"color": TEXT, "linewidth": 1.2, "linestyle": stroke}
+    within = [mark for mark in marks if mark.from_s <= ax.get_xlim()[1]]
+    for mark in within:
+        high, low = mark.row - _WINDOW_HEIGHT / 2, mark.row + _WINDOW_HEIGHT / 2
+        ax.plot([mark.from_s, mark.from_s], [high, low], zorder=3.5, gid=mark.kind, **look)
+    return [(Line2D([], [], **look), name)] if within else []
 
 
-def _draw_lateness(ax: Any, done: Sequence[tuple[int, Work, Task]]) -> list[Entry]:
+def _draw_lateness(ax: Any, marks: Sequence[TimeMark]) -> list[Entry]:
     """Draw a red bar from the due time of a task to its end."""
     from matplotlib.patches import Patch
 
-    late = [(row, work, task.due_s) for row, work, task in done if task.due_s is not None and work.ends_s > task.due_s]
-    for number, work, due_s in late:
-        span = [(due_s, work.ends_s - due_s)]
-        ax.broken_barh(
-            span, (number + _BELOW, _LATE_HEIGHT), facecolor=ALARM, linewidth=0, zorder=3.2, gid=f"late-{work.task}"
-        )
-    return [(Patch(facecolor=ALARM), "late")] if late else []
+    look: dict[str, Any] = {"facecolor": ALARM, "linewidth": 0, "zorder": 3.2}
+    for mark in marks:
+        span = (mark.from_s, (mark.until_s or mark.from_s) - mark.from_s)
+        ax.broken_barh([span], (mark.row + _BELOW, _LATE_HEIGHT), gid=f"late-{mark.task}", **look)
+    return [(Patch(facecolor=ALARM), "late")] if marks else []
 
 
-def _draw_teams(ax: Any, rows: Sequence[Row]) -> list[Entry]:
+def _draw_teams(ax: Any, marks: Sequence[TimeMark]) -> list[Entry]:
     """Link the bars of the robots that do one task together, where it begins."""
     from matplotlib.lines import Line2D
 
-    members: dict[str, list[tuple[int, Work]]] = defaultdict(list)
-    for number, row in enumerate(rows):
-        for work in row.work:
-            members[work.task].append((number, work))
     look: dict[str, Any] = {"color": QUIET_TEXT, "linewidth": 1.6, "marker": "o", "markersize": 3}
-    linked = False
-    for task, bars in members.items():
-        for (above, work), (below, other) in pairwise(bars):
-            if above != below:  # a robot may try one task again
-                ax.plot([work.starts_s, other.starts_s], [above, below], zorder=3.4, gid=f"team-{task}", **look)
-                linked = True
-    return [(Line2D([], [], **look), "team")] if linked else []
+    for mark in marks:
+        ends = ([mark.from_s, mark.until_s], [mark.row, mark.to_row])
+        ax.plot(*ends, zorder=3.4, gid=f"team-{mark.task}", **look)
+    return [(Line2D([], [], **look), "team")] if marks else []
 
 
 def _name_clock_times(ax: Any, starts_at: str) -> None:

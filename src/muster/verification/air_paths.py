@@ -82,8 +82,9 @@ class AirPaths:
         along = _FIRST_REACH * float(np.linalg.norm(ends[1] - ends[0]))
         spread = max((high - low) / (_LEVELS - 1), 0.2 * along)
         coarse = [o.coarse_points(levels) for o in met]
-        way = self._through(ends, coarse, met)
-        if way is None:  # a gap may be too narrow for coarse outlines
+        in_gaps = [_raised(corners, levels) for corners in _beside_gaps(met)]
+        way = self._through(ends, [*coarse, *in_gaps], met)
+        if way is None:  # a gap of one obstacle's own may be too narrow for coarse outlines
             way = self._through(ends, [*coarse, *(_raised(o.corners, levels) for o in met)], met)
         for _ in range(_ROUNDS):
             if way is None:
@@ -139,6 +140,7 @@ class _Obstacle:
     ceiling: float
     outline: BaseGeometry
     inside: BaseGeometry
+    around: BaseGeometry
     corners: Floats
     coarse: Floats
     width: float
@@ -155,7 +157,7 @@ class _Obstacle:
         inside = shapely.buffer(block.shape, -hair, join_style="mitre")
         shapely.prepare(inside)
         corners, few = (np.unique(shapely.get_coordinates(shape), axis=0) for shape in (block.shape, coarse))
-        return cls(block.floor, block.ceiling, block.shape, inside, corners, few, width, hair)
+        return cls(block.floor, block.ceiling, block.shape, inside, coarse, corners, few, width, hair)
 
     def holds(self, points: Floats, slack: float) -> Bools:
         """Whether points (n, 3) are inside by more than the slack."""
@@ -230,6 +232,19 @@ class _Obstacle:
 
     def _rims(self) -> list[float]:
         return [height for height in (self.floor, self.ceiling) if math.isfinite(height)]
+
+
+def _beside_gaps(obstacles: Sequence[_Obstacle]) -> Iterator[Floats]:
+    """Corners (n, 2) beside each gap between two obstacles that their coarse outlines close."""
+    import shapely
+
+    for one, other in combinations(obstacles, 2):
+        level = max(one.floor, other.floor) < min(one.ceiling, other.ceiling)
+        if level and one.around.intersects(other.around) and not one.outline.intersects(other.outline):
+            closed = shapely.intersection(one.around, other.around)
+            for obstacle in (one, other):
+                at = shapely.points(obstacle.corners)
+                yield obstacle.corners[shapely.dwithin(closed, at, 2 * _COARSE * obstacle.width)]
 
 
 def _raised(feet: Floats, heights: Floats | list[float]) -> Floats:

@@ -19,7 +19,7 @@ class Insertions:
     """
 
     def __init__(self, mission: Mission, travel: Travel, route: MeasuredRoute) -> None:
-        self._travel, self._route = travel, route
+        self._mission, self._travel, self._route = mission, travel, route
         self._in_time = mission.rules.usage == "time"
         self._pace = 1 / route.robot.speed_mps if self._in_time else 1.0  # usage a metre
         end = place_at_end(route.robot, mission.rules)
@@ -48,7 +48,7 @@ class Insertions:
         metres = self._travel.work_metres(self._route.robot, task)
         if metres is None or not self._passable:
             return math.inf
-        work = work_seconds(self._route.robot, task, metres) if self._in_time else metres
+        work = work_seconds(self._mission, self._travel, self._route.robot, task) if self._in_time else metres
         used = self._route.usage + work
         margin = 2 * self._travel.tolerance * capacity / self._pace
         return used + self._least_metres(task, first, (capacity - used) / self._pace, margin) * self._pace

@@ -14,7 +14,7 @@ from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
 from muster.verification.book import book_faults
 from muster.verification.case import Case
-from muster.verification.known_routes import known_routes
+from muster.verification.known_routes import known_routes, other_mission
 from muster.verification.left_out import left_out_faults
 from muster.verification.measure import MeasuredRoute, all_measured, equality_index
 from muster.verification.rules import rules_that_hold
@@ -65,13 +65,14 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
         ignored=ignored,
         deadlocked=isinstance(found, Deadlock),
     )
-    violations += _broken_rules(case)
+    violations = [*other_mission(mission, plan), *violations, *_broken_rules(case)]
     violations += [found.violation] if isinstance(found, Deadlock) else found.broken
     verdict = _verdict(case, objective, None if isinstance(found, Deadlock) else found.times)
-    violations += left_out_faults(case, plan)
+    left_out, undecided = left_out_faults(case, plan)
+    violations += left_out
     violations += false_statements(plan, verdict, travel.tolerance)
     violations += book_faults(mission, plan)
-    return replace(verdict, violations=tuple(violations))
+    return replace(verdict, violations=tuple(violations), reasons_undecided=undecided)
 
 
 def _broken_rules(case: Case) -> Iterator[Violation]:

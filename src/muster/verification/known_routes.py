@@ -7,6 +7,13 @@ from muster.mission.plan import Plan
 from muster.verification.verdict import Violation
 
 
+def other_mission(mission: Mission, plan: Plan) -> list[Violation]:
+    """A violation if the plan names another mission; a plan that names none, as from elsewhere, is taken as of this."""
+    if plan.mission in (None, mission.name):
+        return []
+    return [Violation("mission", None, None, f"the plan is of {plan.mission}; expected {mission.name}, or no name")]
+
+
 def known_routes(mission: Mission, plan: Plan, teams: bool) -> tuple[dict[str, list[Task]], list[Violation]]:
     """Take from the plan what exists and does not repeat: each robot's tasks; and a violation for all else.
 

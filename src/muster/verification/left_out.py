@@ -9,12 +9,20 @@ from muster.mission.model import Task
 from muster.mission.plan import REASONS, Plan, Reason
 from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute
+from muster.verification.places import Places
 from muster.verification.rules import rules_that_hold
 from muster.verification.verdict import Violation
 
 
-def left_out_faults(case: Case, plan: Plan) -> Iterator[Violation]:
-    """Find where routes and the list `unassigned` contradict each other, and reasons in the list that are not true.
+def left_out_faults(case: Case, plan: Plan) -> tuple[list[Violation], int]:
+    """Find what is wrong with the list `unassigned`, and how many reasons in it could not be decided."""
+    reasons = _Reasons(case)
+    found = [*_contradicted(case, plan), *reasons.false(plan)]
+    return found, reasons.undecided
+
+
+def _contradicted(case: Case, plan: Plan) -> Iterator[Violation]:
+    """Find where routes and the list contradict each other.
 
     A plan from elsewhere may say nothing of what it leaves out. One that has such a list, or any figure, is read as
     a full answer: each task is either in a route or left out.
@@ -33,36 +41,56 @@ def left_out_faults(case: Case, plan: Plan) -> Iterator[Violation]:
         for name in known:
             if name not in in_route and name not in times_listed:
                 yield Violation("unassigned", None, name, "in no route, and not listed as unassigned")
-    routes = {route.robot.id: route for route in case.routes}
-    for item in plan.unassigned:
-        if item.task in known and item.task not in in_route:
-            for reason in item.reasons:
-                yield from _false_reason(case, routes, known[item.task], reason)
 
 
-def _false_reason(case: Case, routes: dict[str, MeasuredRoute], task: Task, reason: Reason) -> Iterator[Violation]:
-    """Check one reason. Where it names no robot it is about none, and nothing can be said against it."""
-    if reason.reason not in REASONS:
-        detail = f"the plan gives the reason {reason.reason}; expected {', '.join(REASONS)}"
-        yield Violation("reason", reason.robot, task.id, detail)
-    elif reason.robot and reason.robot not in routes:
-        yield Violation("reason", reason.robot, task.id, "a reason of no robot of the mission")
-    elif reason.robot:
-        contradiction = _contradiction(case, routes[reason.robot], task, reason.reason)
-        if contradiction is not None:
-            yield Violation("reason", reason.robot, task.id, contradiction)
+class _Reasons:
+    """The reasons of a plan, of which those that are false are sought."""
 
+    def __init__(self, case: Case) -> None:
+        self._case, self._places = case, Places(case)
+        self._routes = {route.robot.id: route for route in case.routes}
+        self.undecided = 0
 
-def _contradiction(case: Case, route: MeasuredRoute, task: Task, reason: str) -> str | None:
-    """Why a reason is false; None if it is true, or too close to decide."""
-    rules = rules_that_hold(case)
-    if reason == "not-chosen":
-        broken = next((rule.kind for rule in rules if rule.prevents(case, route, task)), None)
-        return None if broken is None else f"the plan says not-chosen, but the rule {broken} keeps the robot from it"
-    claims = [rule.prevents(case, route, task) for rule in rules if rule.kind == reason]
-    if any(claim is not False for claim in claims):
+    def false(self, plan: Plan) -> Iterator[Violation]:
+        in_route = {task for route in plan.routes for task in route.tasks}
+        known = {task.id: task for task in self._case.mission.tasks}
+        for item in plan.unassigned:
+            if item.task in known and item.task not in in_route:
+                for reason in item.reasons:
+                    yield from self._false(known[item.task], reason)
+
+    def _false(self, task: Task, reason: Reason) -> Iterator[Violation]:
+        """Check one reason. Where it names no robot it is about none, and nothing can be said against it."""
+        routes = self._routes
+        if reason.reason not in REASONS:
+            detail = f"the plan gives the reason {reason.reason}; expected {', '.join(REASONS)}"
+            yield Violation("reason", reason.robot, task.id, detail)
+        elif reason.robot and reason.robot not in routes:
+            yield Violation("reason", reason.robot, task.id, "a reason of no robot of the mission")
+        elif reason.robot:
+            contradiction = self._contradiction(routes[reason.robot], task, reason.reason)
+            if contradiction is not None:
+                yield Violation("reason", reason.robot, task.id, contradiction)
+
+    def _contradiction(self, route: MeasuredRoute, task: Task, reason: str) -> str | None:
+        """Why a reason is false; None if it is true, or cannot be decided."""
+        claims = [(rule.kind, rule.prevents(self._case, route, task)) for rule in rules_that_hold(self._case)]
+        broken = next((kind for kind, claim in claims if claim), None)
+        if reason == "not-chosen":
+            if broken is not None:
+                return f"the plan says not-chosen, but the rule {broken} keeps the robot from it"
+            is_free = self._can_do(route, task) if any(claim is None for _, claim in claims) else True
+            return "the plan says not-chosen, but at no place are all rules kept" if is_free is False else None
+        if all(claim is False for kind, claim in claims if kind == reason):
+            return f"the plan says {reason}, but that does not keep the robot from it"
+        if broken is None and self._can_do(route, task):
+            return f"the plan says {reason}, but the robot could do it with the rest of the plan as it is"
         return None
-    return f"the plan says {reason}, but that does not keep the robot from it"
+
+    def _can_do(self, route: MeasuredRoute, task: Task) -> bool | None:
+        found = self._places.can_do(route.robot, task)
+        self.undecided += found is None
+        return found
 
 
 def _states_figures(plan: Plan) -> bool:

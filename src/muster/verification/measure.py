@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.mission.model import Mission, Robot, Task
+from muster.motion.actions import TaskMotion
 from muster.motion.leg_times import LegTimes
-from muster.verification.travel import Travel, place_at_end, place_of_start, place_of_task, rise_m
+from muster.verification.travel import Place, Travel, doing_at, place_at_end, place_of_start, place_of_task, rise_m
 
 
 @dataclass(frozen=True)
@@ -54,22 +56,23 @@ def all_measured(mission: Mission, travel: Travel, tasks_of: Mapping[str, Sequen
     slowest: dict[str, float] = {}
     for robot in mission.robots:
         for task in tasks_of.get(robot.id, ()):
-            seconds = work_seconds(robot, task, travel.work_metres(robot, task) or 0.0)
+            seconds = work_seconds(mission, travel, robot, task)
             slowest[task.id] = max(seconds, slowest.get(task.id, 0.0))
-    return tuple(_measured(mission, travel, robot, tasks_of.get(robot.id, ()), slowest) for robot in mission.robots)
+    return tuple(measured(mission, travel, robot, tasks_of.get(robot.id, ()), slowest) for robot in mission.robots)
 
 
-def _measured(
+def measured(
     mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Task], work_s: Mapping[str, float]
 ) -> MeasuredRoute:
+    """Measure one robot's route; `work_s` is how long each task takes."""
     in_time = mission.rules.usage == "time"
-    times = LegTimes.of(robot, mission.rules)
+    times = LegTimes.in_mission(robot, mission)
     steps: list[Step] = []
     travelled = worked = 0.0
     here = place_of_start(robot)
     for task in tasks:
         there = place_of_task(task, robot)
-        leg = _leg(travel.metres(robot, here, there), rise_m(here, there), times, in_time)
+        leg = leg_between(travel, robot, here, there, times, in_time)
         travelled += leg.usage
         metres = travel.work_metres(robot, task)
         seconds = work_s[task.id]
@@ -77,24 +80,35 @@ def _measured(
         worked += seconds if in_time else metres or 0.0
         here = there
     end = place_at_end(robot, mission.rules) if steps else None
-    last_leg = None if end is None else _leg(travel.metres(robot, here, end), rise_m(here, end), times, in_time)
+    last_leg = None if end is None else leg_between(travel, robot, here, end, times, in_time)
     travelled += last_leg.usage if last_leg else 0.0
     return MeasuredRoute(robot, tuple(steps), last_leg, travelled, worked)
 
 
-def _leg(metres: float | None, rise: float, times: LegTimes, in_time: bool) -> Leg:
+def leg_between(travel: Travel, robot: Robot, start: Place, end: Place, times: LegTimes, in_time: bool) -> Leg:
+    """Measure the leg from the exit of one place to the entry of another."""
+    metres = travel.metres(robot, start, end)
     if metres is None:
         return Leg(exists=False, usage=0.0, seconds=0.0)
-    seconds = float(times.seconds(metres, rise))
+    seconds = float(times.seconds(metres, rise_m(start, end), math.dist(start.exit, end.entry)))
     return Leg(exists=True, usage=seconds if in_time else metres, seconds=seconds)
 
 
-def work_seconds(robot: Robot, task: Task, metres: float) -> float:
-    """Return how long the robot works on the task: duration by efficiency where one is given, else cost by speed."""
+def work_seconds(mission: Mission, travel: Travel, robot: Robot, task: Task) -> float:
+    """Return how long the robot works on the task: duration by efficiency where one is given.
+
+    Else the time of its motion profile along the way points of the task's action, if it has any; else cost by speed.
+    """
     duration = task.duration_s
     if duration is None and task.action is not None:
         duration = task.action.duration_s
-    return metres / robot.speed_mps if duration is None else duration / robot.efficiency
+    if duration is not None:
+        return duration / robot.efficiency
+    times, metres = LegTimes.in_mission(robot, mission), travel.work_metres(robot, task) or 0.0
+    doing = None if times.is_constant else doing_at(robot, task)
+    if not isinstance(doing, TaskMotion) or metres == 0.0:
+        return metres / robot.speed_mps
+    return times.work_seconds(doing.points, travel.leg_metres(robot, doing))
 
 
 def equality_index(usages: Sequence[float]) -> float:

@@ -62,21 +62,23 @@ def is_after(time: float, limit: float) -> bool:
     return time > limit + ROUNDING * max(1.0, abs(limit))
 
 
-def schedule(routes: Sequence[MeasuredRoute], ignored: Sequence[str]) -> Schedule | Deadlock:
+def schedule(routes: Sequence[MeasuredRoute], ignored: Sequence[str], margin: float = 0.0) -> Schedule | Deadlock:
     """Find the times of every task, if each robot does its tasks in order, as early as it can.
 
     A robot leaves when it is available, and waits at a task for its team, the tasks that begin with it, its time window
-    and its prerequisites with their lags.
+    and its prerequisites with their lags. All limits are earlier by `margin`, relative, or in seconds where they are
+    below one; a margin below 0 makes them later.
     """
-    return _Graph(routes, ignored).solve()
+    return _Graph(routes, ignored, margin).solve()
 
 
 class _Graph:
     """What bounds the begin of each node."""
 
-    def __init__(self, routes: Sequence[MeasuredRoute], ignored: Sequence[str]) -> None:
-        self.routes, self.ignored = routes, ignored
+    def __init__(self, routes: Sequence[MeasuredRoute], ignored: Sequence[str], margin: float) -> None:
+        self.routes, self.ignored, self.margin = routes, ignored, margin
         self.task = {step.task.id: step.task for route in routes for step in route.steps}
+        self.windows = {name: self._windows(task) for name, task in self.task.items()}
         self.work = {step.task.id: step.work_s for route in routes for step in route.steps}
         self.node_of = self._units()
         self.nodes = {name: _Node([]) for name in self.node_of.values()}
@@ -91,6 +93,15 @@ class _Graph:
         for name, task in self.task.items():
             self.nodes[self.node_of[name]].awaited.extend(self._lags(task))
         self.begin = dict.fromkeys(self.nodes, 0.0)
+
+    def _limit(self, limit: float) -> float:
+        return limit - self.margin * max(1.0, abs(limit)) if math.isfinite(limit) else limit
+
+    def _windows(self, task: Task) -> list[tuple[float, float]]:
+        """When work may begin; empty: at any time."""
+        if "window" in self.ignored:
+            return []
+        return [(first, math.inf if last is None else self._limit(last)) for first, last in task.window_s]
 
     @staticmethod
     def _leaves(route: MeasuredRoute, before: str | None) -> float:
@@ -107,7 +118,9 @@ class _Graph:
         if "prerequisite" in self.ignored:
             return []
         lags = ((name, task.lag(name)) for name in task.prerequisites if name in self.task)
-        return [(name, lag.after_s, math.inf if lag.within_s is None else lag.within_s) for name, lag in lags]
+        return [
+            (name, lag.after_s, math.inf if lag.within_s is None else self._limit(lag.within_s)) for name, lag in lags
+        ]
 
     def solve(self) -> Schedule | Deadlock:
         order = self._order()
@@ -164,17 +177,17 @@ class _Graph:
         return time
 
     def _next(self, task: Task, time: float) -> float:
-        if not task.window_s or "window" in self.ignored:
+        if not self.windows[task.id]:
             return time
-        left = [first for first, last in task.window_s if last is None or not is_after(time, last)]
+        left = [first for first, last in self.windows[task.id] if not is_after(time, last)]
         return max(time, min(left)) if left else math.inf
 
     def _windows_passed(self) -> int:
         """How many windows have closed before their tasks begin."""
         return sum(
-            last is not None and is_after(self.begin[self.node_of[name]], last)
-            for name, task in self.task.items()
-            for _, last in task.window_s
+            is_after(self.begin[self.node_of[name]], last)
+            for name, windows in self.windows.items()
+            for _, last in windows
         )
 
     def _delay_prerequisites(self) -> Violation | None:
@@ -205,10 +218,11 @@ class _Graph:
         found = []
         for name, task in self.task.items():
             begin = self.begin[self.node_of[name]]
-            if "window" not in self.ignored and task.window_s and not _in_windows(task, begin):
+            if self.windows[name] and not _in_windows(self.windows[name], begin):
                 found.append(Violation("window", None, name, _window_text(task, begin)))
             end = begin + self.work[name]
-            if "deadline" not in self.ignored and task.deadline_s is not None and is_after(end, task.deadline_s):
+            deadline = math.inf if task.deadline_s is None else self._limit(task.deadline_s)
+            if "deadline" not in self.ignored and is_after(end, deadline):
                 detail = f"ends at {end:,.10g} s at the earliest, its deadline is {task.deadline_s:,.10g} s"
                 found.append(Violation("deadline", None, name, detail))
         for route in self.routes:
@@ -216,7 +230,7 @@ class _Graph:
             if not route.steps or until is None or "shift" in self.ignored:
                 continue
             back = self._end(route.steps[-1].task.id) + (route.last_leg.seconds if route.last_leg else 0.0)
-            if is_after(back, until):
+            if is_after(back, self._limit(until)):
                 detail = f"its route ends at {back:,.10g} s at the earliest, it is available until {until:,.10g} s"
                 found.append(Violation("shift", route.robot.id, None, detail))
         return found
@@ -246,10 +260,8 @@ class _Graph:
         return next(after.task.id for first, after in pairwise(steps) if first.task.id == before)
 
 
-def _in_windows(task: Task, begin: float) -> bool:
-    return any(
-        not is_after(first, begin) and (last is None or not is_after(begin, last)) for first, last in task.window_s
-    )
+def _in_windows(windows: Sequence[tuple[float, float]], begin: float) -> bool:
+    return any(not is_after(first, begin) and not is_after(begin, last) for first, last in windows)
 
 
 def _window_text(task: Task, begin: float) -> str:

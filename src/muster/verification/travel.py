@@ -118,8 +118,14 @@ class Travel:
             return 0.0
         if self._paths is None:
             return doing.cost_m
-        lengths = [self._paths.metres(robot, start, end) for start, end in doing.legs]
-        return None if None in lengths else math.fsum(length for length in lengths if length is not None)
+        return None if math.inf in (lengths := self.leg_metres(robot, doing)) else math.fsum(lengths)
+
+    def leg_metres(self, robot: Robot, doing: TaskMotion) -> list[float]:
+        """Return the lengths of the legs between the way points of work that drives; inf where there is no way."""
+        if self._paths is None:
+            return [math.dist(start, end) for start, end in doing.legs]
+        lengths = (self._paths.metres(robot, start, end) for start, end in doing.legs)
+        return [math.inf if length is None else length for length in lengths]
 
     def _tabled(self, robot: Robot, start: Place, end: Place) -> float:
         assert robot.type is not None  # a mission with travel tables has one for each robot's type

@@ -14,11 +14,13 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 KINDS = (
+    "mission",
     "unknown-robot",
     "unknown-task",
     "repeated-robot",
     "repeated-task",
     "skill",
+    "action",
     "suitability",
     "lock",
     "unreachable",
@@ -29,6 +31,7 @@ KINDS = (
     "shift",
     "team",
     "relation",
+    "min-tasks",
     "deadlock",
     "unassigned",
     "reason",
@@ -89,7 +92,8 @@ class Verdict:
 
     `total_cost`, `max_usage` and `average` are in `usage_unit`. `makespan_s` and `lateness` are None where routes and
     prerequisites deadlock. `ignored` are the rules that the caller had ignored. `routes` holds every robot, in mission
-    order. All numbers are finite.
+    order. All numbers are finite. `reasons_undecided` counts the reasons for tasks left out of which it was not
+    decided whether they are true.
     """
 
     violations: tuple[Violation, ...]
@@ -106,6 +110,7 @@ class Verdict:
     tasks_total: int
     weight_completed: float
     routes: tuple[RouteFigures, ...]
+    reasons_undecided: int = 0
 
     @property
     def valid(self) -> bool:
@@ -158,6 +163,7 @@ class Verdict:
             "tasks_completed": self.tasks_completed,
             "tasks_total": self.tasks_total,
             "weight_completed": self.weight_completed,
+            "reasons_undecided": self.reasons_undecided,
         }
 
     def __repr__(self) -> str:

@@ -5,6 +5,7 @@ from tests.report.page.browser import Browser, browser_found
 from tests.report.voyages import carry_out, shipped
 
 import muster
+from muster.mission.plan import plan_of
 from muster.report.page import write_page
 from muster.report.record import RecordWriter, read_record
 
@@ -55,3 +56,31 @@ def browser(tmp_path_factory):
     browser = Browser(tmp_path_factory.mktemp("browser"))
     yield browser
     browser.close()
+
+
+TIMED = """
+schema: muster/1
+name: timed
+starts_at: 2027-03-01T09:58:00+01:00
+rules: {objective: lateness}
+robots:
+  - {id: crawler, position: [0, 0]}
+  - {id: hauler, position: [0, 10]}
+tasks:
+  - {id: boiler, position: [40, 0], duration_s: 60, window: ["10:00", "10:30"], due: "10:00:30"}
+  - {id: beam, position: [20, 10], duration_s: 60, robots_needed: 2, deadline: "10:00:50"}
+  - {id: far, position: [0, 20], window: ["11:00", "12:00"], deadline: "13:00"}
+"""
+TIMED_ROUTES = {"crawler": ["beam", "boiler"], "hauler": ["beam"]}
+
+
+@pytest.fixture(scope="session")
+def timed_page(tmp_path_factory):
+    """The page of a mission with a window, a deadline, a task that is late, and a team."""
+    folder = tmp_path_factory.mktemp("timed")
+    (folder / "timed.yaml").write_text(TIMED, encoding="utf-8")
+    mission = muster.load(folder / "timed.yaml")
+    with RecordWriter(folder / "timed.mcap", mission) as writer:
+        carry_out(mission, plan_of(TIMED_ROUTES), writer)
+    write_page(folder / "timed.html", read_record(folder / "timed.mcap"))
+    return folder / "timed.html"

@@ -19,7 +19,7 @@ from muster.mission.plan import Plan, Unassigned
 from muster.verification import RouteFigures, Verdict, verify
 
 _MOST_SHORT = 50  # tasks left out whose smallest change is looked for when none is asked for by name
-_IN_KNOTS = ("unknown-robot", "unknown-task", "repeated-robot", "repeated-task", "deadlock", "prerequisite")
+_IN_KNOTS = ("mission", "unknown-robot", "unknown-task", "repeated-robot", "repeated-task", "deadlock", "prerequisite")
 
 
 @dataclass(frozen=True)

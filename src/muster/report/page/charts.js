@@ -31,12 +31,11 @@ function timeAt(picture, event) {
 
 function timeAxis(picture, width, height) {
   const x = timeScale(width);
-  const step = niceStep(Math.max(duration, 1e-3), Math.max((width - LABELS) / 80, 1));
+  const step = tickStep(Math.max(duration, 1e-3), Math.max((width - LABELS) / 80, 1));
   for (let now = 0; now <= duration * 1.0001; now += step) {
-    const label = `${Number(now.toPrecision(6))}${now === 0 ? " s" : ""}`;
     picture.append(svg("line", { class: "tick", x1: x(now), x2: x(now), y1: 0, y2: height - AXIS }));
-    const anchor = now === 0 ? "start" : "middle";
-    picture.append(svg("text", { x: x(now), y: height - 4, "text-anchor": anchor }, label));
+    const anchor = now === 0 ? "start" : x(now) + 26 > width ? "end" : "middle";
+    picture.append(svg("text", { x: x(now), y: height - 4, "text-anchor": anchor }, tickText(now)));
   }
 }
 
@@ -72,7 +71,10 @@ function drawGantt() {
     if (k % every === 0) ganttPicture.append(rowLabel(robot.id, middle));
   });
   const x = timeScale(width);
+  ganttPicture.append(...markShapes(["window"], x, row));
   for (const span of spans) ganttPicture.append(bar(span, x, row));
+  ganttPicture.append(...markShapes(["late", "deadline", "due", "team"], x, row));
+  fillLegend();
   addCursor(ganttPicture, width, height);
 }
 
@@ -100,7 +102,7 @@ function bar({ robot, task, kind, from, until }, x, row) {
     ...(kind === "waiting" ? { stroke: color, "stroke-width": 0.8 } : {}),
   });
   const doing = { travel: "travels to", waiting: "waits at", work: "works on" }[kind];
-  const title = `${robots[robot].id} ${doing} ${task || "its end"}: ${seconds(from)} to ${seconds(until)}`;
+  const title = `${robots[robot].id} ${doing} ${task || "its end"}: ${timeText(from)} to ${timeText(until)}`;
   shape.append(svg("title", {}, title));
   return shape;
 }

@@ -19,7 +19,9 @@ from muster.report.activity_spans import spans
 from muster.report.page.distances import nearest
 from muster.report.record import Recording, Tracks
 from muster.report.record.mission_state import ALARMING, OPEN, OUT, MissionState
+from muster.report.recorded_gantt import recorded_rows
 from muster.report.styles import PALETTE
+from muster.report.time_marks import page_marks
 
 Floats = npt.NDArray[np.float64]
 
@@ -54,6 +56,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "nearest": _nearest(recording, tracks),
         "map": _map(recording.mission.map, recording.image),
         "figures": _figures(recording),
+        **page_marks(recording.mission, recorded_rows(recording)),
     }
 
 

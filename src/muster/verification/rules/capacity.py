@@ -31,7 +31,7 @@ class Capacity:
         capacity = case.capacity_of(route.robot)
         if capacity is None:
             return None if case.needs_others(task) else False  # another of its team may have too little
-        if case.unit == "s" and not LegTimes.of(route.robot, case.mission.rules).is_constant:
+        if case.unit == "s" and not LegTimes.in_mission(route.robot, case.mission).is_constant:
             return None  # insertions are measured in metres
         usage = case.insertions(route).least_usage(task, case.first_gap(route, task), capacity)
         if abs(usage - capacity) <= capacity * case.tolerance:

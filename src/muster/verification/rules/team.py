@@ -22,7 +22,7 @@ class Team:
         for step in route.steps:
             members = case.members[step.task.id]
             if members[0] is route.robot:
-                wrong = _wrong(step.task, members, skills=case.holds("skill"))
+                wrong = team_fault(step.task, members, skills=case.holds("skill"))
                 if wrong is not None:
                     yield Violation(self.kind, None, step.task.id, wrong)
 
@@ -31,7 +31,8 @@ class Team:
         return None if task.is_for_team else False
 
 
-def _wrong(task: Task, members: Sequence[Robot], *, skills: bool) -> str | None:
+def team_fault(task: Task, members: Sequence[Robot], *, skills: bool) -> str | None:
+    """Why robots are not the team that a task asks for; None: they are. `skills`: whether these matter."""
     if task.needs is not None:
         return _short(task, members)
     parts = task.team or (TeamPart(count=task.robots_needed or 1),)

@@ -25,13 +25,22 @@ class Curve(Element, component="curve.js"):
 
 
 class Gantt(Element, component="gantt.js"):
-    """The schedule of each robot: travel, waiting, work. Emits `choose` with a task's id."""
+    """The schedule of each robot: travel, waiting, work, and what the mission asks of time.
 
-    def __init__(self, rows: Sequence[Mapping[str, Any]] = ()) -> None:
-        """Show rows `{robot, visits: [{task, arrives_s, starts_s, ends_s}], leaves_s, back_s}`, in mission order."""
+    Emits `choose` with a task's id.
+    """
+
+    def __init__(self) -> None:
         super().__init__()
-        self.props["rows"] = [dict(row) for row in rows]
+        self.props["rows"] = []
+        self.props["marks"] = []
+        self.props["clock"] = None
 
-    def show(self, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Show other rows."""
-        self.props["rows"] = [dict(row) for row in rows]
+    def show(self, verdict: Mapping[str, Any]) -> None:
+        """Show a verdict's `routes`, `{robot, visits: [{task, arrives_s, starts_s, ends_s}], leaves_s, back_s}`.
+
+        `marks` and `clock_start_s` are as the worker's verdict has them.
+        """
+        self.props["rows"] = [dict(row) for row in verdict["routes"]]
+        self.props["marks"] = [dict(mark) for mark in verdict["marks"]]
+        self.props["clock"] = verdict["clock_start_s"]

@@ -1,14 +1,30 @@
 // Who does what when: thin bars for travel, hatched ones for waiting, high ones with the task's name for work.
+// Windows are shaded, deadlines and due times strokes, lateness is red, and the bars of a team are linked.
 
 const [LEFT, FOOT, ROW] = [84, 22, 26];
 const NAME_WIDTH = 7; // pixels a letter
 const COLORS = 8;
+const WINDOW = ROW - 1; // the height of windows and of the strokes of deadlines
+const LATE = 3; // the height of the bar of lateness
+const STEPS = [1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 14400, 43200, 86400]; // seconds, by a clock
+const LEGEND = [["window", "time window"], ["deadline", "deadline"], ["due", "due time"], ["late", "late"], ["team", "team"]];
+
+const two = (number) => String(number).padStart(2, "0");
+
+// The clock time so many seconds from a midnight; of later days "+1 10:00:30".
+function clockText(seconds) {
+  const whole = Math.round(seconds);
+  const days = Math.floor(whole / 86400);
+  const of = whole - 86400 * days;
+  const text = [of / 3600, (of / 60) % 60, of % 60].map((part) => two(Math.floor(part))).join(":");
+  return (days ? `+${days} ` : "") + text;
+}
 
 export default {
   template: `
     <figure class="gantt">
-      <figcaption>What robots do <span class="legend"><i class="travel"></i>travel <i class="waiting"></i>waiting
-        <i class="work"></i>work</span></figcaption>
+      <figcaption>What robots do <span class="legend"><span v-for="[kind, words] in legend" :key="kind">
+        <i :class="kind"></i>{{ words }}</span></span></figcaption>
       <div ref="host" class="gantt-host">
         <svg v-if="width" :width="width" :height="height" role="group" :aria-label="label">
           <defs>
@@ -18,8 +34,12 @@ export default {
           </defs>
           <g v-for="tick in ticks" :key="tick">
             <line class="tick" :x1="x(tick)" :x2="x(tick)" y1="0" :y2="height - ${FOOT}" />
-            <text :x="x(tick)" :y="height - 6" :text-anchor="tick ? 'middle' : 'start'">{{ tick }}{{ tick ? "" : " s" }}</text>
+            <text :x="x(tick)" :y="height - 6" :text-anchor="anchor(tick)">{{ tickText(tick) }}</text>
           </g>
+          <rect v-for="mark in of('window')" :key="mark.key" class="window" :data-task="mark.task" :x="x(mark.from_s)"
+                :width="Math.max(x(mark.until) - x(mark.from_s), 1)" :y="middle(mark.row) - ${WINDOW / 2}" height="${WINDOW}">
+            <title>{{ mark.words }}</title>
+          </rect>
           <g v-for="(row, k) in rows" :key="row.robot">
             <text x="${LEFT - 8}" :y="middle(k) + 4" text-anchor="end" class="name">{{ short(row.robot) }}</text>
             <template v-for="bar in bars(row)" :key="bar.key">
@@ -34,10 +54,23 @@ export default {
                     :y="middle(k) + 4" text-anchor="middle">{{ bar.task }}</text>
             </template>
           </g>
+          <rect v-for="mark in of('late')" :key="mark.key" class="late" :data-task="mark.task" :x="x(mark.from_s)"
+                :width="Math.max(x(mark.until) - x(mark.from_s), 1)" :y="middle(mark.row) + 10" height="${LATE}">
+            <title>{{ mark.words }}</title>
+          </rect>
+          <line v-for="mark in [...of('deadline'), ...of('due')]" :key="mark.key" :class="mark.kind" :data-task="mark.task"
+                :x1="x(mark.from_s)" :x2="x(mark.from_s)" :y1="middle(mark.row) - ${WINDOW / 2}"
+                :y2="middle(mark.row) + ${WINDOW / 2}"><title>{{ mark.words }}</title></line>
+          <g v-for="mark in of('team')" :key="mark.key" class="team" :data-task="mark.task">
+            <line :x1="x(mark.from_s)" :x2="x(mark.until)" :y1="middle(mark.row)" :y2="middle(mark.to_row)" />
+            <circle :cx="x(mark.from_s)" :cy="middle(mark.row)" r="3" />
+            <circle :cx="x(mark.until)" :cy="middle(mark.to_row)" r="3" />
+            <title>{{ mark.words }}</title>
+          </g>
         </svg>
       </div>
     </figure>`,
-  props: { rows: Array },
+  props: { rows: Array, marks: Array, clock: Number },
   data() { return { width: 0 }; },
   computed: {
     height() { return this.rows.length * ROW + FOOT; },
@@ -48,8 +81,18 @@ export default {
     ticks() {
       const rough = this.end / Math.max(this.width / 90, 1);
       const power = 10 ** Math.floor(Math.log10(rough));
-      const step = power * [1, 2, 5, 10].find((part) => part * power >= rough * 0.999);
+      const decimal = power * [1, 2, 5, 10].find((part) => part * power >= rough * 0.999);
+      const step = this.hasClock ? STEPS.find((part) => part >= rough) ?? 86400 * Math.ceil(rough / 86400) : decimal;
       return Array.from({ length: Math.floor(this.end / step) + 1 }, (_, k) => Number((k * step).toPrecision(6)));
+    },
+    hasClock() { return this.clock !== null && this.clock !== undefined; },
+    shown() { // what begins after the end of the chart is left out; a window is shaded as far as the chart reaches
+      return this.marks.filter(({ from_s }) => from_s <= this.end).map((mark, k) => (
+        { ...mark, key: `${mark.kind}-${k}`, until: Math.min(mark.until_s ?? this.end, this.end) }));
+    },
+    legend() {
+      const found = LEGEND.filter(([kind]) => this.of(kind).length);
+      return [["travel", "travel"], ["waiting", "waiting"], ["work", "work"], ...found];
     },
     label() { return `Time chart of ${this.rows.length} robots up to ${this.end.toFixed(0)} s`; },
   },
@@ -62,6 +105,19 @@ export default {
     x(at) { return LEFT + ((this.width - LEFT - 14) * at) / this.end; },
     middle(k) { return (k + 0.5) * ROW; },
     short(name) { return name.length > 11 ? `${name.slice(0, 10)}…` : name; },
+    of(kind) { return this.shown.filter((mark) => mark.kind === kind); },
+    anchor(tick) {
+      if (!tick) return "start";
+      return this.x(tick) + 26 > this.width ? "end" : "middle"; // so that no text is cut off
+    },
+    tickText(tick) {
+      if (this.hasClock) return clockText(this.clock + tick);
+      return tick ? `${tick}` : `${tick} s`;
+    },
+    times(from, until) {
+      if (this.hasClock) return `${clockText(this.clock + from)} to ${clockText(this.clock + until)}`;
+      return `${from.toFixed(1)} to ${until.toFixed(1)} s`;
+    },
     choose(bar) { if (bar.task) this.$emit("choose", bar.task); },
     paint(bar, k) {
       const color = `var(--c${k % COLORS})`;
@@ -71,7 +127,7 @@ export default {
       const bars = [];
       const add = (kind, task, from, until, high, words) => {
         if (until - from < 1e-9 && kind !== "work") return;
-        const title = `${row.robot} ${words} ${task}: ${from.toFixed(1)} to ${until.toFixed(1)} s`;
+        const title = `${row.robot} ${words} ${task}: ${this.times(from, until)}`;
         bars.push({ key: `${kind}-${task}`, kind, task, from, until, high, title });
       };
       let free = row.leaves_s ?? 0;

@@ -123,7 +123,7 @@ class PlanPanel:
 
     def _show(self, entry: PlanEntry, verdict: Mapping[str, Any], *, on_earth: bool) -> None:
         self._map.show_plan(lines_of(entry.plan, verdict))
-        self._gantt.show(verdict["routes"])
+        self._gantt.show(verdict)
         self._chart.props(remove="hidden")
         self._body.clear()
         with self._body:

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from muster.mission.model import Mission
+from muster.report.gantt import row_of
 from muster.report.route_lines import Places, RobotLines, robot_lines
+from muster.report.time_marks import page_marks
 from muster.server.work.missions import mission_of, plan_of
 from muster.verification import Verdict, verify
 
@@ -17,15 +19,18 @@ from muster.verification import Verdict, verify
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
     """`{"mission", "plan", "ignore", "objective"}` -> the verdict.
 
-    It is what `muster verify --format json` prints, with `waiting_s`, `routes` and `lines`.
+    It is what `muster verify --format json` prints, with `waiting_s`, `routes`, `lines`, `marks` and `clock_start_s`.
 
     `routes` has for each robot, in mission order, its figures and `visits` with their times. `lines` has for each
-    robot's id `travel`, `work` and `end`, each a list of polylines in metres of the map frame.
+    robot's id `travel`, `work` and `end`, each a list of polylines in metres of the map frame. `marks` are the time
+    windows, deadlines, due times, lateness and teams of a time chart, by the numbers of `routes`; `clock_start_s` is
+    when the mission starts, seconds from midnight, where it says so.
     """
     mission = mission_of(arguments["mission"])
     verdict = verify(mission, plan_of(arguments["plan"]), arguments.get("ignore", ()), arguments.get("objective"))
     routes = [asdict(route) for route in verdict.routes]
-    return {**verdict.as_dict(), "waiting_s": verdict.waiting_s, "routes": routes, "lines": lines(mission, verdict)}
+    own = {"waiting_s": verdict.waiting_s, "routes": routes, "lines": lines(mission, verdict)}
+    return {**verdict.as_dict(), **own, **page_marks(mission, tuple(map(row_of, verdict.routes)))}
 
 
 def lines(mission: Mission, verdict: Verdict) -> dict[str, dict[str, list[list[list[float]]]]]:

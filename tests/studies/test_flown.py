@@ -1,0 +1,24 @@
+"""Planned times are those of the kinematic world, without other robots in the way."""
+
+import pytest
+
+from muster_studies.flown.study import Job, times_of
+from muster_studies.instances.moving import SETTINGS, moving_mission
+
+ACTIONS, WALLS, TEAMS = "6T-2R-actions", "yard", "collapsed-building"
+
+
+@pytest.mark.parametrize("name", [ACTIONS, WALLS, TEAMS])
+def test_shipped_missions_take_as_long_as_planned(name):
+    assert abs(times_of(Job(name).mission).off) <= 5
+
+
+@pytest.mark.parametrize("seed", [1000, 1001])
+@pytest.mark.parametrize(
+    "setting", [s for s in SETTINGS if not (s.over_map and "air" in s.kinds)], ids=lambda s: s.name
+)
+def test_random_missions_take_as_long_as_planned(setting, seed):
+    """Over maps in the air the judge takes many seconds; `muster study flown` has those."""
+    times = times_of(moving_mission(setting, seed))
+    assert times.lost == 0
+    assert abs(times.off) <= 10
