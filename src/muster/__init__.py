@@ -38,7 +38,8 @@ from muster.mission.model import (
     Task,
     Zone,
 )
-from muster.mission.plan import Plan, Route, read_plan
+from muster.mission.plan import Plan, Route
+from muster.mission.plan_reader import read_plan
 from muster.planning.exporting import export
 from muster.planning.judging import verify
 from muster.planning.loading import load

@@ -171,9 +171,9 @@ def test_from_the_command(tmp_path, capsys):
     command = ["solve", "eil51-5", "--fixed", str(tmp_path / "fixed.json"), "--iterations", "200", "-q", "-o", str(out)]
     assert run(command) == 0
     capsys.readouterr()
-    assert begins_with(muster.mission.plan.read_plan(out), fixed)
+    assert begins_with(muster.read_plan(out), fixed)
     assert run([*command, "--allocator", "auction"]) == 0
-    assert begins_with(muster.mission.plan.read_plan(out), fixed)
+    assert begins_with(muster.read_plan(out), fixed)
     assert run([*command, "--allocator", "market"]) == 2
     assert "fixed: with market, which would move tasks; expected search, greedy or auction" in capsys.readouterr().err
 

@@ -11,6 +11,7 @@ from muster.allocation.explanations import unassigned
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.mission.events import Event
+from muster.mission.model import Lag
 from muster.mission.plan import Reason, Unassigned
 from muster.verification import verify
 
@@ -164,3 +165,19 @@ def test_what_robots_under_way_still_do_need_not_be_so_many():
     cancelled = tuple(Event(at_s=0.5, cancel_task=name) for name in ("2", "3", "5"))
     report = muster.simulate(replace(mission, events=cancelled), plan)
     assert sorted(task.task for task in report.tasks) == ["1", "4", "6"]
+
+
+def test_greedy_leaves_tasks_that_one_robot_is_too_few_for_to_others():
+    """The robot beside the task would have too little to do; the other may have one task."""
+    mission = line(van("near", 1.0, 2), van("far", 9.0, 0), tasks=1)
+    assert done(muster.solve(mission, "greedy")) == {"near": 0, "far": 1}
+
+
+def test_search_puts_a_short_route_elsewhere_though_a_lag_forbids_the_nearest_place():
+    tasks = tuple(
+        Task(id=name, position=(x, 0.0), duration_s=20.0, prerequisites=before, lags=lags)
+        for name, x, before, lags in (("0", 0.0, (), {}), ("1", 15.0, ("0",), {"0": Lag(within_s=10.0)}))
+    )
+    robots = van("a", 2.0, 0), van("b", -1.0, 2), van("c", 14.0, 0)
+    mission = Mission(name="lag", rules=Rules(timing="constant", objective="lateness"), robots=robots, tasks=tasks)
+    assert done(muster.solve(mission, "search", iterations=200)) == {"a": 1, "b": 0, "c": 1}

@@ -22,7 +22,7 @@ from muster.allocation.stop import Stop
 from muster.allocation.workers import Job, Limits, Threads
 from muster.cli.main import run
 from muster.mission.errors import MusterError, ParameterError
-from muster.mission.plan import read_plan
+from muster.mission.plan_reader import read_plan
 from muster.mission.yaml_writer import yaml_text
 from muster_studies.uniform import large_mission
 

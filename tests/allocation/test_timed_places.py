@@ -82,3 +82,21 @@ def test_a_bound_that_held_only_until_the_task_before_was_lost():
     mission = Mission(robots=(Robot(id="r", position=(0, 0), work_capacity=10),), tasks=(first, second))
     found = {item.task: [(r.reason, r.detail) for r in item.reasons] for item in impossible(Problem.compile(mission))}
     assert found["b"] == [("prerequisite", "a comes before it and can never be done")]
+
+
+@pytest.mark.parametrize("allocator", ["greedy", "auction"])
+def test_a_team_is_of_robots_that_have_the_time_to_wait_for_each_other(allocator):
+    """The cheapest of two like robots would be late for the end of its shift when the third comes."""
+    places = {"near": 1.0, "off": 20.0, "far": -30.0}
+    robots = tuple(
+        Robot(
+            id=name,
+            position=(x, 0.0),
+            abilities={"lift_kg": 10.0 if name == "far" else 20.0},
+            available_until_s=12.0 if name == "near" else None,
+        )
+        for name, x in places.items()
+    )
+    task = Task(id="lift", position=(0.0, 0.0), duration_s=5.0, needs={"lift_kg": 30.0})
+    plan = muster.solve(Mission(name="lift", robots=robots, tasks=(task,)), allocator)
+    assert {route.robot for route in plan.routes if route.tasks} == {"off", "far"}

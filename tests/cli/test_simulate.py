@@ -13,7 +13,7 @@ import pytest
 
 import muster as package
 from muster.library import mission_names
-from muster.mission.plan import read_plan
+from muster.mission.plan_reader import read_plan
 
 EVENTFUL = """
 schema: muster/1

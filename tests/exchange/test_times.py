@@ -14,7 +14,7 @@ from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import itineraries
 from muster.exchange.kml import kml_text
 from muster.exchange.spreadsheet import csv_text
-from muster.mission.plan import plan_of
+from muster.mission.plan_reader import plan_of
 
 GPX, KML = "{http://www.topografix.com/GPX/1/1}", "{http://www.opengis.net/kml/2.2}"
 LIFT = """\

@@ -14,6 +14,7 @@ from muster.execution.status import status_of
 from muster.execution.teams import lacking
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, Lag, TeamPart
+from muster.mission.plan import Reason, Unassigned
 
 NEAR = 0.25
 
@@ -196,3 +197,44 @@ def test_due_times_make_lateness():
     report = report_of(carried_out(mission, replace(plan_of(r_0=["a"]), objective="lateness"), replan=keeping).account)
     assert report.lateness_s == report.tasks[0].lateness_s == pytest.approx(6, abs=NEAR)
     assert report.objective.flown == pytest.approx(12, abs=2 * NEAR)
+
+
+def test_a_shift_that_is_over_leaves_the_robot_without_tasks_and_the_plan_whole():
+    late = task("late", x=30.0)
+    events = [Event(at_s=45.0, new_task=Task(id="new", position=(1.0, 0.0), duration_s=1.0))]
+    mission = mission_of(task("a"), late, robots=1, events=events)
+    mission = replace(mission, robots=(replace(mission.robots[0], available_until_s=40.0),))
+    executor = carried_out(mission, plan_of(r_0=["a"]))
+    assert executor.ledger.ends_s.keys() == {"a"}
+    assert "shift: is done at 45.00 s without it, its shift ends at 40.00 s" in executor.lost()["new"]
+
+
+def test_the_same_robots_as_before_must_be_enough():
+    lift = task("lift", x=5.0, needs={"lift_kg": 30.0}, same_robot_as=("a",))
+    events = [Event(at_s=20.0, new_task=Task(id="new", position=(1.0, 0.0), duration_s=1.0))]
+    mission = mission_of(task("a"), lift, robots=2, events=events, abilities={"lift_kg": 20.0})
+    executor = carried_out(mission, plan_of(r_0=["a"]))
+    assert executor.lost() == {"lift": "relation: same robot as a (r_0), who have 20 of 30 lift_kg"}
+
+
+def test_the_same_robots_as_two_different_ones_are_nobody():
+    tasks = [task("a"), task("b", same_robot_as=("a",)), task("c", same_robot_as=("b",))]
+    events = [Event(at_s=30.0, new_task=Task(id="new", position=(1.0, 0.0), duration_s=1.0))]
+    executor = carried_out(mission_of(*tasks, events=events), plan_of(r_0=["a"], r_1=["c"]))
+    assert executor.lost() == {"b": "relation: same robot as a (r_0), same robot as c (r_1)"}
+
+
+def test_what_was_left_out_is_planned_once_more_when_robots_are_free():
+    """The second window of `b` opens when `a` is over; the plan has a reason why it left `b` out."""
+    mission = mission_of(task("a"), task("b", x=2.0), robots=1)
+    reason = Unassigned("b", (Reason("r_0", "not-chosen", "..."),))
+    plan = replace(plan_of(r_0=["a"]), unassigned=(reason,))
+    executor = carried_out(mission, plan)
+    assert executor.ledger.ends_s.keys() == {"a", "b"}
+    (again,) = [event for event in executor.events if event.kind == "robots_free"]
+    assert again.data == {"left_out": ["b"]}
+
+
+def test_what_a_plan_leaves_out_without_a_reason_stays_undone():
+    executor = carried_out(mission_of(task("a"), task("b", x=2.0), robots=1), plan_of(r_0=["a"]))
+    assert executor.lost() == {"b": "left out by the plan"}

@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 
 from muster.mission.model import Mission, Robot, Rules, Task
-from muster.mission.plan import Plan, Route, Unassigned, read_plan
+from muster.mission.plan import Plan, Route, Unassigned
+from muster.mission.plan_reader import read_plan
 from muster.verification import verify
 
 MISSION = Mission(

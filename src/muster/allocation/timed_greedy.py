@@ -9,6 +9,7 @@ coefficient (3.20) is left out, as lags say when a dependant can follow.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from muster import core
 from muster.allocation.problem import Problem
@@ -21,24 +22,37 @@ _IN_TIME = ("makespan", "lateness")
 def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
     """Append one unit after the other to routes, until none can follow."""
     roster = WorkingRoster(problem, start)
+    robots = list(range(len(problem.robots)))
+    while True:
+        _append_units(problem, roster, robots, stop)
+        counts = [len(route) for route in roster.routes]
+        roster.finish()
+        # Robots that would have had too few tasks have none now; what they left is for the others.
+        enough = [i for i in robots if not 0 < counts[i] < problem.robots[i].min_tasks]
+        if len(enough) == len(robots) or not problem.holds("min-tasks"):
+            return roster.routes
+        robots = enough
+
+
+def _append_units(problem: Problem, roster: WorkingRoster, robots: Sequence[int], stop: Stop) -> None:
     refused: set[int] = set()
     while not stop.interrupted:
-        chosen = _select(problem, roster, refused)
+        chosen = _select(problem, roster, robots, refused)
         if chosen is None:
-            break
+            return
         if roster.put(chosen):
             refused.clear()
         else:
             refused.add(chosen.unit)
-    roster.finish()
-    return roster.routes
 
 
-def _select(problem: Problem, roster: WorkingRoster, refused: set[int]) -> core.UnitInsertion | None:
+def _select(
+    problem: Problem, roster: WorkingRoster, robots: Sequence[int], refused: set[int]
+) -> core.UnitInsertion | None:
     """The matching of the least debit; of equal ones that of the first unit."""
     chosen, least = None, math.inf
     for unit in roster.ready():
-        insertion = None if unit in refused else roster.best(unit)
+        insertion = None if unit in refused else roster.best(unit, robots)
         if insertion is not None and (debit := _debit(problem, roster, insertion)) < least:
             chosen, least = insertion, debit
     return chosen

@@ -13,7 +13,8 @@ import click
 from muster.mission.errors import Finding, ParameterError
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.model import OBJECTIVES, Mission
-from muster.mission.plan import Plan, read_plan
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import read_plan
 
 if TYPE_CHECKING:
     from muster.verification import Verdict

@@ -32,7 +32,8 @@ from muster.cli.ros_targets import TargetOptions, target_options
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, read_plan
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import read_plan
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState

@@ -35,7 +35,8 @@ from muster.client.server_plan import ServerPlan
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
-from muster.mission.plan import Plan, json_text, read_plan
+from muster.mission.plan import Plan, json_text
+from muster.mission.plan_reader import read_plan
 from muster.motion.laws import LAWS
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request

@@ -8,7 +8,8 @@ from typing import Any
 
 from muster.client.reading import read
 from muster.exchange.mission_control import PlanEntry
-from muster.mission.plan import Plan, plan_from
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_from
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -150,7 +150,7 @@ void Placement::measure_alone(int task, double work) {
 }
 
 void Placement::try_place(int robot, int task, int at) {
-  if (overlooked()) return;
+  if (overlooked() || !in_reach(robot, task, at)) return;
   const double work = problem_.work_time(robot, task);
   measure_alone(task, work);
   const bool sees_usage = problem_.objective() != Objective::makespan;
@@ -173,6 +173,42 @@ void Placement::try_place(int robot, int task, int at) {
   best_.score = value;
   best_.growth = there.growth;
   best_.members.assign(1, {task, robot, at});
+}
+
+// Whether the robot, where it does a task's prerequisite or dependant too, can be at the later of the two as soon after
+// the earlier as the lag between them says.
+bool Placement::in_reach(int robot, int task, int at) const {
+  if (!problem_.has_within()) return true;
+  const auto place_of = [&](int other) {
+    for (const int number : timeline_.visits_of(problem_.unit(other))) {
+      const Visit& visit = timeline_.visit(number);
+      if (visit.robot == robot && visit.place == other) return visit.at;
+    }
+    return -1;
+  };
+  const auto before = problem_.prerequisites(task);
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const double within = problem_.within(task, static_cast<int>(k));
+    const int from = within < kNever ? place_of(before[k]) : -1;
+    if (from < 0 || from > at) continue;
+    double takes = problem_.travel_time(robot, timeline_.stop(robot, at).place, task);
+    for (int n = from + 1; n <= at; ++n) {
+      takes += timeline_.stop(robot, n).in + problem_.work_time(robot, timeline_.stop(robot, n).place);
+    }
+    if (!timeline_.in_time(takes, within)) return false;
+  }
+  for (const int dependant : problem_.dependants(task)) {
+    const auto own = problem_.prerequisites(dependant);
+    const double within = problem_.within(dependant, static_cast<int>(std::ranges::find(own, task) - own.begin()));
+    const int to = within < kNever ? place_of(dependant) : -1;
+    if (to <= at) continue;
+    double takes = problem_.travel_time(robot, task, timeline_.stop(robot, at + 1).place);
+    for (int n = at + 1; n < to; ++n) {
+      takes += problem_.work_time(robot, timeline_.stop(robot, n).place) + timeline_.stop(robot, n + 1).in;
+    }
+    if (!timeline_.in_time(takes, within)) return false;
+  }
+  return true;
 }
 
 // Of objective `makespan`: when the mission ends at the earliest if the ways to and from a place took no time, later

@@ -39,6 +39,8 @@ class Placement {
 
   // Teams.
   void try_cuts(int unit);
+  template <class Try>
+  void walk_cuts(int unit, Try&& attempt);
   void gather_cuts(int unit);
   bool pass(std::size_t candidate, double cut);
   void make_offers(int unit, std::size_t candidate);
@@ -47,7 +49,8 @@ class Placement {
   double key_of(const Offer& offer, int key) const;
   void rank(const Offer* offers, int key);
   void try_teams(int unit, int key);
-  void try_together(int unit, int key);
+  void try_hard(int unit);
+  void try_together(int unit, int key, std::size_t first);
   int cheapest_team() const;
   void judge(int unit);
   void measure_works(std::size_t tasks);
@@ -55,6 +58,7 @@ class Placement {
   bool may_begin(int unit, double begin) const;
   double lateness_of_team(int unit, double begin) const;
 
+  bool in_reach(int robot, int task, int at) const;
   double least_score(int robot, int at, double work) const;
   double least_score(const Offer& arrival) const;
   Offer arrival(int robot, int task, int at, double work) const;
@@ -65,7 +69,8 @@ class Placement {
   double delays(const Offer& offer, double end) const;
   double later_arrivals(int robot, int task, int at, double growth) const;
 
-  static constexpr int kKeys = 3;  // ways to rank robots
+  static constexpr int kKeys = 4;  // ways to rank robots
+  static constexpr int kByRoom = 3;
 
   Roster& roster_;
   const Problem& problem_;

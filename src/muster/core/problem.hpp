@@ -124,6 +124,7 @@ class Problem {
   double within(int task, int k) const {
     return data_.within.empty() ? kInfinity : data_.within[data_.prerequisites.first[task] + k];
   }
+  bool has_within() const { return !data_.within.empty(); }
   int units() const { return tasks_of_unit_.size(); }
   int unit(int task) const { return data_.unit.empty() ? task : data_.unit[task]; }
   std::span<const int> tasks_of_unit(int unit) const { return tasks_of_unit_[unit]; }

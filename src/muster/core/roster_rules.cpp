@@ -10,6 +10,8 @@ namespace muster {
 
 namespace {
 
+constexpr double kFills = 0.45, kMoves = 0.9;  // shares of the ways to mend a short route
+
 // How many tasks a robot that does some lacks; 0: it does enough, or none.
 int lack(const Roster& roster, int robot) {
   const int tasks = roster.timeline().tasks_in(robot);
@@ -43,11 +45,13 @@ class ShortRoutes {
   bool mend_one() {
     const auto robot = shortest_route(roster_);
     if (!robot) return false;
-    const bool fills = --fills_ >= 0 && (!random_ || random_->uniform() < 0.5);  // where chance decides, both are tried
+    // Where chance decides, all is tried; only to leave tasks out cannot fail.
+    const double chance = random_ ? random_->uniform() : 0.0;
+    const bool fills = --fills_ >= 0 && chance < kFills;
     failed_ = fills && !fill(*robot);
     if (failed_ || lack(roster_, *robot) == 0) return !failed_;
     open_[*robot] = 0;
-    failed_ = !empty(*robot);
+    failed_ = !empty(*robot, chance < kMoves);
     return !failed_;
   }
 
@@ -71,14 +75,14 @@ class ShortRoutes {
     return true;
   }
 
-  // Takes all tasks from a robot and puts them elsewhere, as far as they fit.
-  bool empty(int robot) {
+  // Takes all tasks from a robot; if it `moves` them, they go elsewhere as far as they fit.
+  bool empty(int robot, bool moves) {
     const Timeline& timeline = roster_.timeline();
     std::vector<int> units;
     for (int at = 1; at <= timeline.tasks_in(robot); ++at) units.push_back(timeline.stop(robot, at).unit);
     if (std::ranges::any_of(units, [&](int unit) { return roster_.fixed(unit); })) return false;
     for (const int unit : units) roster_.remove(unit);
-    return roster_.settle_begins() && insert(units, {elsewhere_});
+    return roster_.settle_begins() && (!moves || insert(units, {elsewhere_}));
   }
 
   // The unit that is nearest to a robot's route, of those that may come over to it.

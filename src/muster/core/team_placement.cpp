@@ -21,11 +21,19 @@ void Placement::try_cuts(int unit) {
   }
   offers_.resize(tasks.size() * candidates_.size());
   gather_cuts(unit);
-  at_.assign(candidates_.size(), -1);
   for (auto& moved : moved_) moved.assign(candidates_.size(), 1);
   for (auto& ranking : rankings_) {
     for (auto& ranked : ranking) ranked.clear();
   }
+  walk_cuts(unit, [&] { try_cut(unit); });
+  // The cheapest robots may not have the time to wait for each other; maybe others have.
+  if (best_.members.empty() && problem_.has_time_limits()) walk_cuts(unit, [&] { try_hard(unit); });
+}
+
+// Gives each robot its place at one cut after the other, and tries teams there.
+template <class Try>
+void Placement::walk_cuts(int unit, Try&& attempt) {
+  at_.assign(candidates_.size(), -1);
   for (const double cut : cuts_) {
     bool any_moved = false;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
@@ -34,15 +42,15 @@ void Placement::try_cuts(int unit) {
       any_moved = true;
       for (auto& moved : moved_) moved[c] = 1;
     }
-    if (any_moved && !overlooked()) try_cut(unit);
+    if (any_moved && !overlooked()) attempt();
   }
 }
 
 void Placement::try_cut(int unit) {
   if (!trial_->random) {
-    for (int key = 0; key < kKeys; ++key) try_key(unit, key);
+    for (int key = 0; key < kByRoom; ++key) try_key(unit, key);
   } else {
-    try_key(unit, trial_->random->uniform() < kFirstKey ? 0 : 1 + trial_->random->below(kKeys - 1));
+    try_key(unit, trial_->random->uniform() < kFirstKey ? 0 : 1 + trial_->random->below(kByRoom - 1));
   }
 }
 
@@ -50,7 +58,16 @@ void Placement::try_key(int unit, int key) {
   if (problem_.tasks_of_unit(unit).size() == 1) {
     try_teams(unit, key);
   } else {
-    try_together(unit, key);
+    try_together(unit, key, 0);
+  }
+}
+
+// Robots with the most time first, and each task of the unit first in turn.
+void Placement::try_hard(int unit) {
+  const auto tasks = problem_.tasks_of_unit(unit).size();
+  if (tasks == 1) return try_teams(unit, kByRoom);
+  for (int key = 0; key < kKeys; ++key) {
+    for (std::size_t first = 0; first < tasks; ++first) try_together(unit, key, first);
   }
 }
 
@@ -104,6 +121,7 @@ void Placement::make_offers(int unit, std::size_t candidate) {
     made.robot = -1;
     if (at_[candidate] < problem_.fixed(robot) || !usable(robot, tasks[k])) continue;
     if (trial_->append_only && at_[candidate] < timeline_.tasks_in(robot)) continue;
+    if (!in_reach(robot, tasks[k], at_[candidate])) continue;
     const double work = problem_.work_time(robot, tasks[k]);
     made = arrival(robot, tasks[k], at_[candidate], work);
     go_on(made, tasks[k]);
@@ -115,8 +133,10 @@ void Placement::make_offers(int unit, std::size_t candidate) {
   }
 }
 
-// Robots are ranked by what they cost the objective, by when they come, or by how long the mission takes through them.
+// Robots are ranked by what they cost the objective, by when they come, by how long the mission takes through them, or
+// by how late they could still end.
 double Placement::key_of(const Offer& offer, int key) const {
+  if (key == kByRoom) return -offer.latest;
   if (key == 1) return offer.arrive;
   if (problem_.objective() == Objective::makespan) {
     if (key == 2) return offer.arrive + offer.onward;
@@ -149,12 +169,13 @@ void Placement::try_teams(int unit, int key) {
 }
 
 // One after the other the tasks of a unit, each with its cheapest team of those that are left.
-void Placement::try_together(int unit, int key) {
+void Placement::try_together(int unit, int key, std::size_t first) {
   const auto tasks = problem_.tasks_of_unit(unit);
   const std::vector<char> everyone(candidates_.size(), 1);
   team_.clear();
   bool complete = true;
-  for (std::size_t k = 0; k < tasks.size() && complete; ++k) {
+  for (std::size_t n = 0; n < tasks.size() && complete; ++n) {
+    const std::size_t k = (first + n) % tasks.size();
     const Offer* offers = offers_.data() + k * candidates_.size();
     TeamChoice::Ranking ranking;
     rank(offers, key);

@@ -116,7 +116,8 @@ class Executor:
         self._left_out = {item.task: reasons_in_one_line(item.reasons) for item in plan.unassigned if item.reasons}
         self.now_s = now
         self.begun_s = now if past is None else 0.0
-        self._stood_still_at = -1
+        self._stood_still_at = -1  # when so many tasks had ended
+        self._tried_left_out_at = 0
         for robot, tasks in required_routes(mission, plan).items():
             if robot in self.crew:
                 self.crew[robot].route = list(tasks)
@@ -223,6 +224,7 @@ class Executor:
         self._ask(self._punctuality.look(now))
         self._go_on()
         self._notice_standstill()
+        self._plan_what_was_left_out()
         self._end_if_over()
         return self.events[first:]
 
@@ -288,6 +290,17 @@ class Executor:
                 rule = {"start": "relation"}.get(wait.cause, wait.cause)
                 self.ledger.expire(task, f"{rule}: {wait.words}; no new plan brings that about")
                 self._ask([Change("standstill", {"task": task, "words": wait.words})])
+
+    def _plan_what_was_left_out(self) -> None:
+        """When no robot has a task any more, tasks for which others left no room are planned once more."""
+        ended = len(self.ledger.ends_s)
+        if not self._alone or self._tried_left_out_at == ended or any(state.route for state in self._present):
+            return
+        self._tried_left_out_at = ended
+        left = [task.id for task in self.ledger.open if task.id in self._left_out.keys() - self.ledger.expired.keys()]
+        if left and any(self._replan(self._rest()).routes.values()):
+            self._ask([Change("robots_free", {"left_out": left})])
+            self._go_on()
 
     def _go_on(self) -> None:
         """Plan the rest again if that is due, and send robots on, until no robot refuses its task."""

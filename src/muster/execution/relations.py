@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from muster.execution.task_ledger import Ledger
-from muster.mission.model import Task
+from muster.execution.teams import lacking
+from muster.mission.model import Robot, Task
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,7 @@ class Binding:
     Parameters
     ----------
     only
-        the robots of a task that is done by the same; None: any.
+        the robots of a task that is done by the same; None: any, empty: those cannot do it.
     never
         robots of tasks that are done by others.
     reason
@@ -32,7 +33,7 @@ class Binding:
         return robot not in self.never and (self.only is None or robot in self.only)
 
 
-def binding_of(task: str, ledger: Ledger, under_way: Collection[str]) -> Binding:
+def binding_of(task: str, ledger: Ledger, under_way: Collection[str], robots: Mapping[str, Robot]) -> Binding:
     """The robots that relations leave to a task."""
     begun = {name: ledger.members(name) for name in (*ledger.ends_s, *under_way)}
     same = [name for name in _related(task, ledger, "same_robot_as") if name in begun]
@@ -40,7 +41,10 @@ def binding_of(task: str, ledger: Ledger, under_way: Collection[str]) -> Binding
     words = [f"same robot as {name} ({', '.join(begun[name])})" for name in same]
     words += [f"other robot than {name} ({', '.join(begun[name])})" for name in other]
     only = begun[same[0]] if same else None
-    if only is not None and not _may_be_done_by(ledger.tasks[task], only):
+    unfit = "" if only is None else _why_not_by(ledger.tasks[task], [robots[name] for name in only])
+    if unfit:
+        only, words = (), [f"{words[0]}, {unfit}"]
+    elif len({frozenset(begun[name]) for name in same}) > 1:
         only = ()
     return Binding(
         only=only,
@@ -49,10 +53,13 @@ def binding_of(task: str, ledger: Ledger, under_way: Collection[str]) -> Binding
     )
 
 
-def _may_be_done_by(task: Task, robots: Collection[str]) -> bool:
-    """Whether the team of a task may be as large as these robots are many; with `needs` it is free in number."""
+def _why_not_by(task: Task, robots: Sequence[Robot]) -> str:
+    """Why these robots cannot be the team of a task: too few or too many, or with too little of what it needs."""
+    if task.needs is not None:
+        lack = lacking(task, robots)
+        return f"who have {lack}" if lack else ""
     size = sum(part.count for part in task.team) if task.team else task.robots_needed or 1
-    return task.needs is not None or size == len(robots)
+    return "" if size == len(robots) else f"and {size} must do it"
 
 
 def with_whole_team(task: Task, binding: Binding) -> Task:

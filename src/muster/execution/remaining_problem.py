@@ -110,6 +110,15 @@ class RemainingProblem:
 
 def remaining_problem(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     """The problem that the rest is. There must be a crew."""
+    found = _problem_of(rest, travel)
+    late = _late(rest, found.problem)
+    if not late:
+        return found
+    refusals = {task.id: {**rest.refusals.get(task.id, {}), **late} for task in rest.tasks}
+    return _problem_of(replace(rest, refusals=refusals), travel)
+
+
+def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     tasks, hopeless = _tasks_with_hope(rest, travel)
     past = _past(rest)
     mission = _mission(rest, [*past.values(), *tasks])
@@ -124,6 +133,17 @@ def remaining_problem(rest: RemainingMission, travel: Travel) -> RemainingProble
         problem = replace(problem, charges=tuple(charges[robot.id] for robot in problem.robots))
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
     return RemainingProblem(with_fixed_routes(problem, Plan(routes=routes)), hopeless)
+
+
+def _late(rest: RemainingMission, problem: Problem) -> dict[str, str]:
+    """Robots whose shift is over before they can be back, and why they can do no task more."""
+    until = {one.id: one.available_until_s for one in problem.robots if "shift" not in rest.ignored}
+    shifts = {s.robot.id: s.robot.available_until_s for s in rest.crew if s.robot.available_until_s is not None}
+    return {
+        robot: f"shift: is done at {back_s:,.2f} s without it, its shift ends at {shift:,.2f} s"
+        for robot, shift in shifts.items()
+        if (back_s := until.get(robot)) is not None and back_s > shift
+    }
 
 
 def _past(rest: RemainingMission) -> dict[str, Task]:
@@ -220,7 +240,7 @@ def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | N
     allowed = [name for name in meant if binding.allows(name)]
     robots = tuple(name for name in allowed if name not in refused)
     if meant and not allowed:
-        return robots, f"{binding.reason}; none of them takes part"
+        return robots, f"{binding.reason}; none of them takes part" if binding.only else binding.reason
     if lock is not None and not meant:
         return robots, f"lock: only {', '.join(lock)} may do it, and takes no part any more"
     return robots, in_one_line(refused.items())
@@ -281,6 +301,8 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
     leaves = snapshot.free_s - snapshot.used if mission.rules.usage == "time" else rest.now_s
     if not snapshot.has_past:
         leaves = rest.now_s
+    available_from_s = max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s))
+    until = robot.available_until_s
     return replace(
         robot,
         position=snapshot.spot.point[: mission.dimensions],
@@ -288,12 +310,13 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
         return_to_start=False,
         min_tasks=0,  # what was planned kept it; what happens since may not leave so many
         work_capacity=capacity,
-        available_from_s=max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s)),
+        available_from_s=available_from_s,
+        available_until_s=None if until is None else max(until, available_from_s),
     )
 
 
 def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:
-    """With capacities raised to what robots have used and need to go home: that is so, and no more than that.
+    """With capacities and shifts raised to what robots have used and need to go home: that is so, and no more.
 
     A robot that has no way home need not go there.
     """
@@ -307,7 +330,21 @@ def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:
             if math.isinf(home):
                 robot, home = replace(robot, end_position=None), 0.0
             least = (float(problem.work_usage(i)[j]) + home) * (1 + _ROUNDING) + _ROUNDING
+            robot = _with_shift_until(robot, _back_s(problem, i, j))
             if robot.work_capacity is not None and robot.work_capacity < least:
                 robot = replace(robot, work_capacity=least)
         robots.append(robot)
     return replace(problem, robots=tuple(robots))
+
+
+def _back_s(problem: Problem, i: int, j: int) -> float:
+    """When a robot is at its end if it does nothing after its past, task j."""
+    robot = problem.robots[i]
+    ends_s = robot.available_from_s + float(problem.work_seconds(i)[j])
+    home_s = 0.0 if robot.end_position is None else float(problem.travel_seconds(i, [j], [problem.end(i)])[0, 0])
+    return ends_s if math.isinf(home_s) else ends_s + home_s
+
+
+def _with_shift_until(robot: Robot, back_s: float) -> Robot:
+    until = robot.available_until_s
+    return robot if until is None or until >= back_s else replace(robot, available_until_s=back_s * (1 + _ROUNDING))

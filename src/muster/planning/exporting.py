@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from muster.mission.keywords import require_known
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, plan_of
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_of
 from muster.mission.text_files import write_text
 from muster.planning.request import require_mission
 

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, plan_of
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_of
 from muster.planning.judging import verify
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from collections import Counter
 
 from tests.disturbances.timed.trial import trial
 
-PART = 60
+PART = 100
 
 
 def test_missions_with_windows_and_teams_are_carried_out_whatever_happens():

@@ -1,18 +1,26 @@
 """One seed: a disturbed mission with rules about time and teams is carried out, and what must hold of it is checked."""
 
 from dataclasses import dataclass
+from random import Random
 
+import muster
+from muster.allocation.registry import ALLOCATORS
 from muster.execution.executor import Executor
+from muster.execution.reallocation import Reallocation
 from muster.execution.report import report_of
-from muster.execution.teams import lacking, units_of
+from muster.execution.teams import units_of
+from muster.execution.travel import travel_of
 from tests import trials
-from tests.disturbances.timed.missions import mission_of
-from tests.disturbances.timed.planner import plan_of, planned_again
+from tests.disturbances.timed.missions import mission_of, with_members_failing
+from tests.disturbances.timed.still_possible import covers, still_possible
 from tests.execution.world import World, carry_out
 
 ENDS_S = 5_000.0
 STEP_S = 0.25
 ROUNDING_S = 1e-6
+PLANNERS = {"greedy": {}, "greedy+genetic": {"iterations": 20}, "search": {"iterations": 100}, "auction": {}}
+"""What plans at first, and how long."""
+STEPS_AGAIN = 200
 
 
 @dataclass
@@ -25,14 +33,27 @@ def trial(seed):
     report = Report(seed)
     with report.trying():
         mission = mission_of(seed)
+        first, replan = _planners(mission, seed)
+        plan = muster.solve(mission, first, seed=seed, **PLANNERS[first])
+        mission = with_members_failing(mission, plan, seed)
         world = World(mission)
-        executor = Executor(mission, plan_of(mission), world.ports, replan=planned_again)
+        report.story += [f"planned by {first}, again by {replan.allocator.name}: {plan.routes}"]
+        executor = Executor(mission, plan, world.ports, replan=replan)
         carry_out(executor, world, step=STEP_S, until=ENDS_S)
         report.story += [f"{e.time_s:8.2f} {e.kind} {dict(e.data)}" for e in executor.events]
         report.counts.update({event.kind: 1 for event in executor.events})
         report.counts["missions"] += 1
         _check(report, executor)
     return report
+
+
+def _planners(mission, seed):
+    """What plans the mission at first, and how the rest is planned again: half the time as by default, but shorter."""
+    random = Random(f"planners {seed}")
+    usable = [name for name in PLANNERS if name != "auction" or not any(robot.min_tasks for robot in mission.robots)]
+    again = ALLOCATORS[random.choice(["search", "greedy", "auction"])]
+    how = {} if random.random() < 0.5 else {"allocator": again, "parameters": again.parameters()}
+    return random.choice(usable), Reallocation(travel=travel_of(mission), iterations=STEPS_AGAIN, **how)
 
 
 def _check(report, executor):
@@ -44,6 +65,8 @@ def _check(report, executor):
     report.check(not set(told.tasks_done) & lost.keys(), "a task is done and lost")
     for task, reason in lost.items():
         report.check(bool(reason.strip("; ")), f"{task} is lost without a reason")
+    for teams in still_possible(executor, lost):
+        report.check(False, f"lost, but {teams} could do it: {[lost[task] for task in teams]}")
     for name in told.tasks_done:
         _check_done(report, executor, ledger.tasks[name], told)
     for unit in set(units_of(ledger.tasks.values()).values()):
@@ -52,6 +75,15 @@ def _check(report, executor):
     report.counts["team tasks done"] += sum(bool(task.team) for task in told.tasks)
     report.counts["tasks missed"] += len(told.missed)
     report.counts["tasks lost"] += len(lost)
+
+
+def _check_work(report, executor, name, members):
+    """All members were at work from its begin to its end: none failed in between."""
+    begin, end = executor.ledger.starts_s[name], executor.ledger.ends_s[name]
+    for event in executor.events:
+        if event.kind in ("robot_fails", "robot_silent") and event.data.get("robot") in members:
+            within = begin + ROUNDING_S < event.time_s < end - ROUNDING_S
+            report.check(not within, f"{name} goes on though {event.data['robot']} is out at {event.time_s}")
 
 
 def _check_done(report, executor, task, told):
@@ -65,7 +97,8 @@ def _check_done(report, executor, task, told):
     members = ledger.members(task.id)
     robots = [executor.crew[name].robot for name in members]
     report.check(len(set(members)) == len(members), f"{task.id}: a robot stands twice in {members}")
-    report.check(not lacking(task, robots), f"{task.id} is done by too few: {members}")
+    report.check(covers(task, robots), f"{task.id} is done by too few, or robots that may not: {members}")
+    _check_work(report, executor, task.id, members)
     for name in members:
         report.check(executor.crew[name].done.count(task.id) == 1, f"{name} does not tell that it did {task.id}")
     late = task.deadline_s is not None and end > task.deadline_s + ROUNDING_S

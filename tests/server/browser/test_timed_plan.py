@@ -5,7 +5,7 @@ from playwright.sync_api import expect
 from tests.report.page.conftest import TIMED, TIMED_ROUTES
 
 from muster.client import Client
-from muster.mission.plan import plan_of
+from muster.mission.plan_reader import plan_of
 
 pytestmark = pytest.mark.xdist_group("timed plan")
 

@@ -67,7 +67,8 @@ def performed(
     recorder = LogRecorder(mission, kept, log=log, tracked_s=tracked_s)
     with closing(SimulatedRun(mission, plan, world, settings or {}, recorder)) as world_run:
         script = Script(world_run, asked)
-        run_loop = RunLoop(world_run, recorder, script, kept, speed=None, ended=ended, clock=VirtualClock(step_s=1.0))
+        how = {"speed": None, "starts_at": mission.starts_at, "ended": ended, "clock": VirtualClock(step_s=1.0)}
+        run_loop = RunLoop(world_run, recorder, script, kept, **how)
         run_loop.catch_up(log, max([until_s or 0.0, *(entry["time_s"] for entry in log)]) if log else 0.0)
         run_loop.run()
     return kept

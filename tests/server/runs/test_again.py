@@ -129,7 +129,7 @@ def test_a_cancel_before_a_crash_holds_for_real_robots_also_where_the_log_has_no
     ]
     kept, world_run = Kept(), Drives()
     recorder = LogRecorder(mission, kept, log=log, again=False)
-    run_loop = RunLoop(world_run, recorder, None, kept, speed=1.0, ended=lambda: False)
+    run_loop = RunLoop(world_run, recorder, None, kept, speed=1.0, starts_at=None, ended=lambda: False)
     run_loop.recall(log)
     run_loop.run()
     assert world_run.told == ["not done when the run was cancelled"]

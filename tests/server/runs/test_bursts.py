@@ -69,9 +69,8 @@ def test_while_orders_come_without_end_the_clock_goes_on():
     kept, clock = Kept(), VirtualClock(step_s=STEPS_FIRST_S / 10)
     with closing(SimulatedRun(MISSION, PLAN, "kinematic", {}, LogRecorder(MISSION, kept))) as world_run:
         recorder = LogRecorder(MISSION, kept)
-        RunLoop(
-            world_run, recorder, Stream(30), kept, speed=None, ended=lambda: world_run.time_s > 20, clock=clock
-        ).run()
+        how = {"speed": None, "starts_at": None, "ended": lambda: world_run.time_s > 20, "clock": clock}
+        RunLoop(world_run, recorder, Stream(30), kept, **how).run()
     times = [entry["time_s"] for entry in kinds(kept.log, "command")]
     assert len(times) == 30
     assert all(later - earlier >= QUANTUM_S for earlier, later in pairwise(times))

@@ -19,7 +19,7 @@ from tests.server.runs.store import ADA, EVE, planned
 import muster
 from muster.exchange.mission_control import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
-from muster.mission.plan import plan_from
+from muster.mission.plan_reader import plan_from
 from muster.server.runs.unsaved_actions import number_at
 from muster.server.services.records import Records
 from muster.server.services.runs import Runs

@@ -7,7 +7,7 @@ from tests.server.work.asking import FLOOR, MAPPED, TINY, given, shipped
 
 import muster
 from muster.library import mission_path
-from muster.mission.plan import plan_from
+from muster.mission.plan_reader import plan_from
 from muster.server.work import StopRequest, WorkError
 
 

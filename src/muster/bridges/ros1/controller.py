@@ -19,7 +19,8 @@ from muster.bridges.ros1.requests import COMMANDS, PLANNING, Data, RequestClient
 from muster.bridges.ros1.ros import rospy
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.model import Event, Mission, MovedTask, Task
-from muster.mission.plan import Plan, plan_from
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_from
 from muster.mission.value_types import shown
 
 State = Literal["empty", "waiting", "gathering", "planning", "carrying-out", "paused", "ended"]

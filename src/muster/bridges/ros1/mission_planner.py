@@ -21,7 +21,8 @@ from muster.bridges.ros1.requests import PLANNING, Data, RequestServer
 from muster.bridges.ros1.ros import String, Trigger, TriggerResponse, rospy
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, plan_from
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_from
 from muster.mission.value_types import shown
 
 MISSION = "/mission_planner/mission"

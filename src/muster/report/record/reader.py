@@ -14,7 +14,7 @@ from muster.execution.record import ExecutionEvent
 from muster.mission.errors import Finding, InputError
 from muster.mission.from_data import mission_from
 from muster.mission.model import Mission
-from muster.mission.plan import plan_from
+from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_reader import parse_data
 from muster.report.record.json_messages import grid_from
 from muster.report.record.mission_state import MissionState

@@ -12,7 +12,8 @@ from typing import Any
 
 from muster.execution import CompletedTask, CompletedWork
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, plan_from
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_from
 from muster.report.record.mission_state import MissionState
 
 BARRED = "it was begun before a crash, and may be begun at most once; its end is not known"

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from muster.mission.model import Mission
-from muster.mission.plan import plan_from
+from muster.mission.plan_reader import plan_from
 from muster.report.page.page import page_text
 from muster.report.record import Recording, RecordWriter, read_record
 from muster.report.record.mission_state import MissionState

@@ -56,6 +56,8 @@ class RunLoop:
         messages from and to the server.
     speed
         times real time; None: as fast as possible.
+    starts_at
+        when the mission starts, from which clock times in events are counted; None: it does not say so.
     ended
         tells whether the server is gone.
     """
@@ -68,11 +70,12 @@ class RunLoop:
         outbox: Outbox,
         *,
         speed: float | None,
+        starts_at: str | None,
         ended: Callable[[], bool],
         clock: Clock | None = None,
     ) -> None:
         self._world_run, self._recorder, self._inbox, self._outbox = world_run, recorder, inbox, outbox
-        self._clock, self._ended = clock or SystemClock(), ended
+        self._clock, self._ended, self._starts_at = clock or SystemClock(), ended, starts_at
         self._pace = Pace(self._clock, speed, world_run.time_s)
         self._paused = self._cancelled = self._must_replan = False
         self._steps_until = -1e9
@@ -210,7 +213,7 @@ class RunLoop:
             self._cancelled = True
             self._world_run.break_off(CANCELLED)
         else:
-            self._world_run.report(event_given(data, self._world_run.time_s))
+            self._world_run.report(event_given(data, self._world_run.time_s, self._starts_at))
             self._must_replan = True
 
     def _require(self, holds: bool, otherwise: str) -> None:

@@ -21,7 +21,8 @@ from typing import Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, plan_from
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
 from muster.running.worlds import WORLDS
 from muster.server.runs.log_recorder import LogRecorder
@@ -95,7 +96,8 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
         )
         plan = plan_from(begin["plan"], "the plan")
         with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
-            run_loop = RunLoop(world_run, recorder, inbox, outbox, speed=begin["speed"], ended=ended.is_set)
+            how = {"speed": begin["speed"], "starts_at": mission.starts_at, "ended": ended.is_set}
+            run_loop = RunLoop(world_run, recorder, inbox, outbox, **how)
             if real:
                 run_loop.recall(log)
             else:

@@ -12,7 +12,8 @@ from typing import Any
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission
-from muster.mission.plan import Plan, plan_from
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_from
 from muster.mission.records import findings
 from muster.mission.value_types import Fault, shown
 from muster.mission.value_types import Path as Keys
