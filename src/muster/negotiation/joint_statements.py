@@ -14,6 +14,7 @@ Times are those of the mission, which robots share where tasks have time windows
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -115,11 +116,16 @@ def presences(facts: Iterable[Fact], unit: Collection[str]) -> dict[tuple[str, i
 
 
 def attempt_of(facts: Iterable[Fact], unit: Collection[str]) -> int:
-    """The attempt that counts for the tasks that begin together."""
+    """The attempt that counts for the tasks that begin together.
+
+    An attempt is over when a robot has left it, and when one that has lost its memory has stated two things in it.
+    """
     mine = [fact for fact in facts if fact.task in unit]
-    stated = [presence_of(fact.content).attempt for fact in mine if fact.kind == "ready"]
-    over = [json.loads(fact.content)[0] + 1 for fact in mine if fact.kind == "left"]
-    return max([*stated, *over], default=0)
+    ready = {(fact.robot, fact.content) for fact in mine if fact.kind == "ready"}
+    stated = Counter((robot, presence_of(content).attempt) for robot, content in ready)
+    over = [json.loads(fact.content)[0] for fact in mine if fact.kind == "left"]
+    over += [attempt for (_, attempt), times in stated.items() if times > 1]
+    return max([*(attempt for _, attempt in stated), *(attempt + 1 for attempt in over)], default=0)
 
 
 def absent(facts: Collection[Fact], unit: Sequence[str], attempt: int, members: Members) -> Members:

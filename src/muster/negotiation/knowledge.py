@@ -77,7 +77,7 @@ class Knowledge:
 
 def in_order(facts: Iterable[Fact]) -> tuple[Fact, ...]:
     """Facts in causal order: a fact comes after all facts that its author knew."""
-    return tuple(sorted(facts, key=lambda fact: (fact.order, fact.robot, fact.task, fact.kind)))
+    return tuple(sorted(facts, key=lambda fact: (fact.order, fact.robot, fact.task, fact.kind, fact.content)))
 
 
 def deeds(facts: Iterable[Fact]) -> dict[str, list[tuple[Fact, ...]]]:

@@ -1,13 +1,16 @@
 """Robots that decide for themselves begin together what several must do at once, whatever happens to them."""
 
-from collections import defaultdict
+from dataclasses import replace
 from random import Random
 
 import pytest
-from tests.running.negotiated.simulated_team import LOOK_S, SimulatedTeam
+from tests.running.negotiated.joint_work import MOMENT_S, check_nobody_was_alone, deeds
+from tests.running.negotiated.simulated_team import SimulatedTeam
 
 from muster import Mission, Robot, Task
 from muster.mission.model import TeamPart
+from muster.negotiation.joint_statements import Presence, attempt_of
+from muster.negotiation.messages import Fact
 
 LONG_S = 600.0
 
@@ -42,30 +45,6 @@ def lifting(seed=0, robots=5, tasks=6):
     return Mission(robots=crew, tasks=tuple(made))
 
 
-def deeds(team):
-    """For each task that was done the teams that have done it, each with when its robots began."""
-    begun, found = {}, defaultdict(dict)
-    for at_s, robot, kind, data in team.told:
-        if kind == "starts":
-            begun[robot, data["task"]] = at_s
-        elif kind == "work_broken_off":
-            begun.pop((robot, data["task"]))
-        elif kind == "ends":
-            members = tuple(data.get("team", (robot,)))
-            found[data["task"]][members] = [begun.get((one, data["task"])) for one in members]
-    return found
-
-
-def check_nobody_was_alone(team):
-    """Every task was done by as many as it needs, who began at the same moment and did not stop."""
-    size = {task.id: task.robots_needed or 2 * bool(task.is_for_team) or 1 for task in team.problem.tasks}
-    for task, teams in deeds(team).items():
-        for members, begun in teams.items():
-            assert len(members) >= size[task], (task, members)
-            assert None not in begun, (task, members)
-            assert max(begun) - min(begun) <= LOOK_S + 1e-9, (task, begun)
-
-
 def check_each_was_done_once(team):
     assert all(len(teams) == 1 for teams in deeds(team).values()), deeds(team)
     assert not any(node.twice for node in team.net.nodes.values())
@@ -80,8 +59,8 @@ def test_all_of_a_team_begin_and_end_at_one_moment_however_much_is_lost(seed):
     done = deeds(team)
     assert done.keys() == {task.id for task in team.problem.tasks}
     assert done["x"].keys() != done["y"].keys()
-    ((x,),), ((y,),) = done["x"].values(), done["y"].values()
-    assert abs(x - y) <= LOOK_S + 1e-9
+    (x,), (y,) = done["x"].values(), done["y"].values()
+    assert abs(x - y) <= MOMENT_S
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -148,7 +127,7 @@ def test_a_member_lost_before_it_comes_frees_the_others():
 def test_a_team_begins_when_its_window_opens():
     team = SimulatedTeam(pair(window_s=((40.0, 40.5),)))
     assert team.run(LONG_S, lambda: team.rests)
-    assert deeds(team)["lift"] == {("r_0", "r_1"): [40.0, 40.0]}
+    assert deeds(team)["lift"] == {("r_0", "r_1"): 40.0}
 
 
 def test_a_member_that_restarts_in_mid_work_makes_both_begin_again():
@@ -161,3 +140,16 @@ def test_a_member_that_restarts_in_mid_work_makes_both_begin_again():
     check_nobody_was_alone(team)
     check_each_was_done_once(team)
     assert team.times("starts")["lift"] == 4
+
+
+def test_two_statements_of_a_robot_that_has_forgotten_the_first_one_count_for_nothing():
+    """Others would compute other begins of them, by what they have heard."""
+    members = (("a", "lift"), ("b", "lift"))
+    said = {
+        Fact("lift", robot, "ready", order, Presence(0, from_s, 5.0, members).content)
+        for order, (robot, from_s) in enumerate((("a", 10.0), ("b", 12.0)))
+    }
+    assert attempt_of(said, ("lift",)) == 0
+    assert attempt_of({*said, replace(min(said, key=lambda fact: fact.order), order=7)}, ("lift",)) == 0
+    again = Fact("lift", "a", "ready", 7, Presence(0, 20.0, 5.0, members).content)
+    assert attempt_of({*said, again}, ("lift",)) == 1
