@@ -84,6 +84,21 @@ def test_a_bound_that_held_only_until_the_task_before_was_lost():
     assert found["b"] == [("prerequisite", "a comes before it and can never be done")]
 
 
+def test_the_end_of_a_route_is_that_of_all_plans_not_of_those_of_the_robots_left():
+    """r_1 is slow from a to b; r_0, which is too late at b for its shift, has no such way."""
+    robots = (
+        Robot(id="r_0", position=(0, 0), available_until_s=24.0),
+        Robot(id="r_1", position=(10, 0), speed_mps=0.5, available_until_s=28.0),
+    )
+    first, second = task("a", 10, only_robots=("r_1",)), task("b", 20, prerequisites=("a",))
+    mission = Mission(rules=Rules(timing="constant"), robots=robots, tasks=(first, second))
+    said = [reason.detail for item in impossible(Problem.compile(mission)) for reason in item.reasons]
+    assert said == [
+        "its route would end at 25 s at the earliest, its shift ends at 24 s",
+        "its route would end at 30 s at the earliest, its shift ends at 28 s",
+    ]
+
+
 @pytest.mark.parametrize("allocator", ["greedy", "auction"])
 def test_a_team_is_of_robots_that_have_the_time_to_wait_for_each_other(allocator):
     """The cheapest of two like robots would be late for the end of its shift when the third comes."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from muster.allocation.bottleneck import bottleneck
 from muster.allocation.lag_cycles import lag_cycle
@@ -38,6 +39,8 @@ class Limits:
         (n,) seconds until work on a task begins; inf: never.
     awaited
         for each task the prerequisite whose end is the latest of what it waits for; None: a robot is.
+    steps
+        the bounds by which pairs were excluded, in this order, each with the pairs that were left before.
     """
 
     problem: Problem
@@ -48,6 +51,7 @@ class Limits:
     ready: Floats
     begin: Floats
     awaited: tuple[int | None, ...]
+    steps: tuple[Limits, ...] = ()
 
     @property
     def rules(self) -> TimedRules:
@@ -106,6 +110,20 @@ class Limits:
             usable = usable if possible is None else usable & possible
         return np.asarray(usable)
 
+    def that_excluded(self, i: int, j: int) -> Limits:
+        """These bounds with the times by which a pair was excluded; later ones may hold for the pairs left alone."""
+        return self._at_steps[int(self._survived[i, j])]
+
+    @cached_property
+    def _at_steps(self) -> tuple[Limits, ...]:
+        return (*(replace(step, usable=self.usable) for step in self.steps), self)
+
+    @cached_property
+    def _survived(self) -> npt.NDArray[np.int_]:
+        """(m, n) how many steps left a pair in."""
+        left = [step.usable for step in (*self.steps[1:], self)]
+        return np.asarray(np.sum(left, axis=0), dtype=np.int_)
+
     def must_also(self, j: int) -> list[int]:
         """The other tasks that are in every plan with a task: all that come before it or begin with it."""
         if j not in self._needed:
@@ -142,17 +160,19 @@ def narrowed(
     nobody = np.zeros(len(problem.tasks))
     limits = Limits(problem, usage, problem.allowed, none, none, nobody, nobody, (None,) * len(problem.tasks))
     if not (timed or problem.has_timed_rules):
-        return replace(limits, usable=limits.possible())
+        return replace(limits, usable=limits.possible(), steps=(limits,))
     found = [ways(problem, i) for i in range(len(problem.robots))]
     limits = replace(limits, arrival=np.array([a for a, _ in found]), home=np.array([h for _, h in found]))
+    steps: list[Limits] = []
     for _ in range(_MOST_ROUNDS):
         next_limits = _with_begins(limits)
+        steps.append(replace(next_limits))  # without what is worked out from it
         usable = next_limits.possible()
         settled = bool((usable == limits.usable).all()) and bool((next_limits.begin == limits.begin).all())
         limits = replace(next_limits, usable=usable)
         if settled:
             break
-    return limits
+    return replace(limits, steps=tuple(steps))
 
 
 @dataclass(frozen=True)
