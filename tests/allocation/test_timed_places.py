@@ -10,7 +10,7 @@ from muster.allocation.explanations import unassigned
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.remedies import remedies, smallest_as_is
-from muster.mission.model import TravelTable
+from muster.mission.model import Lag, TravelTable
 from muster.planning.explaining.explanations import admits
 
 
@@ -82,6 +82,39 @@ def test_a_bound_that_held_only_until_the_task_before_was_lost():
     mission = Mission(robots=(Robot(id="r", position=(0, 0), work_capacity=10),), tasks=(first, second))
     found = {item.task: [(r.reason, r.detail) for r in item.reasons] for item in impossible(Problem.compile(mission))}
     assert found["b"] == [("prerequisite", "a comes before it and can never be done")]
+
+
+def test_a_task_with_a_way_at_one_place_is_not_unreachable():
+    """b has no way on to c; behind c it is too long after a."""
+    inf = math.inf
+    table = TravelTable(("r", "a", "b", "c"), ((0, 1, 1, 1), (1, 0, 1, 1), (1, 1, 0, inf), (1, 1, 1, 0)))
+    after_a = task("b", 2, prerequisites=("a",), lags={"a": Lag(within_s=2.0)})
+    mission = Mission(
+        rules=Rules(travel="matrix", timing="constant"),
+        robots=(Robot(id="r", type="x", position=(0, 0)),),
+        tasks=(task("a", 1), after_a, task("c", 3)),
+        travel={"x": "x.csv"},
+        travel_tables={"x": table},
+    )
+    problem = Problem.compile(mission)
+    (found,) = unassigned(problem, [[problem.task_index["a"], problem.task_index["c"]]])
+    assert [reason.reason for reason in found.reasons] == ["prerequisite"]
+    assert verify(mission, muster.solve(mission, "greedy", iterations=1)).valid
+
+
+def test_the_end_of_a_route_is_that_of_all_plans_not_of_those_of_the_robots_left():
+    """r_1 is slow from a to b; r_0, which is too late at b for its shift, has no such way."""
+    robots = (
+        Robot(id="r_0", position=(0, 0), available_until_s=24.0),
+        Robot(id="r_1", position=(10, 0), speed_mps=0.5, available_until_s=28.0),
+    )
+    first, second = task("a", 10, only_robots=("r_1",)), task("b", 20, prerequisites=("a",))
+    mission = Mission(rules=Rules(timing="constant"), robots=robots, tasks=(first, second))
+    said = [reason.detail for item in impossible(Problem.compile(mission)) for reason in item.reasons]
+    assert said == [
+        "its route would end at 25 s at the earliest, its shift ends at 24 s",
+        "its route would end at 30 s at the earliest, its shift ends at 28 s",
+    ]
 
 
 @pytest.mark.parametrize("allocator", ["greedy", "auction"])

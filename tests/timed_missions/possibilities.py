@@ -143,6 +143,12 @@ def _route_ends(possible, robot, name, lost, time, until):
     return _not_before(time, times) and near(until, possible.mission.robots[i].available_until_s)
 
 
+def _waits_too_long(possible, robot, name, lost, until):
+    """No plan does the task by the robot, and its shift ends when it is said to."""
+    done = possible.by(robot, name)[-1]
+    return not done and near(until, possible.mission.robots[possible.robot[robot]].available_until_s)
+
+
 def _takes(possible, robot, name, lost, usage, _, capacity, __):
     meaning, i, _, plans = possible.by(robot, name, robots=[robot], without=["capacity"])
     own = possible.every.meaning._capacity(possible.mission.robots[i])
@@ -231,6 +237,7 @@ ALONE = (
     (rf"(begins after \S+,|begins together with .+,|its team is there|begins) {_TIME}{_WINDOW}", _begins),
     (rf"ends {_TIME}{_DEADLINE}", _ends),
     (rf"its route would end {_TIME}shift ends at {SECONDS}", _route_ends),
+    (rf"what it waits for is too late for its shift, which ends at {SECONDS}", _waits_too_long),
     (r"takes at least ([\d.]+) (m|s), of ([\d.]+) (m|s)", _takes),
     (rf"(\S+) may end only so long before what follows: it (begins) {_TIME}{_WINDOW}", _held_back),
     (rf"(\S+) may end only so long before what follows: it (ends) {_TIME}{_DEADLINE}", _held_back),

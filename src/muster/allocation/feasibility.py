@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -45,12 +45,16 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
 
     def reasons(j: int) -> tuple[Reason, ...]:
         befores = (lost[j], lost_before(j))  # a bound may have held only until what comes before it was lost
-        return tuple(
-            _reason(problem, i, j, [Outlook(limits, float(limits.usage[i, j]), before) for before in befores])
-            for i in robots
-        )
+        return tuple(_reason(problem, i, j, list(_outlooks(limits, i, j, befores))) for i in robots)
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in order if j in lost)
+
+
+def _outlooks(limits: Limits, i: int, j: int, befores: Sequence[str]) -> Iterator[Outlook]:
+    """What is known of a pair: first by the times that excluded it, then by all."""
+    for bounds in (limits.that_excluded(i, j), limits):
+        for before in befores:
+            yield Outlook(bounds, float(limits.usage[i, j]), before)
 
 
 def _reason(problem: Problem, i: int, j: int, outlooks: Sequence[Outlook]) -> Reason:

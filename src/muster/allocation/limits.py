@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from muster.allocation.bottleneck import bottleneck
 from muster.allocation.lag_cycles import lag_cycle
@@ -18,6 +19,7 @@ from muster.allocation.rules.window import closed
 from muster.allocation.timed_rules import ROUNDING, TimedRules
 
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
+_MOST_NARROWED = 2_000_000  # robots squared times tasks, up to which bounds are narrowed again for each robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +40,8 @@ class Limits:
         (n,) seconds until work on a task begins; inf: never.
     awaited
         for each task the prerequisite whose end is the latest of what it waits for; None: a robot is.
+    steps
+        the bounds by which pairs were excluded before, in this order, each with the pairs that were left until then.
     """
 
     problem: Problem
@@ -48,6 +52,7 @@ class Limits:
     ready: Floats
     begin: Floats
     awaited: tuple[int | None, ...]
+    steps: tuple[Limits, ...] = ()
 
     @property
     def rules(self) -> TimedRules:
@@ -106,6 +111,36 @@ class Limits:
             usable = usable if possible is None else usable & possible
         return np.asarray(usable)
 
+    def that_excluded(self, i: int, j: int) -> Limits:
+        """These bounds with the times by which a pair was excluded; later ones may hold for the pairs left alone."""
+        return self._at_steps[int(self._survived[i, j])]
+
+    @cached_property
+    def _at_steps(self) -> tuple[Limits, ...]:
+        steps = (replace(one, usable=self.usable, steps=self.steps[:k]) for k, one in enumerate(self.steps))
+        return (*steps, self)
+
+    @cached_property
+    def _survived(self) -> npt.NDArray[np.int_]:
+        """(m, n) how many steps left a pair in."""
+        left = [step.usable for step in (*self.steps[1:], self)]
+        return np.asarray(np.sum(left, axis=0), dtype=np.int_)
+
+    def without_shift(self, i: int) -> Limits | None:
+        """Bounds that hold whatever the shift of a robot; None: to narrow them would take too long."""
+        if not self.steps:
+            return self  # no pair was excluded by any shift before
+        if i not in self._without_shift and self.usable.size * len(self.usable) <= _MOST_NARROWED:
+            robots = list(self.problem.robots)
+            robots[i] = replace(robots[i], available_until_s=None)
+            problem = replace(self.problem, robots=tuple(robots), known=self.problem.measured)
+            self._without_shift[i] = _narrowed(_unnarrowed(problem, self.usage, self.arrival, self.home))
+        return self._without_shift.get(i)
+
+    @cached_property
+    def _without_shift(self) -> dict[int, Limits]:
+        return {}
+
     def must_also(self, j: int) -> list[int]:
         """The other tasks that are in every plan with a task: all that come before it or begin with it."""
         if j not in self._needed:
@@ -138,21 +173,30 @@ def narrowed(
     `timed` tells whether times are wanted even where none matter. `ways` gives for a robot the
     seconds until it can be at each task, and from there to the end of its route.
     """
-    none = np.empty((0, 0))
-    nobody = np.zeros(len(problem.tasks))
-    limits = Limits(problem, usage, problem.allowed, none, none, nobody, nobody, (None,) * len(problem.tasks))
     if not (timed or problem.has_timed_rules):
-        return replace(limits, usable=limits.possible())
+        none = np.empty((0, 0))
+        limits = _unnarrowed(problem, usage, none, none)
+        return replace(limits, usable=limits.possible(), steps=(limits,))
     found = [ways(problem, i) for i in range(len(problem.robots))]
-    limits = replace(limits, arrival=np.array([a for a, _ in found]), home=np.array([h for _, h in found]))
+    return _narrowed(_unnarrowed(problem, usage, np.array([a for a, _ in found]), np.array([h for _, h in found])))
+
+
+def _unnarrowed(problem: Problem, usage: Floats, arrival: Floats, home: Floats) -> Limits:
+    now, nobody = np.zeros(len(problem.tasks)), (None,) * len(problem.tasks)
+    return Limits(problem, usage, problem.allowed, arrival, home, now, now, nobody)
+
+
+def _narrowed(limits: Limits) -> Limits:
+    steps: list[Limits] = []
     for _ in range(_MOST_ROUNDS):
         next_limits = _with_begins(limits)
+        steps.append(replace(next_limits))  # without what is worked out from it
         usable = next_limits.possible()
         settled = bool((usable == limits.usable).all()) and bool((next_limits.begin == limits.begin).all())
         limits = replace(next_limits, usable=usable)
         if settled:
             break
-    return limits
+    return replace(limits, steps=tuple(steps))
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ class MinTasks(Rule):
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         least = _least(problem, i)
-        if least <= 1 or outlook.limits.usable[i].any():
+        if least <= 1 or outlook.limits.usable[i].sum() >= least:
             return None
         may = sum(problem.may(i, k) for k in range(len(problem.tasks)))
         only = f"and may do only {_counted(may)}" if may < least else "and can never do so many"

@@ -90,6 +90,8 @@ class Limits(Protocol):
 
     def must_also(self, j: int) -> list[int]: ...
 
+    def without_shift(self, i: int) -> Limits | None: ...
+
 
 class Change:
     """What has to change for a robot to do a task under one rule: the least. Subclasses are frozen dataclasses."""

@@ -83,10 +83,20 @@ class Shift(Rule):
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         limits = outlook.limits
-        return beyond(problem, i, float(limits.pair_end[i, j] + limits.home[i, j])) if limits.is_timed else None
+        if not limits.is_timed or beyond(problem, i, _end(limits, i, j)) is None:
+            return None
+        free = limits.without_shift(i)
+        (until,) = moments(problem, float(problem.timed_rules.available_until[i]))
+        late = None if free is None else beyond(problem, i, _end(free, i, j))
+        return late or f"what it waits for is too late for its shift, which ends at {until}"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         return plan.kept_out(self.word, i, j)
+
+
+def _end(limits: Limits, i: int, j: int) -> float:
+    """A time before which no route of robot i with task j ends."""
+    return float(limits.pair_end[i, j] + limits.home[i, j])
 
 
 def beyond(problem: Question, i: int, end: float) -> str | None:
