@@ -349,8 +349,9 @@ def test_rules_that_are_ignored_do_not_stand_in_the_way(muster):
 
 
 def test_simulate_negotiate_refuses_it_before_a_record_is_begun(muster):
-    Path("timed.yaml").write_text(TIMED, encoding="utf-8")
+    once = TIMED.replace("robots_needed: 2", "robots_needed: 2, across_partition: at-most-once")
+    Path("timed.yaml").write_text(once, encoding="utf-8")
     code, _, err = muster("simulate", "timed.yaml", "--negotiate", "--record", "run.mcap", "--html", "run.html")
     assert code == 2
-    assert "task 2: robots_needed (team), and do not begin it together; expected" in err
+    assert "across_partition: at-most-once of 2; expected at-least-once for tasks that several robots begin" in err
     assert not list(Path().glob("run.*"))

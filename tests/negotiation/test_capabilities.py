@@ -43,8 +43,7 @@ REFUSED = {
 }
 
 
-JOINT = [where for where in REFUSED if word_of(where) in ("team", "starts-with")]
-CASES = [("consensus-bundle", where) for where in REFUSED] + [("auction", where) for where in JOINT]
+CASES = [("consensus-bundle", where) for where in REFUSED]
 
 
 def test_the_auction_agrees_on_all_that_the_central_one_keeps_and_bundles_on_none():
@@ -61,14 +60,16 @@ def test_the_error_names_the_key_and_what_can(where):
 
 
 @pytest.mark.parametrize("where", REFUSED)
-def test_what_begins_together_is_agreed_on_and_not_carried_out(where):
+def test_what_the_auction_agrees_on_is_carried_out(where):
     refuse_what_is_not_agreed(Problem.compile(REFUSED[where]), METHODS["auction"].can)
-    if where not in JOINT:
-        refuse_mission(REFUSED[where], METHODS["auction"].can)
-        return
-    with pytest.raises(ParameterError) as refused:
-        refuse_mission(REFUSED[where], METHODS["auction"].can)
-    assert f"{where}, and do not begin it together; expected a plan" in str(refused.value)
+    refuse_mission(REFUSED[where], METHODS["auction"].can)
+
+
+@pytest.mark.parametrize("keys", [{"robots_needed": 2}, {"starts_with": ("s",)}])
+def test_what_several_begin_may_be_begun_again(keys):
+    mission = with_task(**keys, across_partition="at-most-once")
+    with pytest.raises(ParameterError, match="at-most-once of t; expected at-least-once for tasks that several robots"):
+        refuse_mission(mission, METHODS["auction"].can)
 
 
 @pytest.mark.parametrize(("method", "where"), CASES)

@@ -83,6 +83,10 @@ class Beginning:
         """Why robots must wait at a task now; None: work may begin."""
         return next(self._waits(task, now), None)
 
+    def earliest_s(self, task: str, now: float) -> float:
+        """When work may begin at the earliest, as far as that is known; inf if more than the clock delays it."""
+        return max((wait.until_s for wait in self._waits(task, now)), default=now)
+
     def missed(self, task: str, now: float) -> Missed | None:
         """Why a task can never begin any more; None: it still can."""
         return next((found for name in self.ledger.unit(task) for found in self._missed(name, now)), None)

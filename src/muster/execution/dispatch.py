@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from muster.execution.beginning import Beginning, next_begin
 from muster.execution.changes import Change
 from muster.execution.monitor import exceeds
+from muster.execution.peers import Gathering, Peers
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, Work, path_length, travel_s, work_of
@@ -35,9 +37,9 @@ class Dispatch:
         what a task makes a robot do, and how it gets there.
     emit
         receives every event.
-    leave
-        whether a robot that is at a task may begin it, where others have a say: then it stops there and asks; None: the
-        ledger alone says so.
+    peers
+        the other robots, where they have a say: then a robot stops at its task and asks; None: the ledger alone says
+        whether it may begin.
     """
 
     def __init__(
@@ -49,7 +51,7 @@ class Dispatch:
         plan_motion: MotionPlanner,
         way: Way,
         emit: Emit,
-        leave: Callable[[str], bool] | None = None,
+        peers: Peers | None = None,
     ) -> None:
         self._ledger = ledger
         self._crew = crew
@@ -58,7 +60,7 @@ class Dispatch:
         self._plan_motion = plan_motion
         self._way = way
         self._emit = emit
-        self._leave = leave
+        self._peers = peers
         self.ahead: Mapping[str, Mapping[str, float]] = {}  # by the plan in force: see `Revision`
 
     def advance(self, state: RobotState, now: float) -> None:
@@ -168,7 +170,7 @@ class Dispatch:
             yield from self.refuse(state, task, late, now)
             return
         may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task)
-        state.to_task, state.works = len(there), self._leave is None and may_begin
+        state.to_task, state.works = len(there), self._peers is None and may_begin
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)
         state.send(now, Activity.DRIVING, [*there, *(_delayed(work, delay) if state.works else ())])
@@ -180,19 +182,22 @@ class Dispatch:
         state.arrived_s, state.arrived_used, state.stuck_before = now, state.used, False
         self._emit("arrives", {"robot": state.robot.id, "task": task})
         if state.works:
-            self._begin(task, [state], now)
+            self._begin(task, [state], (state.robot.id,), now)
             state.begin_activity(now, Activity.WORKING)
         else:
             state.begin_activity(now, Activity.WAITING)
 
     def _begin_or_wait(self, state: RobotState, task: str, now: float) -> Iterator[Change]:
         """Begin a task, and those that begin with it, with all their robots; or say for what a robot waits."""
+        if self._peers is not None and self._ledger.is_joint(task):
+            yield from self._begin_with_peers(state, task, self._peers, now)
+            return
         wait = self._beginning.wait(task, now)
         if wait is not None:
             self._say_wait(state, task, wait.cause, wait.words)
             return
         unit = self._ledger.unit(task)
-        if self._leave is not None and not all(self._leave(name) for name in unit):
+        if self._peers is not None and not self._peers.may_begin(task):
             return
         teams = {name: self._beginning.present(name) for name in unit}
         late = [(one, name, self._too_late(one, name, now)) for name, team in teams.items() for one in team]
@@ -202,6 +207,26 @@ class Dispatch:
         if not any(reason for _, _, reason in late):
             for name, team in teams.items():
                 self._work(name, team, now)
+
+    def _begin_with_peers(self, state: RobotState, task: str, peers: Peers, now: float) -> Iterator[Change]:
+        """Tell the others that a robot is at a task that several begin; begin it when that is agreed."""
+        self._count_delay(state, task)
+        wait, earliest_s = self._beginning.wait(task, now), self._beginning.earliest_s(task, now)
+        if wait is not None:
+            self._say_wait(state, task, wait.cause, wait.words)
+        if earliest_s == math.inf:
+            return
+        unit = self._ledger.unit(task)
+        opens = partial(next_begin, [self._ledger.tasks[name] for name in unit])
+        found = peers.gather(task, unit, earliest_s, state.work_s, opens)
+        late = self._too_late(state, task, earliest_s if found.begin_s == math.inf else found.begin_s)
+        if late:
+            yield from self.refuse(state, task, late, now)
+        elif wait is None and found.absent:
+            self._say_wait(state, task, *_words_for_absent(task, found.absent))
+        elif found.begin_s <= now:
+            peers.begin_together(task)
+            self._work_with_peers(state, task, found, now)
 
     def _say_wait(self, state: RobotState, task: str, cause: str, words: str) -> None:
         said, state.wait_cause, state.wait_words = state.wait_words, cause, words
@@ -223,21 +248,28 @@ class Dispatch:
         return ""
 
     def _work(self, task: str, team: Sequence[RobotState], now: float) -> None:
-        delay = self._ledger.delays_s.get(task, 0.0)
         for state in team:
-            state.delay_s, before = delay, state.delay_s
-            state.work_s += state.delay_s - before
-            state.works = True
-        self._begin(task, team, now)
+            self._count_delay(state, task)
+        self._begin(task, team, tuple(state.robot.id for state in team), now)
         slowest = max(state.work_s for state in team)
         for state in team:
-            if state.work is not None:
-                work = _where_it_stands(state, state.work) if len(team) > 1 else state.work
-                state.send(now, Activity.WORKING, _delayed(work, state.delay_s + slowest - state.work_s))
-                state.work_s = slowest
+            _work_for(state, slowest, now, stands=len(team) > 1)
 
-    def _begin(self, task: str, team: Sequence[RobotState], now: float) -> None:
-        robots = tuple(state.robot.id for state in team)
+    def _work_with_peers(self, state: RobotState, task: str, agreed: Gathering, now: float) -> None:
+        """The robot's part of what several have agreed to begin."""
+        self._begin(task, [state], agreed.team, now)
+        self._ledger.begin(task, agreed.begin_s)
+        lasts_s = max(state.work_s, agreed.begin_s + agreed.lasts_s - now)
+        _work_for(state, lasts_s, now, stands=len(agreed.team) > 1)
+
+    def _count_delay(self, state: RobotState, task: str) -> None:
+        """The work takes longer by what the task was delayed since the robot set out."""
+        delay = self._ledger.delays_s.get(task, 0.0)
+        state.delay_s, before = delay, state.delay_s
+        state.work_s += state.delay_s - before
+
+    def _begin(self, task: str, team: Sequence[RobotState], robots: tuple[str, ...], now: float) -> None:
+        """Robots of the crew begin a task, of all the robots that do it."""
         self._ledger.arrive(task, max(one.arrived_used for one in team), max(one.arrived_s for one in team))
         self._ledger.begin(task, now)
         self._ledger.teams[task] = robots
@@ -259,14 +291,17 @@ class Dispatch:
             state.begun_s = begun
             return
         team = self._team_at_work(state, task)
-        if all(one.arrived and one.delay_s >= self._ledger.delays_s.get(task, 0.0) for one in team):
+        if not all(one.arrived and one.delay_s >= self._ledger.delays_s.get(task, 0.0) for one in team):
+            return
+        if self._peers is None or not self._ledger.is_joint(task) or self._peers.end_together(task):
             self._end_for_all(task, team, now)
 
     def _team_at_work(self, state: RobotState, task: str) -> list[RobotState]:
-        return [self._crew[name] for name in self._ledger.teams.get(task, (state.robot.id,))]
+        """The robots of the crew that are at a task."""
+        return [self._crew[name] for name in self._ledger.teams.get(task, (state.robot.id,)) if name in self._crew]
 
     def _end_for_all(self, task: str, team: Sequence[RobotState], now: float) -> None:
-        robots = tuple(state.robot.id for state in team)
+        robots = self._ledger.teams.get(task) or tuple(state.robot.id for state in team)
         for state in team:
             state.charge_work()
         self._ledger.end(task, robots[0], now)
@@ -298,6 +333,15 @@ def _names(robots: Sequence[str]) -> dict[str, Any]:
     return {"robot": robots[0]} | ({"team": list(robots)} if len(robots) > 1 else {})
 
 
+def _words_for_absent(task: str, absent: Sequence[tuple[str, str]]) -> tuple[str, str]:
+    """The cause of waiting for robots elsewhere, and the words for it."""
+    own = [robot for robot, name in absent if name == task]
+    if own:
+        return "team", f"waits for team: {', '.join(own)}"
+    first = absent[0][1]
+    return "start", f"waits for start with {first}: {', '.join(robot for robot, name in absent if name == first)}"
+
+
 def _least_s(state: RobotState, start: Place, way: Sequence[Waypoint]) -> float:
     """Seconds that a robot drives at least."""
     rise_m = abs(way[-1].position[2] - start[2]) if way else 0.0
@@ -308,6 +352,15 @@ def _usage_home(state: RobotState, work: Work, way: Sequence[Waypoint]) -> tuple
     """What the way from the exit of a task to the end of the route uses, and the seconds that it takes at least."""
     usage = travel_s(state.times, work.exit, way) if state.in_time else path_length(work.exit, way)
     return usage, _least_s(state, work.exit, way)
+
+
+def _work_for(state: RobotState, lasts_s: float, now: float, *, stands: bool) -> None:
+    """Let a robot work, and stay where the work ends until so much time is over; `stands`: it works where it is."""
+    state.works = True
+    if state.work is not None:
+        work = _where_it_stands(state, state.work) if stands else state.work
+        state.send(now, Activity.WORKING, _delayed(work, state.delay_s + lasts_s - state.work_s))
+        state.work_s = lasts_s
 
 
 def _where_it_stands(state: RobotState, work: Work) -> Work:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from muster.execution.beginning import Beginning
 from muster.execution.changes import OUT, SILENT, Change, Changes, may_bring_work, new_robot_state
@@ -17,6 +17,7 @@ from muster.execution.completed_work import CompletedWork
 from muster.execution.dispatch import Dispatch
 from muster.execution.forecast import Forecast
 from muster.execution.monitor import Limits
+from muster.execution.peers import Peers
 from muster.execution.punctuality import Punctuality
 from muster.execution.reallocation import Reallocation, Revision, reasons_in_one_line, usage_ahead
 from muster.execution.record import ExecutionEvent, NoObserver, Observer
@@ -27,6 +28,7 @@ from muster.execution.situation import remaining_mission_of, required_routes, wh
 from muster.execution.supervision import Supervisor
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
+from muster.execution.team_work import break_off
 from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
@@ -34,14 +36,6 @@ from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
-
-
-class Peers(Protocol):
-    """The rest of the team, where each robot has an executor of its own."""
-
-    def may_begin(self, task: str) -> bool:
-        """Whether this executor's robot may begin a task at which it stands; asked until it may."""
-        ...
 
 
 class Executor:
@@ -108,12 +102,11 @@ class Executor:
         self._observer = NoObserver() if observer is None else observer
         self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
         self._alone = peers is None
-        may_begin = None if peers is None else peers.may_begin
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
         self._beginning = Beginning(self.ledger, self.crew, self._forecast.hold_until_s, self._alone)
         self._punctuality = Punctuality(self.ledger, self.crew, self._beginning)
         self._dispatch = Dispatch(
-            self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, may_begin
+            self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, peers
         )
         self._supervisor = Supervisor(
             self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self.emit, now
@@ -202,11 +195,18 @@ class Executor:
         """Have the rest planned again at the next tick, because of something that is known elsewhere."""
         self._ask([Change(kind, data)])
 
-    def end_elsewhere(self, task: str, robot: str) -> None:
-        """A robot outside the crew has done a task; work of the crew on it that has begun continues."""
+    def end_elsewhere(self, task: str, robots: Sequence[str]) -> None:
+        """Robots outside the crew have done a task; work of the crew on it that has begun continues."""
         at_work = any(state.activity is Activity.WORKING and state.route[0] == task for state in self.crew.values())
         if not at_work and task not in self.ledger.ends_s:
-            self.ledger.end(task, robot, self.now_s)
+            self.ledger.end(task, robots[0], self.now_s)
+            self.ledger.teams[task] = tuple(robots)
+
+    def break_off(self, task: str) -> None:
+        """Robots elsewhere have left a task that they and the crew had begun together: the crew leaves it too."""
+        robots = [state.robot.id for state in self.crew.values() if state.route[:1] == [task]]
+        broken = break_off(self.crew, self.ledger, task, self.now_s)
+        self._ask([Change("work_broken_off", {"task": name, "robot": robots[0]}) for name in broken])
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Go on to a time, not before the last, in seconds; returns what happened.

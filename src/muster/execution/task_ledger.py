@@ -76,6 +76,10 @@ class Ledger:
             self._units = units_of(self.tasks.values())
         return self._units[task]
 
+    def is_joint(self, task: str) -> bool:
+        """Whether several robots begin the task at the same moment: as a team, or with tasks that are tied to it."""
+        return self.tasks[task].is_for_team or len(self.unit(task)) > 1
+
     def lag_limits(self, task: str) -> dict[str, tuple[float, float]]:
         """For each prerequisite with a lag that has ended the earliest and latest time at which work may begin."""
         lags = self.tasks[task].lags

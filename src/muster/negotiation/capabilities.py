@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from muster.allocation.capabilities import FOR_GOOD, those_that_can
 from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Task
+from muster.negotiation.epoch_base import joint_among
 
 AGREED = FOR_GOOD
 """What the auction agrees on."""
-
-CARRIED_OUT = AGREED - {"team", "starts-with"}
-"""What of it robots also carry out by themselves: they do not tell each other that all are there."""
 
 
 def refuse_what_is_not_agreed(problem: Problem, can: frozenset[str]) -> None:
@@ -48,9 +48,26 @@ def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
     whole = mission.at_once(robots=(*mission.robots, *joining), tasks=(*mission.tasks, *new))
     problem = Problem.compile(whole)
     refuse_what_is_not_agreed(problem, can)
-    together = [f"{where} ({word})" for word, where in problem.asked.items() if word not in CARRIED_OUT]
-    if together:
+    refuse_once_together(problem.tasks, (problem.holds("team"), problem.holds("relation")))
+
+
+def refuse_once_together(tasks: Sequence[Task], tied: tuple[bool, bool]) -> None:
+    """Refuse tasks that several robots begin and that must not be begun twice: a team begins again after a fault.
+
+    Parameters
+    ----------
+    tied
+        whether teams, and whether relations, hold.
+
+    Raises
+    ------
+    ParameterError
+        with the tasks.
+    """
+    joint = joint_among(tasks, tied)
+    once = [task.id for task in tasks if task.id in joint and task.across_partition == "at-most-once"]
+    if once:
         raise ParameterError(
-            f"robots without a centre agree on {'; '.join(together)}, and do not begin it together; "
-            "expected a plan, of muster auction for example"
+            f"across_partition: at-most-once of {', '.join(once)}; expected at-least-once for tasks that several "
+            "robots begin together without a centre, as they begin again when one of them fails"
         )

@@ -33,7 +33,7 @@ from muster.negotiation.plain_values import (
     rows,
 )
 
-PROTOCOL = 4
+PROTOCOL = 5
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 
@@ -41,7 +41,7 @@ class OtherVersionError(MalformedError):
     """A message of another version of the protocol."""
 
 
-FACTS = ("done", "begun", "waived", "added", "moved", "cancelled")
+FACTS = ("done", "begun", "waived", "added", "moved", "cancelled", "ready", "left", "joined", "part")
 """The kinds of facts."""
 
 

@@ -13,6 +13,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from muster.negotiation.epoch_base import Base, Rules, agreed
+from muster.negotiation.joint_statements import Members
+from muster.negotiation.knowledge import deeds
 from muster.negotiation.messages import Claim, Declaration, RoundBids, Sold, Stage
 from muster.negotiation.valuation import Opening, Valuer
 
@@ -167,6 +169,13 @@ class Epoch:
         ahead = (claims[task] for task in self.valuer.route(self.own.robot) if task in claims)
         return (*(claim for claim in owned if claim.begun), *ahead)
 
+    def owners(self, tasks: Collection[str]) -> Members:
+        """The members that own one of these tasks, in order, each with its task; none before the base is found."""
+        owned = {} if self.base is None else self.base.routes
+        claimed = [(robot, claim.task) for robot, claims in owned.items() for claim in claims]
+        claimed += [pair for sold in self.sales for pair in sold.assignments]
+        return tuple(sorted((robot, task) for robot, task in claimed if task in tasks))
+
     def _begin(self) -> bool:
         """Find the base if all members have declared the same members; return whether it was found."""
         if self._waits_for:
@@ -189,14 +198,17 @@ class Epoch:
 
 
 def opening_of(base: Base) -> Opening:
-    """The state of the mission on a base. A task that several have done or begun counts for the first of them."""
+    """The state of the mission on a base. A task that was done or begun several times counts for the first of them."""
     past: dict[str, list[str]] = {}
-    counted: set[str] = set()
-    done = [(fact.robot, fact.task) for fact in base.done]
-    begun = [(robot, claim.task) for robot, claims in base.routes.items() for claim in claims if claim.begun]
-    for robot, task in (*done, *begun):
-        if task not in counted:
-            past.setdefault(robot, []).append(task)
-            counted.add(task)
+    done = deeds(base.facts)
+    counted = [(fact.task, fact.robot) for fact in base.done if fact in done[fact.task][0]]
+    over = set(done)
+    for robot, claims in base.routes.items():
+        for claim in claims:
+            if claim.begun and claim.task not in over:
+                over.add(claim.task)
+                counted.append((claim.task, robot))
+    for task, robot in counted:
+        past.setdefault(robot, []).append(task)
     ahead = {robot: [claim.task for claim in claims if not claim.begun] for robot, claims in base.routes.items()}
     return Opening(past, ahead, base.closed, tuple(fact.content for fact in base.added))

@@ -12,7 +12,7 @@ from graphlib import CycleError, TopologicalSorter
 from hashlib import blake2b
 
 from muster.mission.model import Task
-from muster.negotiation.knowledge import holders, in_order
+from muster.negotiation.knowledge import deeds, holders, in_order
 from muster.negotiation.messages import Claim, Declaration, Fact
 from muster.negotiation.new_tasks import task_of
 
@@ -147,8 +147,9 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     facts = frozenset(fact for declaration in declarations for fact in declaration.facts)
     added = tasks_added(facts, rules)
     rules = rules.with_added(added)
-    known = frozenset(fact for fact in facts if fact.task in rules.tasks)  # of a task it may be heard that it was done
-    finished = tuple(fact for fact in in_order(known) if fact.done)  # before it is heard that there is such a task
+    # Of a task it may be heard that it was done before it is heard that there is such a task.
+    known = frozenset(fact for fact in facts if fact.task in rules.tasks)
+    finished = in_order(fact for times in deeds(known).values() for found in times for fact in found)
     done = {fact.task for fact in finished}
     gone = done.union(fact.task for fact in known if fact.kind == "cancelled")
     reserved = _reserved(declarations, known)

@@ -1,4 +1,4 @@
-"""The set of facts that a robot knows: tasks done, begun at most once, added, moved, cancelled. It only grows.
+"""The set of facts that a robot knows: tasks done, begun at most once, added, moved, cancelled ... It only grows.
 
 Sets are joined in any order. Robots with equal digests know the same facts.
 """
@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from hashlib import blake2b
 
+from muster.negotiation.joint_statements import parts_of_deeds
 from muster.negotiation.messages import Fact
 
 AT_ONCE = 40
@@ -21,6 +22,8 @@ class Knowledge:
 
     facts: set[Fact] = field(default_factory=set)
     digest: int = 0
+    _deeds_at: int = 0  # the digest for which these deeds were found
+    _deeds_found: dict[str, list[tuple[Fact, ...]]] = field(default_factory=dict)
 
     def learn(self, facts: Iterable[Fact]) -> list[Fact]:
         """Add facts; return those that were new."""
@@ -46,16 +49,22 @@ class Knowledge:
 
     @property
     def done(self) -> set[str]:
-        return {fact.task for fact in self.facts if fact.done}
+        return set(self._deeds)
 
     @property
-    def doers(self) -> dict[str, tuple[str, ...]]:
-        """For each task that was done the robots that have done it, the first one first."""
-        doers: dict[str, tuple[str, ...]] = {}
-        for fact in in_order(self.facts):
-            if fact.done:
-                doers[fact.task] = (*doers.get(fact.task, ()), fact.robot)
-        return doers
+    def twice(self) -> dict[str, tuple[str, ...]]:
+        """Tasks that were done more than once, with all that have done them."""
+        return {task: _robots(found) for task, found in self._deeds.items() if len(found) > 1}
+
+    def is_done_by(self, task: str, part: bytes) -> bool:
+        """Whether a task is done as all robots of a team have stated this part."""
+        return any(found[0].content == part for found in self._deeds.get(task, ()) if found[0].kind == "part")
+
+    @property
+    def _deeds(self) -> dict[str, list[tuple[Fact, ...]]]:
+        if self._deeds_at != self.digest:
+            self._deeds_at, self._deeds_found = self.digest, deeds(self.facts)
+        return self._deeds_found
 
     def some(self, number: int) -> tuple[Fact, ...]:
         """At most AT_ONCE facts; another number gives other facts."""
@@ -68,7 +77,25 @@ class Knowledge:
 
 def in_order(facts: Iterable[Fact]) -> tuple[Fact, ...]:
     """Facts in causal order: a fact comes after all facts that its author knew."""
-    return tuple(sorted(facts, key=lambda fact: (fact.order, fact.robot, fact.task, fact.kind)))
+    return tuple(sorted(facts, key=lambda fact: (fact.order, fact.robot, fact.task, fact.kind, fact.content)))
+
+
+def deeds(facts: Iterable[Fact]) -> dict[str, list[tuple[Fact, ...]]]:
+    """For each task that was done the facts by which it is, for each time that it was: the first time first.
+
+    One robot states that it has done a task; of a team each robot states its part, and the task is done when all have.
+    """
+    facts = in_order(facts)
+    times: list[tuple[str, tuple[Fact, ...]]] = [(fact.task, (fact,)) for fact in facts if fact.done]
+    times += [(task, parts) for (task, _), parts in parts_of_deeds(facts).items()]
+    found: dict[str, list[tuple[Fact, ...]]] = {}
+    for task, by in sorted(times, key=lambda deed: (deed[1][-1].order, deed[1][-1].robot)):
+        found.setdefault(task, []).append(by)
+    return found
+
+
+def _robots(found: Iterable[tuple[Fact, ...]]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(fact.robot for facts in found for fact in facts))
 
 
 def holders(facts: Iterable[Fact]) -> dict[str, tuple[str, ...]]:

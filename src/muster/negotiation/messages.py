@@ -1,6 +1,7 @@
 """The protocol's message and its parts: what the sender knows, and what it lacks.
 
-Robots and tasks are named by their ids. A message contains no times: the clocks of robots need not agree.
+Robots and tasks are named by their ids. What is agreed depends on no time: the clocks of robots need not agree. Only
+the facts of a joint begin contain times, those of the mission.
 """
 
 from __future__ import annotations
@@ -32,12 +33,13 @@ class Fact:
     kind
         "done": the robot has done the task. "begun": the robot has begun an at-most-once task or is going to. "waived":
         it has not and never will, in the incarnation that announced it. "added": the task belongs to the mission from
-        now on. "moved": it has another position. "cancelled": it need not be done.
+        now on. "moved": it has another position. "cancelled": it need not be done. "ready", "left", "joined" and
+        "part": of a task that several robots begin at the same moment, see `joint_statements`.
     order
         above that of all facts that the robot knew, so that a fact comes after those that it follows from.
     content
         of "added" and "moved": the task, as `new_tasks.content_of` writes it. Of "begun" and "waived": the incarnation
-        that announced the task.
+        that announced the task. Of "ready", "left", "joined" and "part": as `joint_statements` writes it.
     """
 
     task: str
@@ -49,6 +51,11 @@ class Fact:
     @property
     def done(self) -> bool:
         return self.kind == "done"
+
+    @property
+    def opens_epoch(self) -> bool:
+        """Whether all have to learn of it in a new epoch, as it changes what is for sale or who may begin."""
+        return self.kind in ("begun", "waived", "added", "moved", "cancelled")
 
 
 @dataclass(frozen=True, slots=True)

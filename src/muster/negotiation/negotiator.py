@@ -6,11 +6,15 @@ or `tick` returns.
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from muster.mission.errors import ParameterError
 from muster.mission.model import Task
 from muster.mission.value_types import shown
 from muster.negotiation.effects import Memory
 from muster.negotiation.epoch_base import tasks_added
+from muster.negotiation.joint_starts import JointStarts
+from muster.negotiation.joint_statements import Members
 from muster.negotiation.messages import Claim, Fact
 from muster.negotiation.new_tasks import content_of
 from muster.negotiation.participant import Participant
@@ -65,7 +69,7 @@ class Negotiator(Participant):
 
         It must own the task by an auction that has ended, and all prerequisites must be done. For an at-most-once task
         a majority of the mission's robots must also know that this robot is going to begin it: see `begin`. What
-        several robots begin at the same moment they agree on, and none begins.
+        several robots begin at the same moment begins by their statements (`joint`), never so.
         """
         return bool(self.route) and self._owned.may_begin(task, self.epoch, self._peer_progress.shown, self.rules)
 
@@ -82,9 +86,25 @@ class Negotiator(Participant):
             self._owned.reserve(task)
         return False
 
+    @property
+    def joint(self) -> JointStarts:
+        """The robot's part in tasks that several robots begin at the same moment."""
+        return self._owned.joint
+
+    def owns(self, task: str) -> bool:
+        """Whether the robot owns a task that it has not done."""
+        return any(claim.task == task for claim in self.route)
+
+    def owners(self, tasks: Collection[str]) -> Members:
+        """The members that own one of these tasks, each with its task; none unless an auction with it has ended."""
+        return self.epoch.owners(tasks) if self.stage.ended and self.epochs and not self.superseded else ()
+
     def finish(self, task: str) -> None:
-        """State that the robot has done a task."""
-        self._owned.finish(task)
+        """State that the robot has done a task; of one that several begin all have stated their parts before."""
+        if task in self.joint.under_way:
+            self.joint.forget(task)
+        else:
+            self._owned.finish(task)
 
     def announce(self, task: Task) -> None:
         """Add a task to the mission: it is auctioned at once.
@@ -125,6 +145,7 @@ class Negotiator(Participant):
 
     def abandon(self, task: str) -> None:
         """Stop a cancelled task that was begun, so that no robot waits for what depends on it."""
+        self.joint.forget(task)
         self._owned.abandon(task)
 
     def release(self, task: str) -> None:

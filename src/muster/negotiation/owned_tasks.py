@@ -10,6 +10,7 @@ from muster.mission.value_types import shown
 from muster.negotiation.effects import Memory
 from muster.negotiation.epoch import Epoch
 from muster.negotiation.epoch_base import Base, Rules
+from muster.negotiation.joint_starts import JointStarts
 from muster.negotiation.knowledge import Knowledge, in_order
 from muster.negotiation.messages import Claim, Fact
 
@@ -34,6 +35,9 @@ class OwnedTasks:
         whether it takes no more tasks.
     epoch_due
         whether the others have to learn of a change at once, in a new epoch.
+    joint
+        its part in tasks that several robots begin at the same moment. Such a task is never `begun`: it is kept as long
+        as the team is, and given up with it.
     """
 
     robot: str
@@ -45,6 +49,10 @@ class OwnedTasks:
     unsent: list[Fact] = field(default_factory=list)
     withdrawn: bool = False
     epoch_due: bool = False
+    joint: JointStarts = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.joint = JointStarts(self.robot, self.known, self.say)
 
     @classmethod
     def remembered(cls, robot: str, incarnation: int, memory: Memory) -> OwnedTasks:
@@ -59,16 +67,17 @@ class OwnedTasks:
         return Memory(self.left_of(claims), facts, epoch, knows, frozenset(self.refused), reserved)
 
     def left_of(self, claims: Iterable[Claim]) -> tuple[Claim, ...]:
-        """The claims that still hold; tasks that were begun come first."""
-        done = self.known.done
+        """The claims that still hold; tasks that were begun come first, also those begun with others."""
+        done, joint = self.known.done - self.joint.under_way.keys(), self.joint.under_way
         mine = [replace(c, begun=c.task in self.begun) for c in claims if c.task not in done or c.task in self.begun]
         kept = [claim for claim in mine if claim.begun or not (self.withdrawn or claim.task in self.refused)]
-        return (*(claim for claim in kept if claim.begun), *(claim for claim in kept if not claim.begun))
+        return tuple(sorted(kept, key=lambda claim: not (claim.begun or claim.task in joint)))
 
     def up_to_date(self, epoch: Epoch) -> tuple[Claim, ...]:
         """The claims of an epoch that still hold, without tasks that are known since then to have moved."""
         knew = epoch.own.facts if epoch.base is None else epoch.base.facts
         moved = {fact.task for fact in self.known.facts.difference(knew) if fact.kind == "moved"}
+        moved -= self.joint.under_way.keys()
         return tuple(claim for claim in self.left_of(epoch.route()) if claim.begun or claim.task not in moved)
 
     def say(self, task: str, kind: str, content: bytes = b"") -> Fact:
@@ -89,7 +98,7 @@ class OwnedTasks:
         if task in self.begun:
             return True
         rules = rules.with_added(base.added)
-        if task in rules.joint:  # nobody could say that all are there
+        if task in rules.joint:  # these begin by their statements: see `joint`
             return False
         if not self.known.done.issuperset(rules.prerequisites[task]):
             return False

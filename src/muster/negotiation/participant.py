@@ -99,8 +99,7 @@ class Participant:
     def twice(self) -> Mapping[str, tuple[str, ...]]:
         """Tasks that several robots have begun or done, with these robots, as far as this robot knows."""
         base = self._base
-        done = {task: doers for task, doers in self._owned.known.doers.items() if len(doers) > 1}
-        return {**(base.twice if base else {}), **done}
+        return {**(base.twice if base else {}), **self._owned.known.twice}
 
     @property
     def due_s(self) -> float:
@@ -249,7 +248,7 @@ class Participant:
         self.notices.tell("restarted", [robot])
 
     def _learn(self, facts: Collection[Fact]) -> None:
-        if any(fact.done for fact in self._owned.known.learn(facts)):
+        if any(fact.kind in ("done", "part") for fact in self._owned.known.learn(facts)):
             self.notices.tell_twice(self.twice)
 
     def _absorb(self, message: Message) -> bool:
@@ -305,7 +304,7 @@ class Participant:
         if self._looked_at == (state := self._owned.known.digest) and self.knows:
             return False
         self._looked_at = state
-        return self._could_be_told() or any(not f.done and f not in base.facts for f in self._owned.known.facts)
+        return self._could_be_told() or any(f.opens_epoch and f not in base.facts for f in self._owned.known.facts)
 
     def _could_be_told(self) -> bool:
         """Whether this robot has lost its memory and enough members that remember are here."""

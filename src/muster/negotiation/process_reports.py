@@ -42,6 +42,8 @@ class TeamSetup:
         a folder in which robots store what they need after a restart; required where a robot restarts.
     part
         what a robot's process does; None: it takes part in the auction and does nothing else.
+    speed
+        by how much the mission's time goes faster than real time.
     """
 
     problem: Problem
@@ -54,6 +56,7 @@ class TeamSetup:
     starts: Mapping[str, int] = field(default_factory=dict)
     memory: Path | None = None
     part: Callable[[Any], None] | None = None
+    speed: float = 1.0
 
     @property
     def processes(self) -> list[tuple[str, int]]:

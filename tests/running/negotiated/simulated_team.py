@@ -80,8 +80,10 @@ class SimulatedTeam:
 
     @property
     def rests(self):
-        """Whether all that live agree, and have nothing to do."""
+        """Whether all that live agree, know the same, and have nothing to do."""
         nodes = self.net.nodes.values()
+        if len({node.known for node in nodes}) > 1:
+            return False
         alone = all(set(node.epoch.own.members) == set(self.net.nodes) for node in nodes)
         return alone and all(node.settled for node in nodes) and all(control.idle for control in self.controls.values())
 

@@ -25,7 +25,8 @@ def test_what_a_robot_begins_is_kept_before_its_body_begins():
             begun.append([{claim.task for claim in memory.claims if claim.begun} for memory in kept[-1:]])
 
     node = SimpleNamespace(negotiator=negotiator, keep=lambda: kept.append(negotiator.memory))
-    worker = RobotWorker(SimpleNamespace(robot="a", problem=problem, pipe=SimpleNamespace(send=send)), node)
+    setup, pipe = SimpleNamespace(speed=1.0), SimpleNamespace(send=send)
+    worker = RobotWorker(SimpleNamespace(robot="a", problem=problem, setup=setup, pipe=pipe), node)
     negotiator.start(0.0)
     while world.time_s < 60 and "t" not in {fact.task for fact in negotiator.facts if fact.done}:
         world.advance(round(world.time_s + 0.1, 9))

@@ -23,7 +23,7 @@ def take(log, robot, came=None, began=None, ended=None):
         if at_s is not None:
             log.take(robot, at_s, kind, {"task": "t", "robot": robot}, used=at_s)
     if ended is not None:
-        log.note_usage("t", (1.0, 1.0))
+        log.note_usage(robot, "t", (1.0, 1.0))
 
 
 def report(log):
@@ -61,3 +61,31 @@ def test_who_has_forgotten_that_it_has_done_a_task_does_not_change_when_it_was_d
     take(log, "a", came=1.0, began=2.0, ended=3.0)
     take(log, "a", came=5.0, began=6.0, ended=7.0)
     assert (report(log).starts_s, report(log).ends_s) == ({"t": 2.0}, {"t": 3.0})
+
+
+def test_what_all_of_a_team_tell_is_told_once_and_work_that_is_broken_off_is_open_again(log):
+    both = {"task": "t", "robot": "a", "team": ["a", "b"]}
+
+    def told(kind, at_s, **data):
+        for robot in ("a", "b"):
+            log.take(robot, at_s, kind, {**both, **data}, used=at_s)
+
+    for robot, at_s in (("a", 1.0), ("b", 3.0)):
+        log.take(robot, at_s, "arrives", {"task": "t", "robot": robot}, used=at_s)
+    told("starts", 4.0)
+    told("work_broken_off", 5.0)
+    assert report(log).starts_s == {}
+    told("starts", 6.0)
+    told("ends", 8.0)
+    for robot in ("a", "b"):
+        log.note_usage(robot, "t", (1.0, 2.0))
+    assert [event.kind for event in log.events if event.kind != "arrives"] == [
+        "starts",
+        "work_broken_off",
+        "starts",
+        "ends",
+    ]
+    (task,) = report(log).tasks
+    assert (task.robot, report(log).starts_s, report(log).ends_s) == ("a", {"t": 6.0}, {"t": 8.0})
+    assert log.ledger.usage["t"] == (2.0, 4.0)
+    assert log.ledger.team_waits_s["t"] == 8.0

@@ -63,7 +63,7 @@ class RobotBodies:
             for at_s, kind, data in report.events:
                 self._log.take(robot, at_s, kind, data, report.used)
             for task, usage in report.usages.items():
-                self._log.note_usage(task, usage)
+                self._log.note_usage(robot, task, usage)
 
     @property
     def ports(self) -> Mapping[str, RobotPort]:

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_of
 from muster.execution.monitor import exceeds
+from muster.execution.peers import Gathering
 from muster.execution.punctuality import MISSED
 from muster.execution.reallocation import usage_ahead
 from muster.execution.remaining_problem import RemainingMission
+from muster.execution.robot_state import Activity
 from muster.execution.task_ledger import moved
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, MovedTask, Task
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
 from muster.motion.port import RobotPort
+from muster.negotiation.capabilities import refuse_once_together
 from muster.negotiation.epoch_base import tasks_added
-from muster.negotiation.knowledge import in_order
+from muster.negotiation.knowledge import deeds, in_order
 from muster.negotiation.messages import Fact
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import content_of, task_of
+
+NOTICE_HEARTBEATS = 3.0
+"""The time before a joint begin in which all have to learn of it, in heartbeats."""
 
 _ITS_OWN = {
     "sets_out",
@@ -36,6 +42,7 @@ _ITS_OWN = {
     "robot_stuck",
     "task_refused",
     "waits",
+    "work_broken_off",
     *MISSED.values(),
 }
 """Events that nobody else knows of."""
@@ -58,9 +65,19 @@ class RobotControl:
         the mission's time, seconds.
     used
         the usage so far, in the mission's unit.
+    speed
+        by how much the mission's time goes faster than that of messages.
     """
 
-    def __init__(self, problem: Problem, port: RobotPort, negotiator: Negotiator, now: float, used: float) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        port: RobotPort,
+        negotiator: Negotiator,
+        now: float,
+        used: float,
+        speed: float = 1.0,
+    ) -> None:
         mission = problem.mission.at_once()
         robot_paths = problem.robot_paths if mission.travel_rule == "map" else None
         self._travel = travel_of(mission, robot_paths)
@@ -80,6 +97,7 @@ class RobotControl:
         self._hand.recall(used)
         self._learned: set[Fact] = set()
         self._known = 0  # the digest of what was learned
+        self._notice_s = NOTICE_HEARTBEATS * negotiator.timeouts.heartbeat_s * speed
 
     @property
     def idle(self) -> bool:
@@ -97,13 +115,17 @@ class RobotControl:
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
+        first = len(self._executor.events)
+        self._break_off()
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
             self._executor.plan_again("agreed", {})
-        events = [event for event in self._executor.tick(now) if event.kind in _ITS_OWN]
+        self._executor.tick(now)
+        events = [event for event in self._executor.events[first:] if event.kind in _ITS_OWN]
         for event in events:
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
+        self._negotiator.joint.leave_all_but(self._at)
         return events
 
     def take_event(self, event: Event) -> str | None:
@@ -111,6 +133,7 @@ class RobotControl:
         try:
             if event.new_task is not None:
                 if not self._is_known(event.new_task):  # else it was announced before
+                    refuse_once_together([event.new_task], self._negotiator.rules.tied)
                     self._negotiator.announce(event.new_task)
             elif event.cancel_task is not None:
                 self._negotiator.cancel(event.cancel_task)
@@ -127,6 +150,54 @@ class RobotControl:
     def may_begin(self, task: str) -> bool:
         """As `execution.Peers.may_begin`."""
         return self._negotiator.begin(task)
+
+    def gather(
+        self, task: str, unit: Sequence[str], earliest_s: float, lasts_s: float, next_begin: Callable[[float], float]
+    ) -> Gathering:
+        """As `execution.Peers.gather`."""
+        joint, now = self._negotiator.joint, self._executor.now_s
+        members = self._negotiator.owners(unit)
+        start = joint.start(task, members)
+        if start is None and (self._negotiator.robot, task) in members:  # else a new auction is under way
+            from_s = max(earliest_s, now + joint.notice_s(task, self._notice_s))
+            joint.state_ready(task, unit, members, from_s, lasts_s)
+            if absent := joint.absent(task, members):
+                return Gathering(absent)
+            start = joint.learn_start(task, members, now, next_begin)
+            if start is None:
+                joint.state_again(task, members, from_s, lasts_s)
+        if start is None:
+            return Gathering()
+        return Gathering((), next_begin(start.from_s), start.lasts_s[task], start.team(task))
+
+    def begin_together(self, task: str) -> None:
+        """As `execution.Peers.begin_together`."""
+        self._negotiator.joint.begin(task)
+
+    def end_together(self, task: str) -> bool:
+        """As `execution.Peers.end_together`."""
+        return self._negotiator.joint.end(task)
+
+    @property
+    def _at(self) -> str:
+        """The task at which the robot waits or works; empty if at none."""
+        there = self._hand.activity in (Activity.WAITING, Activity.WORKING) and not self._hand.out
+        return self._hand.route[0] if there else ""
+
+    def _unit(self, task: str) -> Sequence[str]:
+        """The tasks that begin together with a task."""
+        ledger = self._executor.ledger
+        return ledger.unit(task) if task in ledger.tasks else (task,)
+
+    def _break_off(self) -> None:
+        """Leave tasks begun with others that are no team any more, or have to begin again."""
+        joint = self._negotiator.joint
+        for task in list(joint.under_way):
+            members = self._negotiator.owners(self._unit(task))
+            if joint.is_broken(task, members, owned=self._negotiator.owns(task)):
+                joint.forget(task)
+                if self._at == task:
+                    self._executor.break_off(task)
 
     @property
     def _wanted(self) -> list[str]:
@@ -149,9 +220,7 @@ class RobotControl:
             if fact in self._learned or not holds:
                 continue
             self._learned.add(fact)
-            if fact.kind == "done":
-                self._executor.end_elsewhere(fact.task, fact.robot)
-            elif fact.kind == "cancelled":
+            if fact.kind == "cancelled":
                 self._executor.report(Event(at_s=0.0, cancel_task=fact.task))
                 self._negotiator.abandon(fact.task)
             elif fact.kind == "moved":
@@ -159,6 +228,10 @@ class RobotControl:
                 self._executor.report(Event(at_s=0.0, move_task=move))
             elif fact.kind == "added" and fact.task not in tasks:
                 self._executor.report(Event(at_s=0.0, new_task=task_of(fact.content)))
+        for task, times in deeds(facts).items():
+            if task in tasks:
+                self._executor.end_elsewhere(task, [fact.robot for fact in times[0]])
+        self._negotiator.joint.leave_of_last_life(self._unit)
 
     def _owned(self, rest: RemainingMission) -> Revision:
         """The plan of the rest is what the robot owns. It gives back what it cannot do."""
@@ -170,6 +243,9 @@ class RobotControl:
                 self._negotiator.release(task)
         for task in rest.expired.keys() & set(self._wanted):  # no robot can begin it any more
             self._negotiator.cancel(task)
+        for task in self._wanted:
+            if self._is_too_late_for(task):
+                self._negotiator.cancel(task)
         if not rest.crew:
             for task in begun - once:
                 self._negotiator.release(task)
@@ -185,6 +261,11 @@ class RobotControl:
             if not route or route[-1] in begun or not exceeds(me.used + ahead[robot][""], capacity):
                 return _revision({robot: tuple(route)}, ahead)
             self._negotiator.release(route.pop())
+
+    def _is_too_late_for(self, task: str) -> bool:
+        """Whether a task that begins with this one is done, and the robot has not begun this one."""
+        ledger = self._executor.ledger
+        return task not in self._negotiator.joint.under_way and any(name in ledger.ends_s for name in ledger.unit(task))
 
     def _is_known(self, task: Task) -> bool:
         """Whether the robot knows this new task, even if the task has moved since."""

@@ -114,7 +114,14 @@ class RobotWorker:
         if self._control is None:
             context = self._context
             self._port = PipePort(context.robot, self._steer, sense.orders, sense.telemetry)
-            self._control = RobotControl(context.problem, self._port, self._node.negotiator, sense.now_s, sense.used)
+            self._control = RobotControl(
+                context.problem,
+                self._port,
+                self._node.negotiator,
+                sense.now_s,
+                sense.used,
+                context.setup.speed,
+            )
         else:
             self._port.said = sense.telemetry
 

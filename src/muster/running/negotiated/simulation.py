@@ -113,7 +113,7 @@ def negotiate_and_carry_out(
         )
         if on_world is not None:
             on_world(bodies)
-        setup = setup_of(problem, negotiation, memory)
+        setup = setup_of(problem, negotiation, memory, 1.0 if speed is None else speed)
         log = TeamLog(setup.problem, recorder or NoObserver(), on_event or (lambda event: None), setup.late)
         robots = with_state_estimation(bodies, problem.mission, pose=pose, localise=localise, seed=seed)
         robot_bodies = RobotBodies(problem.mission, bodies, robots, setup, log)
@@ -127,7 +127,7 @@ def negotiate_and_carry_out(
         halt = halt or threading.Event()
         robot_bodies.await_agreement(negotiation.limit_s, halt)
         while not halt.is_set() and not robot_bodies.over:
-            robot_bodies.step(1.0 if speed is None else speed)
+            robot_bodies.step(setup.speed)
         if robot_bodies.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
@@ -139,7 +139,7 @@ def negotiate_and_carry_out(
         return report
 
 
-def setup_of(problem: Problem, negotiation: Negotiation, memory: Path) -> TeamSetup:
+def setup_of(problem: Problem, negotiation: Negotiation, memory: Path, speed: float = 1.0) -> TeamSetup:
     """The setup of the robots' processes, with those of robots that join later or restart."""
     mission = problem.mission
     joining = [event.robot_joins for event in mission.events if event.robot_joins is not None]
@@ -156,6 +156,7 @@ def setup_of(problem: Problem, negotiation: Negotiation, memory: Path) -> TeamSe
         starts=_starts(mission.events),
         memory=memory,
         part=run_robot_process,
+        speed=speed,
     )
 
 

@@ -17,6 +17,7 @@ from muster.mission.yaml_writer import plain
 from muster.motion.port import Telemetry
 from muster.verification import verify
 
+_OF_ALL_AT_WORK = ("starts", "ends", "work_broken_off")
 _OF_A_TASK = ("cancel_task", "move_task", "delay_task")
 
 
@@ -47,9 +48,10 @@ class TeamLog:
         self.used = {robot.id: 0.0 for robot in problem.mission.robots if robot.id not in late}
         self._problem = problem
         self._observer, self._on_event = observer, on_event
-        self._at_work: dict[str, str] = {}  # task: the robot that has begun it first
+        self._at_work: dict[str, tuple[str, ...]] = {}  # task: the robots that have begun it first
         self._came: dict[tuple[str, str], tuple[float, float]] = {}  # (robot, task): used by then, when
         self._began_s: dict[tuple[str, str], float] = {}  # (robot, task)
+        self._usage: dict[tuple[str, str], tuple[float, float]] = {}  # (robot, task) done: planned, flown
         self._done_twice: dict[str, tuple[str, ...]] = {}
         self._out: dict[str, str] = {}  # robot: why
         self._plans: list[Plan] = []
@@ -70,10 +72,8 @@ class TeamLog:
         task = str(data.get("task", ""))
         if kind == "arrives":
             self._came[robot, task] = used, at_s
-        elif kind == "starts":
-            self._start(robot, task, at_s)
-        elif kind == "ends":
-            self._end(robot, task, at_s)
+        elif kind in _OF_ALL_AT_WORK and not self._is_news(robot, task, at_s, kind, tuple(data.get("team", (robot,)))):
+            return  # another robot of the team has told it
         elif kind == "robot_stuck":
             self._lose(robot, f"did not get on at {at_s:g} s")
             self._causes.append({"kind": kind, "robot": robot})
@@ -81,9 +81,13 @@ class TeamLog:
             self.ledger.expire(task, str(data["reason"]))
         self.tell(at_s, kind, data)
 
-    def note_usage(self, task: str, usage: tuple[float, float]) -> None:
-        """Note the planned and flown usage of a task that was done."""
-        self.ledger.usage.setdefault(task, usage)
+    def note_usage(self, robot: str, task: str, usage: tuple[float, float]) -> None:
+        """Note the planned and flown usage of a robot's part in a task that was done."""
+        self._usage.setdefault((robot, task), usage)
+        parts = [self._usage[one, task] for one in self.ledger.members(task) if (one, task) in self._usage]
+        if parts:
+            planned, flown = zip(*parts, strict=True)
+            self.ledger.usage[task] = sum(planned), sum(flown)
 
     def take_event(self, event: Event, now_s: float) -> bool:
         """Process an event of the mission; return whether it changes anything."""
@@ -143,8 +147,13 @@ class TeamLog:
         reasons = (
             {item.task: reasons_in_one_line(item.reasons) for item in self._plans[-1].unassigned} if self._plans else {}
         )
-        missed = self.ledger.expired
+        missed = {**{task.id: self._tied_to_done(task.id) for task in self.ledger.open}, **self.ledger.expired}
         return self.ledger.lost(lambda task: missed.get(task) or reasons.get(task) or "not done", self._out)
+
+    def _tied_to_done(self, task: str) -> str:
+        """Why a task cannot begin any more where one that begins with it is done; empty where none is."""
+        done = [name for name in self.ledger.unit(task) if name in self.ledger.ends_s]
+        return f"relation: begins with {done[0]}, which is done" if done else ""
 
     @property
     def account(self) -> Account:
@@ -168,33 +177,63 @@ class TeamLog:
             done_twice=self._done_twice,
         )
 
-    def _start(self, robot: str, task: str, at_s: float) -> None:
+    def _is_news(self, robot: str, task: str, at_s: float, kind: str, team: tuple[str, ...]) -> bool:
+        """Process what all of a team tell when they begin, end or break off; return whether this robot is first."""
+        if kind == "starts":
+            return self._start(robot, task, at_s, team)
+        if kind == "ends":
+            return self._end(robot, task, at_s, team)
+        return self._break_off(robot, task)
+
+    def _start(self, robot: str, task: str, at_s: float, team: tuple[str, ...]) -> bool:
         self._began_s[robot, task] = at_s
-        other = self.ledger.done_by.get(task, self._at_work.get(task, robot))
-        if other != robot:
-            robots = self._done_twice.setdefault(task, (other,))
-            self._done_twice[task] = (*robots, robot) if robot not in robots else robots
-            self.tell(at_s, "twice", {"task": task, "robots": [other, robot]})
+        others = self.ledger.members(task) if task in self.ledger.ends_s else self._at_work.get(task, team)
+        if others != team:
+            robots = self._done_twice.setdefault(task, others)
+            self._done_twice[task] = tuple(dict.fromkeys((*robots, *team)))
+            self.tell(at_s, "twice", {"task": task, "robots": [others[0], robot]})
         elif task not in self.ledger.ends_s and task not in self._at_work:
-            self._at_work[task] = robot
-            self._note_begun(robot, task)
+            self._at_work[task] = team
+            self._note_begun(task, team)
+        elif len(team) > 1:
+            self._note_begun(task, team)
+            return False
+        return True
 
-    def _end(self, robot: str, task: str, at_s: float) -> None:
-        """Record the end of a task. It counts for the robot that ends it first, even if another robot was at it."""
+    def _end(self, robot: str, task: str, at_s: float, team: tuple[str, ...]) -> bool:
+        """Record the end of a task. It counts for those that end it first, even if others were at it."""
         self._at_work.pop(task, None)
-        if task not in self.ledger.ends_s:
-            self.ledger.cancelled.pop(task, None)  # its robot has not heard that in time
-            self._note_begun(robot, task)
-            self.ledger.end(task, robot, at_s)
+        if task in self.ledger.ends_s:
+            return len(team) == 1 or self.ledger.members(task) != team
+        self.ledger.cancelled.pop(task, None)  # its robot has not heard that in time
+        self._note_begun(task, team)
+        self.ledger.end(task, team[0], at_s)
+        return True
 
-    def _note_begun(self, robot: str, task: str) -> None:
-        self.ledger.arrive(task, *self._came[robot, task])
-        self.ledger.begin(task, self._began_s[robot, task])
+    def _break_off(self, robot: str, task: str) -> bool:
+        """A robot has left what its team had begun."""
+        if robot not in self._at_work.get(task, ()):
+            return False
+        del self._at_work[task]
+        self.ledger.give_up(task)
+        return True
+
+    def _note_begun(self, task: str, team: tuple[str, ...]) -> None:
+        """Note when the robots that do a task arrived and began, as far as they have told."""
+        began = [self._began_s[robot, task] for robot in team if (robot, task) in self._began_s]
+        if not began:
+            return
+        came = [self._came[robot, task] for robot in team if (robot, task) in self._came]
+        self.ledger.arrive(task, max(used for used, _ in came), max(at_s for _, at_s in came))
+        self.ledger.begin(task, max(began))
+        self.ledger.teams[task] = team
+        if len(team) > 1:
+            self.ledger.team_waits_s[task] = sum(max(began) - at_s for _, at_s in came)
 
     def _lose(self, robot: str, why: str) -> None:
         """A robot is out: its task under way is given up."""
         self._out[robot] = why
-        for task in [task for task, at in self._at_work.items() if at == robot]:
+        for task in [task for task, team in self._at_work.items() if robot in team]:
             del self._at_work[task]
             self.ledger.give_up(task)
 
@@ -212,4 +251,9 @@ def _difference(before: Plan, after: Plan) -> dict[str, Any]:
 
 
 def _robots(plan: Plan) -> dict[str, str]:
-    return {task: route.robot for route in plan.routes for task in route.tasks}
+    """The robots of each task in a plan, in words."""
+    teams: dict[str, list[str]] = {}
+    for route in plan.routes:
+        for task in route.tasks:
+            teams.setdefault(task, []).append(route.robot)
+    return {task: ", ".join(team) for task, team in teams.items()}
