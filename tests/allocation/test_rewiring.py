@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from tests.random_missions import random_mission
+from tests.timed_missions.missions import ignored_in, timed_mission
 
 import muster
 from muster import Mission, Plan, Robot, Route, Task
@@ -95,8 +96,31 @@ def test_a_plan_that_is_not_admissible_is_refused():
         rewire(Problem.compile(thesis_example()), plan_of(f=["j"], n=[]))
 
 
-def test_missions_in_time_are_refused():
-    mission = thesis_example()
-    timed = replace(mission, tasks=(replace(mission.tasks[0], deadline_s=500.0), *mission.tasks[1:]))
-    with pytest.raises(ParameterError, match="rewire: the mission has time windows"):
-        rewire(Problem.compile(timed), plan_of(f=["j", "later"], n=["g"]))
+def test_waiting_for_a_window_is_filled_unless_a_deadline_is_missed():
+    """r waits 90 s at a; b takes 40 s on the way, and its team of two is there."""
+    window, deadline = ((100.0, None),), 120.0
+    early = Task(id="a", position=(10, 0), duration_s=10.0, window_s=window)
+    shared = Task(id="b", position=(20, 0), duration_s=30.0, robots_needed=2)
+    robots = (Robot(id="r", position=(0, 0)), Robot(id="other", position=(20, 0)))
+    mission = Mission(robots=robots, tasks=(early, shared))
+    found = rewire(Problem.compile(mission), plan_of(r=["a", "b"], other=["b"]))
+    assert found.plan.routes[0].tasks == ("b", "a")
+    assert found.waiting_after_s < found.waiting_before_s
+    late = replace(mission, tasks=(replace(early, window_s=((45.0, None),), deadline_s=56.0), shared))
+    kept = rewire(Problem.compile(late), plan_of(r=["a", "b"], other=["b"]))
+    assert kept.plan.routes[0].tasks == ("a", "b")
+    assert muster.verify(mission, found.plan).valid
+    assert muster.verify(replace(late, tasks=(replace(late.tasks[0], deadline_s=deadline), shared)), kept.plan).valid
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_rules_of_time_teams_and_relations_are_kept(seed):
+    mission, ignored = timed_mission(seed), ignored_in(seed)
+    plan = muster.solve(mission, "greedy", ignore=ignored)
+    found = rewire(Problem.compile(mission, ignored=ignored), plan)
+    assert muster.verify(mission, found.plan, ignored).valid
+    assert found.waiting_after_s <= found.waiting_before_s
+    assert found.plan.makespan_s <= plan.makespan_s + 1e-6
+    if mission.rules.objective == "lateness":
+        assert found.plan.objective_value <= plan.objective_value + 1e-6
+    assert [set(route.tasks) for route in found.plan.routes] == [set(route.tasks) for route in plan.routes]

@@ -75,7 +75,7 @@ class Places:
             return all(self._breaks_relations(routes) for routes in self.all)
         faults = [self.meaning_without(LIMITS).faults(routes) for routes in self.all]
         if word == "unreachable":
-            return {"unreachable"} in faults and set() not in faults
+            return any("unreachable" in found for found in faults) and set() not in faults
         if word == "prerequisite":
             return bool(self.missing(self.j)) or not any(found <= {"unreachable"} for found in faults)
         at = LIMITS.index(word)

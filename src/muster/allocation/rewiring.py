@@ -8,19 +8,17 @@ ends earlier, and neither is more. It may cost usage: that is what it pays with.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
 
+from muster import core
 from muster.allocation.allocator import Outcome, Routes, admissible_routes, finished_plan
-from muster.allocation.problem import Floats, Problem
-from muster.allocation.rules.rule import ROUNDING
+from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.clock import VirtualClock
-from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
 
 _LEAST_S = 1e-9  # by which waiting, or the makespan, has to become less
@@ -36,17 +34,13 @@ class Rewired:
 
 
 def rewire(problem: Problem, plan: Plan) -> Rewired:
-    """The plan with less waiting, each task with the robot that had it.
+    """The plan with less waiting, each task with the robots that had it.
 
     Raises
     ------
     ParameterError
-        if the plan is not admissible, or the mission has rules about time windows, deadlines, shifts, lags, teams or
-        relations, which re-wiring does not look at.
+        if the plan is not admissible.
     """
-    if problem.has_timed_rules:
-        rules = "time windows, deadlines, shifts, lags, teams, relations or the objective lateness"
-        raise ParameterError(f"rewire: the mission has {rules}; expected one without, which alone can be re-wired")
     before = admissible_routes(problem, plan, "plan")
     after = rewired(problem, before)
     made = finished_plan(problem, Stop(clock=VirtualClock()), Outcome(after), allocator="", seed=0)
@@ -59,21 +53,14 @@ def rewire(problem: Problem, plan: Plan) -> Rewired:
         history=plan.history if made.objective_value == plan.objective_value else own_history,
         book=plan.book,
     )
-    schedule = _Schedule(problem)
-    return Rewired(made, schedule.waiting(before).total, schedule.waiting(after).total)
+    return Rewired(made, _waiting(problem, before).total, _waiting(problem, after).total)
 
 
 def rewired(problem: Problem, routes: Routes) -> Routes:
-    """Admissible routes with less waiting; the fixed beginnings of routes stay.
-
-    Routes of problems with time windows, deadlines, shifts, lags, teams or relations stay as they are.
-    """
-    if problem.has_timed_rules:
-        return routes
-    schedule = _Schedule(problem)
-    routes, now = [list(route) for route in routes], schedule.waiting(routes)
+    """Admissible routes with less waiting; the fixed beginnings of routes stay. All rules of the mission are kept."""
+    routes, now = [list(route) for route in routes], _waiting(problem, routes)
     while True:
-        better = _first_better(schedule, routes, now)
+        better = _first_better(problem, routes, now)
         if better is None:
             return routes
         routes, now = better
@@ -81,29 +68,46 @@ def rewired(problem: Problem, routes: Routes) -> Routes:
 
 @dataclass(frozen=True)
 class _Waiting:
-    """How long robots wait: in all, and for each task; and when the last task ends. Seconds; inf if for ever."""
+    """How long robots wait: in all, and at each place of a route; when the last task ends; what is late. Seconds.
+
+    All are inf of routes that break a rule.
+    """
 
     total: float
     makespan: float
-    at: dict[int, float]
+    lateness: float
+    at: dict[tuple[int, int], float]
 
     def is_less_than(self, other: _Waiting) -> bool:
-        """Whether waiting or the makespan is less, and the other is not more."""
-        longer = max(self.total - other.total, self.makespan - other.makespan)
+        """Whether waiting or the makespan is less, and nothing is more."""
+        longer = max(self.total - other.total, self.makespan - other.makespan, self.lateness - other.lateness)
         shorter = min(self.total - other.total, self.makespan - other.makespan)
         return longer <= 0 and shorter < -_LEAST_S
 
 
-def _first_better(schedule: _Schedule, routes: Routes, now: _Waiting) -> tuple[Routes, _Waiting] | None:
+_NEVER = _Waiting(math.inf, math.inf, math.inf, {})
+
+
+def _waiting(problem: Problem, routes: Routes) -> _Waiting:
+    """How long robots wait if they do these routes, each as early as it can."""
+    found = core.Inspection(problem.core, routes)
+    stops = found.stops if found.admissible else None
+    if stops is None:
+        return _NEVER
+    at = {(i, k): begin - arrive for i, route in enumerate(stops) for k, (_, arrive, begin, _) in enumerate(route)}
+    late = (found.objective or 0.0) if problem.objective == "lateness" else 0.0
+    return _Waiting(sum(at.values()), found.makespan or 0.0, late, at)
+
+
+def _first_better(problem: Problem, routes: Routes, now: _Waiting) -> tuple[Routes, _Waiting] | None:
     """Fill the longest waiting time that can be filled, with the task after which robots wait least."""
-    where = {j: (f, p) for f, route in enumerate(routes) for p, j in enumerate(route)}
-    for j in sorted((j for j, waits in now.at.items() if waits > _LEAST_S), key=lambda j: (-now.at[j], j)):
-        f, p = where[j]
-        tried = [_put_before(routes, f, p, q) for q in range(p + 1, len(routes[f]))]
-        if p < len(schedule.problem.beginning(f)):
+    waits = [place for place, seconds in now.at.items() if seconds > _LEAST_S]
+    for f, p in sorted(waits, key=lambda place: (-now.at[place], routes[place[0]][place[1]])):
+        if p < len(problem.beginning(f)):
             continue
-        fitting = [other for other in tried if schedule.fits(f, routes[f], other[f], now.at[j])]
-        judged = [(other, schedule.waiting(other)) for other in fitting]
+        tried = [_put_before(routes, f, p, q) for q in range(p + 1, len(routes[f]))]
+        fitting = [other for other in tried if _longer(problem, f, routes[f], other[f]) < now.at[f, p]]
+        judged = [(other, _waiting(problem, other)) for other in fitting]
         less = [(other, then) for other, then in judged if then.is_less_than(now)]
         if less:
             return min(less, key=lambda pair: (pair[1].total, pair[1].makespan))
@@ -116,56 +120,11 @@ def _put_before(routes: Routes, f: int, p: int, q: int) -> Routes:
     return [*routes[:f], [*route[:p], route[q], *route[p:q], *route[q + 1 :]], *routes[f + 1 :]]
 
 
-@dataclass(frozen=True)
-class _Schedule:
-    """Times of a problem's routes, every robot as early as it can."""
+def _longer(problem: Problem, f: int, before: Sequence[int], after: Sequence[int]) -> float:
+    """How many seconds more robot f travels in the new order."""
+    return _travel_seconds(problem, f, after) - _travel_seconds(problem, f, before)
 
-    problem: Problem
 
-    def waiting(self, routes: Routes) -> _Waiting:
-        """How long robots wait if they do these routes."""
-        graph: dict[int, list[int]] = {}
-        for route in routes:
-            for k, j in enumerate(route):
-                graph[j] = [*self.problem.prerequisites[j], *route[k - 1 : k]]
-        robot = {j: (i, k) for i, route in enumerate(routes) for k, j in enumerate(route)}
-        legs = [self._leg_seconds(i, route) for i, route in enumerate(routes)]
-        try:
-            order = list(TopologicalSorter(graph).static_order())
-        except CycleError:
-            return _Waiting(float("inf"), float("inf"), {})
-        ends: dict[int, float] = {}
-        at: dict[int, float] = {}
-        for j in order:
-            i, k = robot[j]
-            leaves = ends[routes[i][k - 1]] if k else self.problem.robots[i].available_from_s
-            arrives = leaves + legs[i][k]
-            starts = max([arrives, *(ends[other] for other in self.problem.prerequisites[j])])
-            ends[j], at[j] = starts + float(self._work_seconds[i, j]), starts - arrives
-        return _Waiting(sum(at.values()), max(ends.values(), default=0.0), at)
-
-    def fits(self, f: int, before: Sequence[int], after: Sequence[int], du: float) -> bool:
-        """Whether a new order of robot f's route costs less than `du` seconds more, and is within its capacity."""
-        old, new = self._travel_seconds(f, before), self._travel_seconds(f, after)
-        usage = self._travel_usage(f, after) + float(self.problem.work_usage(f)[list(after)].sum())
-        return new - old < du and usage <= self.problem.capacity[f] * (1 + ROUNDING)
-
-    def _travel_usage(self, i: int, route: Sequence[int]) -> float:
-        return float(np.trace(self.problem.legs(i, *self._ways(i, route))))
-
-    def _travel_seconds(self, i: int, route: Sequence[int]) -> float:
-        return float(np.trace(self.problem.travel_seconds(i, *self._ways(i, route))))
-
-    def _ways(self, i: int, route: Sequence[int]) -> tuple[list[int], list[int]]:
-        ends = [self.problem.end(i)] if self.problem.robots[i].place_at_end(self.problem.mission.rules) else []
-        return [self.problem.start(i), *route], [*route, *ends]
-
-    def _leg_seconds(self, i: int, route: Sequence[int]) -> list[float]:
-        legs = np.diagonal(self.problem.travel_seconds(i, [self.problem.start(i), *route], route))
-        return [float(leg) for leg in legs]
-
-    @cached_property
-    def _work_seconds(self) -> Floats:
-        """(m, n) seconds that each task takes each robot."""
-        rows = [self.problem.work_seconds(i) for i in range(len(self.problem.robots))]
-        return np.array(rows).reshape(len(self.problem.robots), len(self.problem.tasks))
+def _travel_seconds(problem: Problem, i: int, route: Sequence[int]) -> float:
+    ends = [problem.end(i)] if problem.robots[i].place_at_end(problem.mission.rules) else []
+    return float(np.trace(problem.travel_seconds(i, [problem.start(i), *route], [*route, *ends])))

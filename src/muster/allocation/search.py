@@ -161,8 +161,8 @@ def _best(searches: Sequence[_Search]) -> _Search:
     return min(searches, key=_rank)
 
 
-def _rank(search: _Search) -> tuple[float, float]:
-    return search.best_weight_left_out, search.best_objective
+def _rank(search: _Search) -> tuple[float, float, float]:
+    return search.best_weight_left_out, search.best_objective, search.best_tie
 
 
 def _weight(problem: Problem, search: _Search) -> float:

@@ -133,9 +133,9 @@ class TimedPlaces(InPlan):
         """Why no place is left whatever the times and capacities."""
         free = self.without(tuple(_RELAXED))
         usages = [core.Inspection(free.core, place.routes).usages for place in places]  # finite in a circle
-        if all(math.isinf(used[i]) for used in usages):
+        if any(math.isinf(used[i]) for used in usages):
             return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
-        if all(any(map(math.isinf, used)) for used in usages):
+        if any(map(math.isinf, itertools.chain.from_iterable(usages))):
             return Outcome(word="unreachable", detail="there is no way for another robot of its team")
         patient = replace(free, tasks=tuple(map(_without_within, free.tasks)), known=free.measured)
         if self._admissible(patient, places):

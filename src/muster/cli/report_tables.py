@@ -13,6 +13,7 @@ from muster.mission.model import Mission, Tag
 
 _NEAR_M = 1.0
 """What was found farther from a tag is another one."""
+_SHOWN_S = 0.01  # by which waiting differs in what is printed
 _CAUSES = {
     "prerequisite": "prerequisites",
     "window": "time windows",
@@ -84,9 +85,13 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
 
 def _waiting(report: Report) -> str:
     """For how long robots waited, and why, where time windows, lags or teams made them wait."""
-    causes = report.get("waiting_by_cause_s", {})
+    total, causes = report.get("waiting_s"), report.get("waiting_by_cause_s", {})
     by_cause = ", ".join(f"{number(seconds)} s for {_CAUSES.get(cause, cause)}" for cause, seconds in causes.items())
-    return f"{number(report.get('waiting_s'))} s" + (f" ({by_cause})" if by_cause else "")
+    if not by_cause:
+        return f"{number(total)} s"
+    # Causes are known of tasks that were not done, too.
+    in_vain = sum(causes.values()) - (total or 0.0) > _SHOWN_S
+    return f"{number(total)} s at tasks done; at all: {by_cause}" if in_vain else f"{number(total)} s ({by_cause})"
 
 
 def _print_lateness(report: Report) -> None:
@@ -151,7 +156,7 @@ def _print_tasks(report: Report, unit: str) -> None:
     rows = [
         (
             row["task"],
-            row["robot"],
+            ", ".join(row.get("team") or (row["robot"],)),
             number(starts.get(row["task"])),
             number(ends.get(row["task"])),
             *_usage(row),

@@ -286,6 +286,9 @@ class Search:
     def best_objective(self) -> float: ...
 
     @property
+    def best_tie(self) -> float: ...
+
+    @property
     def mean_way(self) -> float:
         """The usual way from one task to the next, in the unit of usage."""
 
@@ -394,6 +397,9 @@ class ScheduleSearch:
 
     @property
     def best_objective(self) -> float: ...
+
+    @property
+    def best_tie(self) -> float: ...
 
     @property
     def mean_way(self) -> float:

@@ -37,6 +37,7 @@ void bind_schedule_search(nb::module_& m) {
       .def_prop_ro("best", &ScheduleSearch::best)
       .def_prop_ro("best_weight_left_out", [](const ScheduleSearch& s) { return -s.best_value().weight; })
       .def_prop_ro("best_objective", [](const ScheduleSearch& s) { return s.best_value().objective; })
+      .def_prop_ro("best_tie", [](const ScheduleSearch& s) { return s.best_value().tie; })
       .def_prop_ro("mean_way", &ScheduleSearch::mean_way,
                    "The usual way from one task to the next, in the unit of the objective.");
 }

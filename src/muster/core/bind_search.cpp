@@ -40,6 +40,7 @@ void bind_search(nb::module_& m) {
       .def_prop_ro("best", &Search::best)
       .def_prop_ro("best_weight_left_out", [](const Search& s) { return -s.best_value().weight; })
       .def_prop_ro("best_objective", [](const Search& s) { return s.best_value().objective; })
+      .def_prop_ro("best_tie", [](const Search& s) { return s.best_value().tie; })
       .def_prop_ro("mean_way", &Search::mean_way, "The usual way from one task to the next, in the unit of usage.");
 }
 

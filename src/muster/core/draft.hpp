@@ -13,9 +13,11 @@ namespace muster {
 struct Value {
   double weight = 0.0;
   double objective = 0.0;
+  double tie = 0.0;  // what breaks ties of the objective, the less the better
 
   bool better_than(const Value& other) const {
-    return weight != other.weight ? weight > other.weight : objective < other.objective;
+    if (weight != other.weight) return weight > other.weight;
+    return objective != other.objective ? objective < other.objective : tie < other.tie;
   }
 };
 

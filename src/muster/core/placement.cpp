@@ -6,11 +6,17 @@
 
 namespace muster {
 
+namespace {
+
+constexpr double kAhead = 0.7;  // how often an algorithm with random numbers looks at tasks that are not in the plan
+
+}  // namespace
+
 Placement::Placement(Roster& roster)
     : roster_(roster),
       problem_(roster.problem_),
       timeline_(roster.timeline_),
-      excluded_(problem_.robots(), 0),
+      relations_(problem_),
       ranges_(problem_.robots()),
       choice_(problem_),
       busy_(problem_.robots(), 0) {}
@@ -22,15 +28,21 @@ const UnitInsertion* Placement::best(int unit, const Trial& trial) {
   best_.members.clear();
   labels_ = roster_.timeline_.labels_for(unit);
   if (labels_.empty()) return nullptr;
-  look_at_relations(unit);
+  relations_.look_at(unit, timeline_, trial.robots);
   ready_ = timeline_.ready(unit);
   peak_ = roster_.peak();
+  looks_ahead_ = relations_.awaits_any() && (!trial.random || trial.random->uniform() < kAhead);
+  try_all(unit);
+  if (best_.members.empty() && std::exchange(looks_ahead_, false)) try_all(unit);
+  return best_.members.empty() ? nullptr : &best_;
+}
+
+void Placement::try_all(int unit) {
   if (alone(unit)) {
     try_alone(problem_.tasks_of_unit(unit).front());
   } else {
     try_cuts(unit);
   }
-  return best_.members.empty() ? nullptr : &best_;
 }
 
 bool Placement::alone(int unit) const {
@@ -38,61 +50,47 @@ bool Placement::alone(int unit) const {
   return tasks.size() == 1 && choice_.alone(tasks.front());
 }
 
-// Excludes the robots that a task may not share with another, and all but those that it must.
-void Placement::look_at_relations(int unit) {
-  if (excludes_) std::ranges::fill(excluded_, 0);
-  excludes_ = false;
-  team_size_ = -1;
-  const auto exclude = [&](int robot) {
-    excluded_[robot] = 1;
-    excludes_ = true;
-  };
-  if (trial_->robots) {
-    for (int robot = 0; robot < problem_.robots(); ++robot) {
-      if (!(*trial_->robots)[robot]) exclude(robot);
+// Whether the robots of `team_` can do as well what they would have to, though it is not in the plan yet.
+bool Placement::suits(int unit) {
+  const int tasks = static_cast<int>(problem_.tasks_of_unit(unit).size());
+  for (int k = 0; k < tasks; ++k) {
+    if (relations_.awaited(k).empty()) continue;
+    robots_.clear();
+    for (const Part& part : team_) {
+      if (part.task == k) robots_.push_back(part.offer->robot);
     }
+    if (!suits(relations_.awaited(k), robots_)) return false;
   }
-  for (const int task : problem_.tasks_of_unit(unit)) {
-    for (const int other : problem_.other_robot(task)) {
-      for (const int number : timeline_.visits_of(problem_.unit(other))) {
-        if (timeline_.visit(number).place == other) exclude(timeline_.visit(number).robot);
-      }
-    }
-    for (const int other : problem_.same_robot(task)) {
-      if (!timeline_.present(problem_.unit(other))) continue;
-      std::ranges::fill(busy_, 0);
-      int size = 0;
-      for (const int number : timeline_.visits_of(problem_.unit(other))) {
-        if (timeline_.visit(number).place != other) continue;
-        busy_[timeline_.visit(number).robot] = 1;
-        ++size;
-      }
-      const bool differs = team_size_ >= 0 && team_size_ != size;  // no team is the same as both
-      team_size_ = size;
-      for (int robot = 0; robot < problem_.robots(); ++robot) {
-        if (!busy_[robot] || differs) exclude(robot);
-      }
-      std::ranges::fill(busy_, 0);
-    }
-  }
+  return true;
+}
+
+bool Placement::suits(std::span<const int> awaited, std::span<const int> robots) {
+  return std::ranges::all_of(awaited, [&](int other) {
+    return choice_.does(other, robots) &&
+           std::ranges::all_of(robots, [&](int robot) { return problem_.allowed(robot, other); });
+  });
 }
 
 // --- One robot, one task ---------------------------------------------------------------------------------------------
 
+bool Placement::usable_alone(int robot) {
+  return relations_.allows(0, robot) && (!looks_ahead_ || suits(relations_.awaited(0), {&robot, 1}));
+}
+
 void Placement::try_alone(int task) {
   measured_work_ = -1.0;
-  if (team_size_ > 1) return;
+  if (relations_.team_size(0) > 1) return;
   const auto robots = problem_.robots_allowed(task);
   long count = 0;
   for (const int robot : robots) {
-    if (excluded_[robot]) continue;
+    if (!usable_alone(robot)) continue;
     measure_alone(task, problem_.work_time(robot, task));
     ranges_[robot] = places(robot);
     count += std::max(0, ranges_[robot].second - ranges_[robot].first + 1);
   }
   if (trial_->most_places > 0 && count > 2 * trial_->most_places) return try_near(task);
   for (const int robot : robots) {
-    if (excluded_[robot]) continue;
+    if (!usable_alone(robot)) continue;
     for (int at = ranges_[robot].first; at <= ranges_[robot].second; ++at) try_place(robot, task, at);
   }
 }
@@ -101,7 +99,9 @@ void Placement::try_alone(int task) {
 void Placement::try_near(int task) {
   int tried = 0;
   const auto attempt = [&](int robot, int at) {
-    if (!usable(robot, task) || at < ranges_[robot].first || at > ranges_[robot].second) return false;
+    if (!problem_.allowed(robot, task) || !usable_alone(robot) || at < ranges_[robot].first ||
+        at > ranges_[robot].second)
+      return false;
     try_place(robot, task, at);
     return true;
   };
@@ -115,7 +115,7 @@ void Placement::try_near(int task) {
     if (tried >= trial_->most_places) break;
   }
   for (const int robot : problem_.robots_allowed(task)) {
-    if (excluded_[robot] || ranges_[robot].first > ranges_[robot].second) continue;
+    if (!usable_alone(robot) || ranges_[robot].first > ranges_[robot].second) continue;
     attempt(robot, ranges_[robot].first);
     if (ranges_[robot].second > ranges_[robot].first) attempt(robot, ranges_[robot].second);
   }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "insertion_score.hpp"
 #include "neighbours.hpp"
+#include "relations.hpp"
 #include "roster.hpp"
 #include "team_choice.hpp"
 
@@ -27,10 +29,12 @@ class Placement {
   };
 
   bool alone(int unit) const;
-  bool usable(int robot, int task) const { return !excluded_[robot] && problem_.allowed(robot, task); }
-  void look_at_relations(int unit);
+  void try_all(int unit);
+  bool suits(int unit);
+  bool suits(std::span<const int> awaited, std::span<const int> robots);
 
   // One robot, one task.
+  bool usable_alone(int robot);
   void try_alone(int task);
   void try_near(int task);
   void try_place(int robot, int task, int at);
@@ -47,10 +51,14 @@ class Placement {
   void make_offers(int unit, std::size_t candidate);
   bool may_join(Offer& offer, int task) const;
   void try_cut(int unit);
-  void try_key(int unit, int key);
+  void try_key(int unit, int key, std::size_t first);
   double key_of(const Offer& offer, int key) const;
-  void rank(const Offer* offers, int key);
+  void rank(int task, int k, int key);
   void try_teams(int unit, int key);
+  void try_shared(int task, int unit);
+  bool take_tied(int task, int k);
+  bool take_cheapest(int task, int k);
+  bool usable(int robot, int task, int k) const { return relations_.allows(k, robot) && problem_.allowed(robot, task); }
   void try_hard(int unit);
   void try_together(int unit, int key, std::size_t first);
   int cheapest_team() const;
@@ -84,16 +92,14 @@ class Placement {
   Labels labels_{0.0, 1.0};
   double ready_ = 0.0, peak_ = 0.0;
   double measured_work_ = -1.0, latest_ = kNever, tail_ = 0.0;  // of a task alone, for that work
-  // By robot: excluded by relations or the caller.
-  std::vector<char> excluded_;
-  bool excludes_ = false;
-  int team_size_ = -1;  // of a task that has to have the same robots
+  Relations relations_;
+  bool looks_ahead_ = false;  // to tasks that its robots have to do too, and are not in the plan
   std::vector<std::pair<int, int>> ranges_;
   // Of cuts.
   TeamChoice choice_;
   Rows teams_;
   std::vector<double> cuts_, keys_, works_;
-  std::vector<int> candidates_, at_, free_;
+  std::vector<int> candidates_, at_, robots_;
   std::vector<Offer> offers_;  // tasks of the unit x candidates
   std::vector<Part> team_;     // the members that are judged
   // By key: of each candidate whether its place is another than when teams were last chosen, and how that ranked them.

@@ -163,7 +163,8 @@ Value Roster::value() {
   for (const int unit : absent_) done -= static_cast<int>(problem_.tasks_of_unit(unit).size());
   const double objective = this->objective();
   const bool mean = problem_.objective() == Objective::average && done > 0;
-  return {-absent_weight_, mean ? objective / done : objective};
+  const double tie = problem_.objective() == Objective::lateness ? total() : 0.0;
+  return {-absent_weight_, mean ? objective / done : objective, tie};
 }
 
 // --- Undo ------------------------------------------------------------------------------------------------------------

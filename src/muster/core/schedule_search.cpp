@@ -138,7 +138,7 @@ bool ScheduleSearch::recreate(double most) {
       const UnitInsertion* insertion = roster_.best_insertion(unit, trial_);
       const int tried = std::exchange(unit, -1);
       if (!insertion) {
-        if (penalty_ * roster_.weight(tried) > most) return false;
+        if (scale_ * penalty_ * roster_.weight(tried) > most) return false;
         continue;
       }
       if (!roster_.insert(*insertion)) return false;
@@ -217,13 +217,19 @@ double ScheduleSearch::ties() const {
 }
 
 // What annealing compares: the objective (`average` as a sum), and a penalty for what is left out.
-double ScheduleSearch::cost() { return roster_.objective() + kTie * ties() + penalty_ * roster_.absent_weight(); }
+double ScheduleSearch::cost() {
+  return scale_ * (roster_.objective() + kTie * ties() + penalty_ * roster_.absent_weight());
+}
 
+// From a plan in which nothing is late, ties are what is left to improve: they count as a total would.
 void ScheduleSearch::note_best() {
   const Value value = roster_.value();
   if (!value.better_than(best_value_)) return;
   best_value_ = value;
   best_ = roster_.routes();
+  if (problem_.objective() != Objective::lateness) return;
+  scale_ = value.objective > 0.0 ? 1.0 : 1.0 / kTie;
+  current_ = cost();
 }
 
 double ScheduleSearch::mean_way() const {

@@ -56,6 +56,7 @@ class ScheduleSearch {
   bool sees_end_;               // whether the objective is when the mission ends
   double at_once_share_ = 0.3;  // of ruins that take out what begins at about the same time
   double penalty_;              // of a unit of weight left out
+  double scale_ = 1.0;          // of costs
   double current_ = 0.0;
   Routes best_;
   Value best_value_;

@@ -17,7 +17,9 @@ void Placement::try_cuts(int unit) {
   const auto tasks = problem_.tasks_of_unit(unit);
   candidates_.clear();
   for (int robot = 0; robot < problem_.robots(); ++robot) {
-    if (std::ranges::any_of(tasks, [&](int task) { return usable(robot, task); })) candidates_.push_back(robot);
+    bool any = false;
+    for (std::size_t k = 0; k < tasks.size(); ++k) any |= usable(robot, tasks[k], static_cast<int>(k));
+    if (any) candidates_.push_back(robot);
   }
   offers_.assign(tasks.size() * candidates_.size(), Offer{});
   gather_cuts(unit);
@@ -51,27 +53,30 @@ void Placement::walk_cuts(int unit, Try&& attempt) {
 }
 
 void Placement::try_cut(int unit) {
+  const auto tasks = problem_.tasks_of_unit(unit).size();
   if (!trial_->random) {
-    for (int key = 0; key < kByRoom; ++key) try_key(unit, key);
-  } else {
-    try_key(unit, trial_->random->uniform() < kFirstKey ? 0 : 1 + trial_->random->below(kByRoom - 1));
+    for (int key = 0; key < kByRoom; ++key) {
+      for (std::size_t first = 0; first < tasks; ++first) try_key(unit, key, first);
+    }
+    return;
   }
-}
-
-void Placement::try_key(int unit, int key) {
-  if (problem_.tasks_of_unit(unit).size() == 1) {
-    try_teams(unit, key);
-  } else {
-    try_together(unit, key, 0);
-  }
+  const int key = trial_->random->uniform() < kFirstKey ? 0 : 1 + trial_->random->below(kByRoom - 1);
+  try_key(unit, key, tasks == 1 ? 0 : trial_->random->below(static_cast<int>(tasks)));
 }
 
 // Robots with the most time first, and each task of the unit first in turn.
 void Placement::try_hard(int unit) {
   const auto tasks = problem_.tasks_of_unit(unit).size();
-  if (tasks == 1) return try_teams(unit, kByRoom);
-  for (int key = 0; key < kKeys; ++key) {
-    for (std::size_t first = 0; first < tasks; ++first) try_together(unit, key, first);
+  for (int key = tasks == 1 ? kByRoom : 0; key < kKeys; ++key) {
+    for (std::size_t first = 0; first < tasks; ++first) try_key(unit, key, first);
+  }
+}
+
+void Placement::try_key(int unit, int key, std::size_t first) {
+  if (problem_.tasks_of_unit(unit).size() == 1) {
+    try_teams(unit, key);
+  } else {
+    try_together(unit, key, first);
   }
 }
 
@@ -131,7 +136,7 @@ void Placement::make_offers(int unit, std::size_t candidate) {
   for (std::size_t k = 0; k < tasks.size(); ++k) {
     Offer& made = offers_[k * candidates_.size() + candidate];
     made.robot = -1;
-    if (at_[candidate] < problem_.fixed(robot) || !usable(robot, tasks[k])) continue;
+    if (at_[candidate] < problem_.fixed(robot) || !usable(robot, tasks[k], static_cast<int>(k))) continue;
     if (trial_->append_only && at_[candidate] < timeline_.tasks_in(robot)) continue;
     if (!in_reach(robot, tasks[k], at_[candidate])) continue;
     const double work = problem_.work_time(robot, tasks[k]);
@@ -163,57 +168,95 @@ double Placement::key_of(const Offer& offer, int key) const {
   return offer.growth;
 }
 
-void Placement::rank(const Offer* offers, int key) {
+void Placement::rank(int task, int k, int key) {
+  const bool single = looks_ahead_ && choice_.alone(task);
+  const Offer* offers = offers_.data() + k * candidates_.size();
   keys_.resize(candidates_.size());
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    keys_[c] = offers[c].robot < 0 || busy_[candidates_[c]] ? kNever : key_of(offers[c], key);
+    const bool out =
+        offers[c].robot < 0 || busy_[candidates_[c]] || (single && !suits(relations_.awaited(k), {&candidates_[c], 1}));
+    keys_[c] = out ? kNever : key_of(offers[c], key);
   }
 }
 
 // The teams for one task; those of earlier cuts whose members all stand where they stood were judged there.
 void Placement::try_teams(int unit, int key) {
   const int task = problem_.tasks_of_unit(unit).front();
-  rank(offers_.data(), key);
+  rank(task, 0, key);
+  if (relations_.team_size(0) >= 0) {
+    team_.clear();
+    if (take_tied(task, 0)) judge(unit);
+    return;
+  }
+  if (looks_ahead_) return try_shared(task, unit);
   choice_.teams(task, candidates_, keys_, moved_[key], rankings_[key], teams_);
   std::ranges::fill(moved_[key], 0);
   for (int t = 0; t < teams_.size(); ++t) {
-    const auto team = teams_[t];
-    if (team_size_ >= 0 && static_cast<int>(team.size()) != team_size_) continue;
     team_.clear();
-    for (const int c : team) team_.push_back({0, &offers_[c]});
+    for (const int c : teams_[t]) team_.push_back({0, &offers_[c]});
     judge(unit);
   }
+}
+
+// The teams of a task and those of the tasks that its robots have to do too, as far as they can do all of them.
+void Placement::try_shared(int task, int unit) {
+  const auto judge_teams_of = [&](int source) {
+    TeamChoice::Ranking ranking;
+    choice_.teams(source, candidates_, keys_, std::vector<char>(candidates_.size(), 1), ranking, teams_);
+    for (int t = 0; t < teams_.size(); ++t) {
+      team_.clear();
+      robots_.clear();
+      for (const int c : teams_[t]) {
+        team_.push_back({0, &offers_[c]});
+        robots_.push_back(candidates_[c]);
+      }
+      if (source == task || choice_.does(task, robots_)) judge(unit);
+    }
+  };
+  judge_teams_of(task);
+  for (const int other : relations_.awaited(0)) judge_teams_of(other);
 }
 
 // One after the other the tasks of a unit, each with its cheapest team of those that are left.
 void Placement::try_together(int unit, int key, std::size_t first) {
   const auto tasks = problem_.tasks_of_unit(unit);
-  const std::vector<char> everyone(candidates_.size(), 1);
   team_.clear();
   bool complete = true;
   for (std::size_t n = 0; n < tasks.size() && complete; ++n) {
-    const std::size_t k = (first + n) % tasks.size();
-    const Offer* offers = offers_.data() + k * candidates_.size();
-    TeamChoice::Ranking ranking;
-    rank(offers, key);
-    choice_.teams(tasks[k], candidates_, keys_, everyone, ranking, teams_);
-    const int cheapest = cheapest_team();
-    complete = cheapest >= 0;
-    if (!complete) break;
-    for (const int c : teams_[cheapest]) {
-      team_.push_back({static_cast<int>(k), &offers[c]});
-      busy_[candidates_[c]] = 1;
-    }
+    const auto k = static_cast<int>((first + n) % tasks.size());
+    rank(tasks[k], k, key);
+    const std::size_t taken = team_.size();
+    complete = relations_.team_size(k) >= 0 ? take_tied(tasks[k], k) : take_cheapest(tasks[k], k);
+    for (std::size_t p = taken; p < team_.size(); ++p) busy_[team_[p].offer->robot] = 1;
   }
   if (complete) judge(unit);
   for (const Part& part : team_) busy_[part.offer->robot] = 0;
+}
+
+// Adds the robots of a task that the same have to do, if all of them can.
+bool Placement::take_tied(int task, int k) {
+  robots_.clear();
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    if (keys_[c] == kNever) continue;
+    robots_.push_back(candidates_[c]);
+    team_.push_back({k, &offers_[k * candidates_.size() + c]});
+  }
+  return static_cast<int>(robots_.size()) == relations_.team_size(k) && choice_.does(task, robots_);
+}
+
+bool Placement::take_cheapest(int task, int k) {
+  TeamChoice::Ranking ranking;
+  choice_.teams(task, candidates_, keys_, std::vector<char>(candidates_.size(), 1), ranking, teams_);
+  const int cheapest = cheapest_team();
+  if (cheapest < 0) return false;
+  for (const int c : teams_[cheapest]) team_.push_back({k, &offers_[k * candidates_.size() + c]});
+  return true;
 }
 
 int Placement::cheapest_team() const {
   int cheapest = -1;
   double least = kNever;
   for (int t = 0; t < teams_.size(); ++t) {
-    if (team_size_ >= 0 && static_cast<int>(teams_[t].size()) != team_size_) continue;
     double sum = 0.0;
     for (const int c : teams_[t]) sum += keys_[c];
     if (sum >= least) continue;
@@ -225,6 +268,7 @@ int Placement::cheapest_team() const {
 
 // What it costs that the robots of `team_` do the unit's tasks.
 void Placement::judge(int unit) {
+  if (looks_ahead_ && !suits(unit)) return;
   const auto tasks = problem_.tasks_of_unit(unit);
   measure_works(tasks.size());
   double begin = ready_;

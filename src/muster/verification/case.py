@@ -62,6 +62,11 @@ class Case:
         """Whether other robots may have to work at the same time: in its team, or at a task that begins with it."""
         return bool(task.is_for_team or task.starts_with or task.id in self.beginning_with)
 
+    @cached_property
+    def has_longest_lags(self) -> bool:
+        """Whether a task may begin only so long after a prerequisite."""
+        return any(lag.within_s is not None for task in self.mission.tasks for lag in task.lags.values())
+
     @property
     def unit(self) -> str:
         """The unit of usage."""

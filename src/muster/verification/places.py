@@ -56,8 +56,8 @@ class Places:
 
         A length that is off moves both ends of a lag, by more than the margin of a short one.
         """
-        lagged = any(lag.within_s is not None for task in self.case.mission.tasks for lag in task.lags.values())
-        return not (lagged and self.case.travel.tolerance) and self._is_kept({}, -self._margin)
+        inexact = self.case.has_longest_lags and self.case.travel.tolerance
+        return not inexact and self._is_kept({}, -self._margin)
 
     def can_do(self, robot: Robot, task: Task) -> bool | None:
         """Whether a robot can do a task at some place, with a team where it needs one; None: undecided.

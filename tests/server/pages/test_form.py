@@ -1,8 +1,15 @@
 """What is typed into the cells of a form, as the text of a mission holds it."""
 
 import pytest
+import yaml
+from tests.timed_missions.missions import timed_mission
 
+import muster
 from muster.mission.errors import ParameterError
+from muster.mission.model import Robot, Task
+from muster.mission.records import specified
+from muster.mission.yaml_writer import yaml_text
+from muster.server.pages.plan import form
 from muster.server.pages.plan.cell_texts import number_of, text_of, value_of
 
 
@@ -68,3 +75,31 @@ def test_values_of_another_form_are_shown_as_they_are():
     assert text_of(["10:00"], "spans") == "10:00"
     assert text_of("soon", "spans") == "soon"
     assert text_of([1, [2]], "lagged") == "1 [2]"
+
+
+TEXT_ALONE = {  # what is typed on the map, in a dialogue or in the text
+    *("id", "position", "entry", "exit", "end_position", "return_to_start", "skill_quality", "efficiency"),
+    *("heading_deg", "kinematics", "camera", "action", "only_robots", "across_partition", "lags", "avoidance_priority"),
+}
+
+
+def test_every_key_of_robots_and_tasks_has_a_cell_or_is_known_to_have_none():
+    keys = {one.name for model in (Robot, Task) for one in specified(model)}
+    assert keys - set(form._COLUMNS) <= TEXT_ALONE
+
+
+@pytest.mark.parametrize("name", ["collapsed-building", *range(30)])
+def test_all_cells_typed_again_as_they_are_shown_leave_the_mission_as_it_is(name, tmp_path):
+    """Missions with all rules of time, teams and relations."""
+    mission = muster.load(name) if isinstance(name, str) else timed_mission(name)
+    data = yaml.safe_load(yaml_text(mission))
+    data.pop("travel", None)  # in files beside it
+    data["rules"].pop("travel", None)
+    for item in (*data["robots"], *data["tasks"]):
+        for key, shown in form._row(item).items():
+            if key in form._COLUMNS and key not in form._AXES:
+                item[key] = value_of(shown, key, form._COLUMNS[key].kind)
+    file = tmp_path / "again.yaml"
+    file.write_text(yaml.safe_dump(data))
+    again = muster.load(file)
+    assert (again.robots, again.tasks) == (mission.robots, mission.tasks)

@@ -30,7 +30,10 @@ class Unreachable:
             yield Violation(self.kind, route.robot.id, None, f"no way from {here} to where the route must end")
 
     def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
-        """Whether no place in the route has a way to the task, along it and on; undecided if others may have none."""
+        """Whether no place in the route has a way to the task, along it and on.
+
+        Undecided if other robots may have none, or if lags may leave the places alone that have none.
+        """
         if not case.insertions(route).is_reachable(task, case.first_gap(route, task)):
             return True
-        return None if case.needs_others(task) else False
+        return None if case.needs_others(task) or case.has_longest_lags else False

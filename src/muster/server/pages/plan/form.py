@@ -42,6 +42,7 @@ _ROBOT_TIMES = (
         for f in specified(Robot)
         if f.metadata["if_used"] and isinstance(f.metadata["kind"], Number | Whole)
     ),
+    *(Column(key, "number") for key in ("acceleration_mps2", "yaw_rate_radps", "climb_mps")),
     Column("abilities", "amounts", hint="as lift_kg 20, water_l 3"),
 )
 _TASK_TIMES = (

@@ -1,0 +1,56 @@
+"""The search where nothing is late, and where the same robots must do tasks or tasks begin together."""
+
+import muster
+from muster import Mission, Robot, Rules, Task
+
+
+def best(mission):
+    plan = muster.solve(mission, "search", iterations=2000, seed=1)
+    assert muster.verify(mission, plan).valid
+    return plan
+
+
+def test_where_nothing_is_late_the_total_counts():
+    """Lateness is 0 in any order; ties are by total cost."""
+    places = {"a": 10, "b": 30, "c": 20, "d": 40}
+    tasks = tuple(Task(id=name, position=(x, 0), due_s=1000) for name, x in places.items())
+    mission = Mission(rules=Rules(objective="lateness"), robots=(Robot(id="r", position=(0, 0)),), tasks=tasks)
+    plan = best(mission)
+    assert (plan.objective_value, plan.routes[0].tasks) == (0.0, ("a", "c", "b", "d"))
+
+
+def test_a_task_that_begins_with_another_is_for_the_robot_of_its_relation():
+    """c is for the robot of a, and b begins with c: for the other robot."""
+    tasks = (
+        Task(id="a", position=(1, 0)),
+        Task(id="b", position=(5, 0)),
+        Task(id="c", position=(5, 1), prerequisites=("a",), same_robot_as=("a",), starts_with=("b",)),
+    )
+    robots = (Robot(id="r_0", position=(0, 0)), Robot(id="r_1", position=(9, 0)))
+    plan = best(Mission(rules=Rules(objective="max"), robots=robots, tasks=tasks))
+    assert {route.robot: route.tasks for route in plan.routes} == {"r_0": ("a", "c"), "r_1": ("b",)}
+
+
+def test_a_task_before_one_of_the_same_robot_is_not_for_two():
+    """Two near robots could do a, but b is for one robot, and the same: the far one that can do a alone."""
+    tasks = (
+        Task(id="a", position=(1, 0), needs={"lift_kg": 4}),
+        Task(id="b", position=(2, 0), prerequisites=("a",), same_robot_as=("a",)),
+    )
+    robots = (
+        *(Robot(id=f"near_{k}", position=(k, 0), abilities={"lift_kg": 3}) for k in range(2)),
+        Robot(id="far", position=(50, 0), abilities={"lift_kg": 5}),
+    )
+    plan = best(Mission(robots=robots, tasks=tasks))
+    assert {route.robot: route.tasks for route in plan.routes if route.tasks} == {"far": ("a", "b")}
+
+
+def test_the_team_of_the_lighter_task_is_that_of_the_heavier_one():
+    """One robot could do a, but b takes both, and the same robots must do a."""
+    tasks = (
+        Task(id="a", position=(1, 0), needs={"lift_kg": 1}),
+        Task(id="b", position=(2, 0), prerequisites=("a",), same_robot_as=("a",), needs={"lift_kg": 6}),
+    )
+    robots = tuple(Robot(id=f"r_{k}", position=(k, 0), abilities={"lift_kg": 3}) for k in range(2))
+    plan = best(Mission(robots=robots, tasks=tasks))
+    assert [route.tasks for route in plan.routes] == [("a", "b"), ("a", "b")]

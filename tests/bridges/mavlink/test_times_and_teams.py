@@ -1,0 +1,53 @@
+"""Drones over MAVLink that wait for a time window, for their team and for each other, and planned and flown times."""
+
+from dataclasses import replace
+
+import pytest
+from tests.bridges.mavlink.drones import Sky, mission
+
+import muster
+from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
+from muster.bridges.mavlink.simulated_faults import Faults
+from muster.mission.model import Rules, Task
+from muster.running.live import carry_out_live
+
+TASKS = (
+    Task(id="look", position=(20.0, 0.0, 10.0), duration_s=4.0, window_s=((40.0, None),)),
+    Task(id="lift", position=(30.0, 6.0, 10.0), duration_s=5.0, robots_needed=2, prerequisites=("look",)),
+    Task(id="watch", position=(40.0, 12.0, 10.0), duration_s=5.0, starts_with=("lift",)),
+)
+
+
+def flown(there, plan, sky, offboard):
+    heard = []
+    fleet = sky.fleet(there, offboard=offboard)
+    report = carry_out_live(there, plan, fleet, on_event=heard.append)
+    fleet.close()
+    sky.close()
+    return report, heard
+
+
+@pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
+@pytest.mark.parametrize("offboard", [False, True], ids=["mission", "offboard"])
+def test_drones_wait_for_a_window_and_begin_together(kind, offboard):
+    there = mission(3, TASKS, rules=Rules(objective="makespan"))
+    plan = muster.solve(there, iterations=300)
+    assert plan.complete
+    report, heard = flown(there, plan, Sky(there, kind), offboard)
+    assert set(report.tasks_done) == {"look", "lift", "watch"}
+    assert report.starts_s["look"] == pytest.approx(40.0, abs=1.0)
+    assert report.starts_s["lift"] >= report.ends_s["look"]
+    assert report.starts_s["watch"] == report.starts_s["lift"]
+    (lift,) = [task for task in report.tasks if task.task == "lift"]
+    assert len(lift.team) == 2
+    assert any("window" in str(event.data) for event in heard if event.kind == "waits")
+
+
+def test_a_team_reforms_when_a_drone_has_to_land():
+    there = mission(3, (replace(TASKS[1], prerequisites=()),), rules=Rules(objective="makespan"))
+    plan = muster.solve(there, iterations=300)
+    first = [route.robot for route in plan.routes if route.tasks]
+    report, _ = flown(there, plan, Sky(there, PX4, {first[0]: Faults(low_battery_at_s=8)}), offboard=True)
+    assert report.tasks_done == ("lift",)
+    assert report.reallocations == 1
+    assert first[0] not in report.tasks[0].team
