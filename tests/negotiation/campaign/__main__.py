@@ -5,7 +5,7 @@ With `--timed` the missions have rules of time, and a second one of each seed is
 
 import sys
 
-from tests.negotiation.campaign.carried_out import carried_out
+from tests.negotiation.campaign.timed_trial import timed_trial
 from tests.negotiation.campaign.trial import trial
 from tests.trials import parser_of, run
 
@@ -15,15 +15,6 @@ def sum_up(took):
     middle, most = seconds[len(seconds) // 2], seconds[int(0.99 * (len(seconds) - 1))]
     told = f"agreed after quiet: {middle:.2f} s (median), {most:.2f} s (99 %), {seconds[-1]:.2f} s (all), virtual time"
     return f"{told}; at most {shares[-1]:.0%} of what the docs allow"
-
-
-def timed_trial(seed):
-    """What robots agree on with rules of time, and what teams carry out."""
-    agreed, done = trial(seed, timed=True), carried_out(seed)
-    agreed.failures += done.failures
-    agreed.story += done.story
-    agreed.counts.update({f"carried out, {name}": count for name, count in done.counts.items()})
-    return agreed
 
 
 if __name__ == "__main__":
