@@ -195,12 +195,13 @@ class Executor:
         """Have the rest planned again at the next tick, because of something that is known elsewhere."""
         self._ask([Change(kind, data)])
 
-    def end_elsewhere(self, task: str, robots: Sequence[str]) -> None:
-        """Robots outside the crew have done a task; work of the crew on it that has begun continues."""
+    def end_elsewhere(self, task: str, robots: Sequence[str]) -> bool:
+        """Robots have done a task, as others say; return whether that is new. Work of the crew on it continues."""
         at_work = any(state.activity is Activity.WORKING and state.route[0] == task for state in self.crew.values())
-        if not at_work and task not in self.ledger.ends_s:
+        if is_new := not at_work and task not in self.ledger.ends_s:
             self.ledger.end(task, robots[0], self.now_s)
             self.ledger.teams[task] = tuple(robots)
+        return is_new
 
     def break_off(self, task: str) -> None:
         """Robots elsewhere have left a task that they and the crew had begun together: the crew leaves it too."""
@@ -240,8 +241,7 @@ class Executor:
 
     def _hear(self) -> None:
         for state in self.crew.values():
-            said = state.hear(self.now_s)
-            if said is not None:
+            if (said := state.hear(self.now_s)) is not None:
                 self._observer.on_telemetry(self.now_s, state.robot.id, said)
                 if state.out == SILENT:
                     self._ask(self._changes.readmit(state, self.now_s))

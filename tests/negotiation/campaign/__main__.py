@@ -1,11 +1,11 @@
 """Run the campaign: `python -m tests.negotiation.campaign [SEEDS] [--first SEED] [--processes N]`, or one seed.
 
-With `--timed` the missions have rules of time.
+With `--timed` the missions have rules of time, and a second one of each seed is carried out, by teams.
 """
 
 import sys
-from functools import partial
 
+from tests.negotiation.campaign.carried_out import carried_out
 from tests.negotiation.campaign.trial import trial
 from tests.trials import parser_of, run
 
@@ -17,7 +17,16 @@ def sum_up(took):
     return f"{told}; at most {shares[-1]:.0%} of what the docs allow"
 
 
+def timed_trial(seed):
+    """What robots agree on with rules of time, and what teams carry out."""
+    agreed, done = trial(seed, timed=True), carried_out(seed)
+    agreed.failures += done.failures
+    agreed.story += done.story
+    agreed.counts.update({f"carried out, {name}": count for name, count in done.counts.items()})
+    return agreed
+
+
 if __name__ == "__main__":
     parser = parser_of("tests.negotiation.campaign", __doc__)
-    parser.add_argument("--timed", action="store_true", help="missions with rules of time")
-    sys.exit(run(parser, partial(trial, timed=parser.parse_args().timed), sum_up))
+    parser.add_argument("--timed", action="store_true", help="missions with rules of time, and teams at work")
+    sys.exit(run(parser, timed_trial if parser.parse_args().timed else trial, sum_up))

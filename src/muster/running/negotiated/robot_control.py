@@ -97,6 +97,7 @@ class RobotControl:
         self._hand.recall(used)
         self._learned: set[Fact] = set()
         self._known = 0  # the digest of what was learned
+        self._left_with: dict[str, tuple[float, float]] = {}  # the usage for tasks broken off, the last time
         self._notice_s = NOTICE_HEARTBEATS * negotiator.timeouts.heartbeat_s * speed
 
     @property
@@ -110,8 +111,8 @@ class RobotControl:
         return self._hand.used
 
     def usage(self, task: str) -> tuple[float, float]:
-        """The planned and flown usage of a task that it has done."""
-        return self._executor.ledger.usage[task]
+        """The planned and flown usage of its part in a task that was done; nothing if it has restarted since."""
+        return self._executor.ledger.usage.get(task) or self._left_with.get(task, (0.0, 0.0))
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
@@ -120,13 +121,11 @@ class RobotControl:
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
             self._executor.plan_again("agreed", {})
-        self._executor.tick(now)
-        events = [event for event in self._executor.events[first:] if event.kind in _ITS_OWN]
-        for event in events:
+        for event in self._executor.tick(now):
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
         self._negotiator.joint.leave_all_but(self._at)
-        return events
+        return [event for event in self._executor.events[first:] if event.kind in _ITS_OWN]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
@@ -197,6 +196,8 @@ class RobotControl:
             if joint.is_broken(task, members, owned=self._negotiator.owns(task)):
                 joint.forget(task)
                 if self._at == task:
+                    hand = self._hand
+                    self._left_with[task] = hand.usage_to_task, hand.used - hand.used_before
                     self._executor.break_off(task)
 
     @property
@@ -230,8 +231,16 @@ class RobotControl:
                 self._executor.report(Event(at_s=0.0, new_task=task_of(fact.content)))
         for task, times in deeds(facts).items():
             if task in tasks:
-                self._executor.end_elsewhere(task, [fact.robot for fact in times[0]])
+                self._count_as_done(task, times[0])
         self._negotiator.joint.leave_of_last_life(self._unit)
+
+    def _count_as_done(self, task: str, by: Sequence[Fact]) -> None:
+        """A task was done, as these facts say. A robot may have done its part, and hear only now that others have."""
+        team = sorted(fact.robot for fact in by)
+        is_new = self._executor.end_elsewhere(task, team)
+        if is_new and by[0].kind == "part" and self._negotiator.robot in team:
+            more = {"team": team} if len(team) > 1 else {}
+            self._executor.emit("ends", {"task": task, "robot": team[0], **more})
 
     def _owned(self, rest: RemainingMission) -> Revision:
         """The plan of the rest is what the robot owns. It gives back what it cannot do."""
