@@ -76,6 +76,11 @@ def test_texts_are_one_line_each(mission, plan, report):
     assert re.fullmatch(r"<Report: 27 tasks done, 4 lost, [\d.]+ s, total\+max [\d.]+>", repr(report))
 
 
+def test_notebooks_show_when_a_team_works():
+    shown = muster.solve(muster.load("collapsed-building"), iterations=200)._repr_html_()
+    assert re.search(r"<td>lift-beam</td>(<td>[\d.]+</td>){3}<td>rover_\d</td>", shown)
+
+
 def test_notebooks_show_tables_with_escaped_texts(mission, plan, report):
     for shown in (mission, plan, muster.verify(mission, plan), report):
         assert "<table>" in shown._repr_html_()

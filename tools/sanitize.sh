@@ -8,7 +8,7 @@ python=${PYTHON:-python3}
 environment=build/sanitized
 [ -d "$environment" ] || "$python" -m venv "$environment"
 "$environment/bin/pip" install --quiet -C cmake.define.MUSTER_SANITIZE=ON -C cmake.define.MUSTER_WERROR=ON -C build-dir=build/sanitizing \
-    -C install.strip=false '.[all]' pytest hypothesis
+    -C install.strip=false '.[all]' pytest pytest-xdist hypothesis
 core=$(find "$environment" -path '*/muster/core/_core*.so')
 if ! ldd "$core" | grep -q libasan; then
     echo "the core in $environment was built without the sanitizers" >&2
@@ -19,5 +19,5 @@ fi
 LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libubsan.so) $(g++ -print-file-name=libstdc++.so)" \
 ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
-    "$environment/bin/python" -m pytest -p no:cacheprovider -rs tests/core/test_core.py tests/allocation tests/conformance \
-    tests/motion tests/simulation --ignore tests/conformance/test_planning_doors.py
+    "$environment/bin/python" -m pytest -p no:cacheprovider -n 2 --dist loadgroup --max-worker-restart 0 -rs tests/core/test_core.py \
+    tests/allocation tests/conformance tests/motion tests/simulation --ignore tests/conformance/test_planning_doors.py

@@ -10,9 +10,11 @@ from muster import Mission, Robot, Rules, Task
 from muster.allocation.explanations import unassigned
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
+from muster.allocation.remedies import remedies
 from muster.mission.events import Event
 from muster.mission.model import Lag
 from muster.mission.plan import Reason, Unassigned
+from muster.planning.explaining.explanations import admits
 from muster.verification import verify
 
 ABLE = ("greedy", "hill-climbing", "genetic", "greedy+genetic", "search")
@@ -181,3 +183,12 @@ def test_search_puts_a_short_route_elsewhere_though_a_lag_forbids_the_nearest_pl
     robots = van("a", 2.0, 0), van("b", -1.0, 2), van("c", 14.0, 0)
     mission = Mission(name="lag", rules=Rules(timing="constant", objective="lateness"), robots=robots, tasks=tasks)
     assert done(muster.solve(mission, "search", iterations=200)) == {"a": 1, "b": 0, "c": 1}
+
+
+def test_the_remedy_is_the_number_of_tasks_that_the_robot_would_do():
+    """One task is left for a robot that does at least three."""
+    mission = line(van("a", 0, 3), tasks=1)
+    problem = Problem.compile(mission)
+    (remedy,) = remedies(problem, [[]], 0, admits)
+    assert remedy.as_dict()["min_tasks"] == {"now": 3, "enough": 1}
+    assert (remedy.enough, remedy.kinds, remedy.routes[0].tasks) == (True, ("min-tasks",), ("1",))

@@ -26,6 +26,7 @@ def _robot(robot, said, ends):
     return replace(
         robot,
         skills=(*robot.skills, *said["skills"]),
+        min_tasks=said["min_tasks"]["enough"] if said["min_tasks"] else robot.min_tasks,
         available_until_s=robot.available_until_s if ends["shift"] is None else ends["shift"],
         work_capacity=capacity if capacity is None or enough is None else max(capacity, enough),
     )

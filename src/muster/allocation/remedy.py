@@ -23,12 +23,13 @@ class Before:
 class Remedy:
     """What a robot needs to do a task in addition to all tasks of a plan.
 
-    `changes` are, by the words of rules, exactly what stands between the two: each is needed. `before` are the
-    prerequisites that the plan leaves out. `enough` tells whether a plan with all this was found and judged; its routes
-    are in `routes`. `unable` tells why the robot cannot do the task's action, whatever changes; empty if it can.
-    `unreachable` tells that there is no way to the task, `impossible` that no capacity is enough beside the other
-    changes: both are proven. Of many robots only those that seem to need least are `searched` for plans in which other
-    tasks are moved.
+    `changes`, by the words of rules, are what stands between the two by themselves, each of which is needed; and where
+    times, teams or relations matter those of windows, deadlines, shifts, least numbers of tasks, teams and relations
+    with which a plan was found: others may be enough as well. `before` are the prerequisites that the plan leaves out.
+    `enough` tells whether a plan with all this was found and judged; its routes are in `routes`. `unable` tells why the
+    robot cannot do the task's action, whatever changes; empty if it can. `unreachable` tells that there is no way to
+    the task, `impossible` that no capacity is enough beside the other changes: both are proven. Of many robots only
+    those that seem to need least are `searched` for plans in which other tasks are moved.
     """
 
     robot: str

@@ -19,6 +19,7 @@ from muster.allocation.remedy import Before, Remedy
 from muster.allocation.rules import Change
 from muster.allocation.rules.capacity import CapacityChange
 from muster.allocation.rules.deadline import LaterDeadline
+from muster.allocation.rules.min_tasks import FewerTasks, MinTasks
 from muster.allocation.rules.relation import Untied
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.rules.shift import LongerShift
@@ -62,9 +63,11 @@ def _first(problem: Problem, routes: Routes, i: int, j: int) -> Remedy:
 
 
 def _wider(problem: Problem, first: Remedy, rest: Routes, i: int, j: int) -> Iterator[Remedy]:
-    """The remedy as it is; with the robots that a team lacks; and free of its relations."""
+    """The remedy as it is; with fewer tasks for the robot; with the robots that a team lacks; and free of relations."""
     task, robot = problem.tasks[j], problem.robots[i]
     yield first
+    if robot.min_tasks > 1 and problem.holds(MinTasks.word):
+        yield _with(first, MinTasks.word, FewerTasks(robot.min_tasks, 0))
     names = {*problem.robot_index, *problem.task_index}
     base = changed(problem, first, i, j)
     more = missing_robots(base, base.robot_index[robot.id], base.task_index[task.id], names)
@@ -196,6 +199,9 @@ def _needed(problem: Problem, opened: Problem, routes: Routes, i: int, j: int, r
     if over > rules.available_until[i] * (1 + ROUNDING):
         least = float(limits.pair_end[at, of] + limits.home[at, of])
         changes["shift"] = LongerShift(float(rules.available_until[i]), over, least, moments(problem, over)[0])
+    fewer = FewerTasks(problem.robots[i].min_tasks, len(routes[at]))
+    if changes.pop(MinTasks.word, None) and fewer.enough < fewer.now:
+        changes[MinTasks.word] = fewer
     now = remedy.capacity.now
     used = inspection.usages[at] / (1.0 - problem.mission.rules.capacity_reserve)
     enough = None if now is None else max(used, now)

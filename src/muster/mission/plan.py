@@ -146,9 +146,25 @@ class Plan:
     def _repr_html_(self) -> str:
         routes = [(route.robot, " ".join(route.tasks), route.usage) for route in self.routes]
         columns = ("robot", "tasks", f"usage ({self.usage_unit})" if self.usage_unit else "usage")
-        text = html_line(repr(self)[1:-1]) + html_table("Routes", columns, routes)
+        text = html_line(repr(self)[1:-1]) + html_table("Routes", columns, routes) + self._times_html()
         left_out = [(item.task, ", ".join(sorted({r.reason for r in item.reasons}))) for item in self.unassigned]
         return text + (html_table("Left out", ("task", "reasons"), left_out) if left_out else "")
+
+    def _times_html(self) -> str:
+        """A row for each stop, with the robots that are there together; empty where the plan has no times."""
+        if not any(route.stops for route in self.routes):
+            return ""
+        team: dict[str, list[str]] = {}
+        for route in self.routes:
+            for task in route.tasks:
+                team.setdefault(task, []).append(route.robot)
+        rows = [
+            (route.robot, task, *map(times.get, STOP_TIMES), ", ".join(one for one in team[task] if one != route.robot))
+            for route in self.routes
+            for task, times in zip(route.tasks, _times_of(route), strict=True)
+            if times
+        ]
+        return html_table("Times", ("robot", "task", "arrives (s)", "begins (s)", "ends (s)", "with"), rows)
 
     def to_frame(self) -> DataFrame:
         """A DataFrame with a row for each stop, in the order of the routes; needs the extra `frames`.

@@ -3,13 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from muster import core
-from muster.allocation.rules.rule import Bools, InPlan, Limits, Outlook, Question, Routes, Rule, first_robot, listed
+from muster.allocation.rules.rule import (
+    Bools,
+    Change,
+    InPlan,
+    Limits,
+    Outlook,
+    Question,
+    Routes,
+    Rule,
+    first_robot,
+    listed,
+)
+from muster.mission.model import Robot
+
+
+@dataclass(frozen=True)
+class FewerTasks(Change):
+    """A smaller least number of tasks of a robot: `enough` instead of `now`."""
+
+    now: int
+    enough: int
+
+    @property
+    def plain(self) -> dict[str, int]:
+        return asdict(self)
+
+    @property
+    def short(self) -> str:
+        return f"min_tasks {self.enough} instead of {self.now}"
+
+    @property
+    def line(self) -> str:
+        return f"{self.short}: enough (a plan was found)"
+
+    def robot(self, robot: Robot) -> Robot:
+        return replace(robot, min_tasks=self.enough)
 
 
 class MinTasks(Rule):
@@ -19,6 +55,7 @@ class MinTasks(Rule):
     asked = ("min-tasks",)
     for_good = False
     lifted_late = True
+    key = "min_tasks"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         return {"min-tasks": first_robot(problem, "min_tasks", lambda i: _least(problem, i) > 1)}
