@@ -66,6 +66,16 @@ def test_an_uploaded_plan_is_kept_with_the_figures_of_the_judge(with_services, f
     with_services(story)
 
 
+def test_an_uploaded_plan_of_another_mission_is_kept_and_judged_so(with_services):
+    async def story(services):
+        entry = await services.plans.upload(WHO, "tiny", {**ROUTES, "mission": "depot"})
+        verdict = await services.plans.verdict(entry.id)
+        assert [violation["kind"] for violation in verdict["violations"]] == ["mission"]
+        assert verdict["violations"][0]["detail"] == "the plan is of depot; expected tiny, or no name"
+
+    with_services(story)
+
+
 def test_an_uploaded_plan_that_is_none_is_refused(with_services):
     async def story(services):
         with pytest.raises(
