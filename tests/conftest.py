@@ -19,15 +19,6 @@ def pytest_configure():
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
-    """What the tests of a study share takes minutes: one process has them all, and they begin first."""
-    studies = [item for item in items if item.path.parent.name == "studies"]
-    for item in studies:
-        item.add_marker(pytest.mark.xdist_group(item.path.stem))
-    items[:] = studies + [item for item in items if item.path.parent.name != "studies"]
-
-
 @pytest.fixture(autouse=True)
 def log_level():
     """What `-q` of a verb does to the log of this process ends with the test."""

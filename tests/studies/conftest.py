@@ -1,9 +1,19 @@
 """One short run of the study for all tests that look at what it prints."""
 
+from pathlib import Path
+
 import pytest
 
 from muster_studies.effort import Effort
 from muster_studies.registry import study_named
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """What the tests of a study share takes minutes: one process has them all."""
+    for item in items:
+        if item.path.parent == Path(__file__).parent:
+            item.add_marker(pytest.mark.xdist_group(item.path.stem))
 
 
 @pytest.fixture(scope="session")

@@ -34,8 +34,14 @@ def with_services(tmp_path):
     return lambda story, **settings: asyncio.run(told(tmp_path, story, **settings))
 
 
+@pytest.fixture
 def children():
-    """The processes that this one has started and that live."""
+    """Finds the processes that this one has started in the test, and that live; earlier tests may have left some."""
+    before = _living_children()
+    return lambda: [child for child in _living_children() if child not in before]
+
+
+def _living_children():
     found = []
     for status in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -148,7 +154,7 @@ def test_the_queue_has_an_end(with_services):
     with_services(story, queue=2)
 
 
-def test_a_job_that_is_cancelled_is_over_within_a_second(with_services):
+def test_a_job_that_is_cancelled_is_over_within_a_second(with_services, children):
     async def story(services):
         job = await services.jobs.ask_plan(WHO, "tiny", **LONG)
         await under_way(services, job)
@@ -184,7 +190,7 @@ def test_a_job_that_waits_can_be_cancelled(with_services):
     with_services(story)
 
 
-def test_a_job_that_is_stopped_keeps_its_best_plan(with_services):
+def test_a_job_that_is_stopped_keeps_its_best_plan(with_services, children):
     async def story(services):
         job = await services.jobs.ask_plan(WHO, "tiny", **LONG)
         await under_way(services, job)
@@ -206,7 +212,7 @@ def test_a_job_that_is_stopped_keeps_its_best_plan(with_services):
     with_services(story)
 
 
-def test_a_job_whose_worker_is_killed_is_done_once_more(with_services):
+def test_a_job_whose_worker_is_killed_is_done_once_more(with_services, children):
     async def story(services):
         job = await services.jobs.ask_plan(WHO, "tiny", time_limit=1.5)
         await under_way(services, job)
