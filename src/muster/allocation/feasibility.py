@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -45,7 +45,7 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
 
     def reasons(j: int) -> tuple[Reason, ...]:
         befores = (lost[j], lost_before(j))  # a bound may have held only until what comes before it was lost
-        return tuple(_reason(problem, i, j, list(_outlooks(limits, i, j, befores))) for i in robots)
+        return tuple(_reason(problem, i, j, _outlooks(limits, i, j, befores)) for i in robots)
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in order if j in lost)
 
@@ -57,7 +57,7 @@ def _outlooks(limits: Limits, i: int, j: int, befores: Sequence[str]) -> Iterato
             yield Outlook(bounds, float(limits.usage[i, j]), before)
 
 
-def _reason(problem: Problem, i: int, j: int, outlooks: Sequence[Outlook]) -> Reason:
+def _reason(problem: Problem, i: int, j: int, outlooks: Iterable[Outlook]) -> Reason:
     """Why robot i can never do task j, which nobody can; the first outlook counts in which there is a reason."""
     found = ((rule.word, rule.never(problem, i, j, outlook)) for outlook in outlooks for rule in problem.rules)
     word, detail = next((word, detail) for word, detail in found if detail is not None)

@@ -182,8 +182,8 @@ def narrowed(
 
 
 def _unnarrowed(problem: Problem, usage: Floats, arrival: Floats, home: Floats) -> Limits:
-    now, nobody = np.zeros(len(problem.tasks)), (None,) * len(problem.tasks)
-    return Limits(problem, usage, problem.allowed, arrival, home, now, now, nobody)
+    at_once = np.zeros(len(problem.tasks))
+    return Limits(problem, usage, problem.allowed, arrival, home, at_once, at_once, (None,) * len(problem.tasks))
 
 
 def _narrowed(limits: Limits) -> Limits:

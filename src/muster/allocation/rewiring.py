@@ -106,7 +106,8 @@ def _first_better(problem: Problem, routes: Routes, now: _Waiting) -> tuple[Rout
         if p < len(problem.beginning(f)):
             continue
         tried = [_put_before(routes, f, p, q) for q in range(p + 1, len(routes[f]))]
-        fitting = [other for other in tried if _longer(problem, f, routes[f], other[f]) < now.at[f, p]]
+        travels_s = _travel_seconds(problem, f, routes[f])
+        fitting = [other for other in tried if _travel_seconds(problem, f, other[f]) - travels_s < now.at[f, p]]
         judged = [(other, _waiting(problem, other)) for other in fitting]
         less = [(other, then) for other, then in judged if then.is_less_than(now)]
         if less:
@@ -118,11 +119,6 @@ def _put_before(routes: Routes, f: int, p: int, q: int) -> Routes:
     """Routes in which robot f does its q-th task right before its p-th."""
     route = routes[f]
     return [*routes[:f], [*route[:p], route[q], *route[p:q], *route[q + 1 :]], *routes[f + 1 :]]
-
-
-def _longer(problem: Problem, f: int, before: Sequence[int], after: Sequence[int]) -> float:
-    """How many seconds more robot f travels in the new order."""
-    return _travel_seconds(problem, f, after) - _travel_seconds(problem, f, before)
 
 
 def _travel_seconds(problem: Problem, i: int, route: Sequence[int]) -> float:

@@ -156,7 +156,7 @@ def _print_tasks(report: Report, unit: str) -> None:
     rows = [
         (
             row["task"],
-            ", ".join(row.get("team") or (row["robot"],)),
+            ", ".join(row.get("team", ())) or row["robot"],
             number(starts.get(row["task"])),
             number(ends.get(row["task"])),
             *_usage(row),

@@ -16,7 +16,7 @@ Placement::Placement(Roster& roster)
     : roster_(roster),
       problem_(roster.problem_),
       timeline_(roster.timeline_),
-      relations_(problem_),
+      relations_(roster),
       ranges_(problem_.robots()),
       choice_(problem_),
       busy_(problem_.robots(), 0) {}
@@ -28,7 +28,7 @@ const UnitInsertion* Placement::best(int unit, const Trial& trial) {
   best_.members.clear();
   labels_ = roster_.timeline_.labels_for(unit);
   if (labels_.empty()) return nullptr;
-  relations_.look_at(unit, timeline_, trial.robots);
+  relations_.look_at(unit, trial.robots);
   ready_ = timeline_.ready(unit);
   peak_ = roster_.peak();
   looks_ahead_ = relations_.awaits_any() && (!trial.random || trial.random->uniform() < kAhead);

@@ -61,6 +61,7 @@ class Placement {
   bool usable(int robot, int task, int k) const { return relations_.allows(k, robot) && problem_.allowed(robot, task); }
   void try_hard(int unit);
   void try_together(int unit, int key, std::size_t first);
+  void choose_anew(int task);
   int cheapest_team() const;
   void judge(int unit);
   void measure_works(std::size_t tasks);
@@ -105,7 +106,7 @@ class Placement {
   // By key: of each candidate whether its place is another than when teams were last chosen, and how that ranked them.
   std::array<std::vector<char>, kKeys> moved_;
   std::array<TeamChoice::Ranking, kKeys> rankings_;
-  std::vector<char> busy_;
+  std::vector<char> busy_, everyone_;
 };
 
 }  // namespace muster

@@ -4,17 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "problem.hpp"
-#include "timeline.hpp"
+#include "roster.hpp"
 
 namespace muster {
 
 class Relations {
  public:
-  explicit Relations(const Problem& problem);
+  explicit Relations(const Roster& roster);
 
   // Looks at a unit. `robots`: by robot, whether it may be a member; none: all.
-  void look_at(int unit, const Timeline& timeline, const std::vector<char>* robots);
+  void look_at(int unit, const std::vector<char>* robots);
 
   // Of the unit's task number k.
   bool allows(int k, int robot) const { return !excluded_[k * problem_.robots() + robot]; }
@@ -26,8 +25,9 @@ class Relations {
 
  private:
   void exclude(std::size_t k, int robot);
-  void keep_to(std::size_t k, const std::vector<char>& members, int size);
+  void keep_to(std::size_t k, const std::vector<int>& team);
 
+  const Roster& roster_;
   const Problem& problem_;
   std::vector<char> excluded_;  // tasks of the unit x robots
   bool excludes_ = false, awaits_any_ = false;

@@ -89,6 +89,8 @@ class Roster {
   void commit();
   void rollback();
 
+  // The robots that do a task, in order.
+  std::vector<int> team_of(int task) const;
   Routes routes() const;
   std::vector<std::vector<StopTimes>> stops() const;
 
@@ -100,7 +102,6 @@ class Roster {
     double usage;
   };
 
-  std::vector<int> team_of(int task) const;
   void touch(int robot);
   void measure_changed();
   void measure(int robot);

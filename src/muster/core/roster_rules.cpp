@@ -161,7 +161,6 @@ class ShortRoutes {
 
 }  // namespace
 
-// The robots that do a task, in order.
 std::vector<int> Roster::team_of(int task) const {
   std::vector<int> team;
   for (const int number : timeline_.visits_of(problem_.unit(task))) {

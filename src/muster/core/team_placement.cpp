@@ -23,6 +23,7 @@ void Placement::try_cuts(int unit) {
   }
   offers_.assign(tasks.size() * candidates_.size(), Offer{});
   gather_cuts(unit);
+  everyone_.assign(candidates_.size(), 1);
   works_.assign(tasks.size(), 0.0);
   tail_ = timeline_.tail_after(unit, works_);
   for (auto& moved : moved_) moved.assign(candidates_.size(), 1);
@@ -201,8 +202,7 @@ void Placement::try_teams(int unit, int key) {
 // The teams of a task and those of the tasks that its robots have to do too, as far as they can do all of them.
 void Placement::try_shared(int task, int unit) {
   const auto judge_teams_of = [&](int source) {
-    TeamChoice::Ranking ranking;
-    choice_.teams(source, candidates_, keys_, std::vector<char>(candidates_.size(), 1), ranking, teams_);
+    choose_anew(source);
     for (int t = 0; t < teams_.size(); ++t) {
       team_.clear();
       robots_.clear();
@@ -245,12 +245,17 @@ bool Placement::take_tied(int task, int k) {
 }
 
 bool Placement::take_cheapest(int task, int k) {
-  TeamChoice::Ranking ranking;
-  choice_.teams(task, candidates_, keys_, std::vector<char>(candidates_.size(), 1), ranking, teams_);
+  choose_anew(task);
   const int cheapest = cheapest_team();
   if (cheapest < 0) return false;
   for (const int c : teams_[cheapest]) team_.push_back({k, &offers_[k * candidates_.size() + c]});
   return true;
+}
+
+// The teams for a task, whatever was chosen at earlier cuts.
+void Placement::choose_anew(int task) {
+  TeamChoice::Ranking ranking;
+  choice_.teams(task, candidates_, keys_, everyone_, ranking, teams_);
 }
 
 int Placement::cheapest_team() const {

@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from muster.mission.model import Mission, Task
+from muster.mission.plan import teams_of
 from muster.mission.time_types import moment_after
 from muster.verification import Verdict, Visit
 
@@ -28,9 +29,7 @@ class Stop:
 def stops_of(verdict: Verdict) -> dict[str, tuple[Stop, ...]]:
     """For each task that is done the stops of all robots that do it, in mission order."""
     visits = [(route.robot, order, visit) for route in verdict.routes for order, visit in enumerate(route.visits, 1)]
-    teams: dict[str, list[str]] = {}
-    for robot, _, visit in visits:
-        teams.setdefault(visit.task, []).append(robot)
+    teams = teams_of((robot, (visit.task,)) for robot, _, visit in visits)
     found: dict[str, tuple[Stop, ...]] = {}
     for robot, order, visit in visits:
         others = tuple(name for name in teams[visit.task] if name != robot)

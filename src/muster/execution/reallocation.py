@@ -21,7 +21,7 @@ from muster.execution.remaining_problem import RemainingMission, RemainingProble
 from muster.execution.travel import Travel
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import ParameterError
-from muster.mission.plan import Reason, Unassigned
+from muster.mission.plan import Reason, Unassigned, teams_of
 
 RobotsOf = Mapping[int, frozenset[int]]
 """For each task, by index, the robots that do it."""
@@ -237,11 +237,7 @@ def _revision(rest: RemainingMission, what: RemainingProblem, routes: Routes, fo
         robot.id: tuple(problem.tasks[j].id for j in routes[i][len(problem.beginning(i)) :])
         for i, robot in enumerate(problem.robots)
     }
-    teams: dict[str, list[str]] = {}
-    for robot, tasks in planned.items():
-        for task in tasks:
-            teams.setdefault(task, []).append(robot)
-    now = {task: ", ".join(team) for task, team in teams.items()}
+    now = {task: ", ".join(team) for task, team in teams_of(planned.items()).items()}
     left_out = {item.task: _why(item, rest) for item in unassigned(problem, routes)} | dict(what.hopeless)
     moved = {task: (rest.former[task], robot) for task, robot in now.items() if rest.former.get(task, robot) != robot}
     still = {task for robot, tasks in rest.routes.items() for task in tasks}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -154,10 +154,7 @@ class Plan:
         """A row for each stop, with the robots that are there together; empty where the plan has no times."""
         if not any(route.stops for route in self.routes):
             return ""
-        team: dict[str, list[str]] = {}
-        for route in self.routes:
-            for task in route.tasks:
-                team.setdefault(task, []).append(route.robot)
+        team = teams_of((route.robot, route.tasks) for route in self.routes)
         rows = [
             (route.robot, task, *map(times.get, STOP_TIMES), ", ".join(one for one in team[task] if one != route.robot))
             for route in self.routes
@@ -179,6 +176,15 @@ class Plan:
         )
         has_times = any(route.stops for route in self.routes)
         return data_frame(rows, ("robot", "place", "task", *(STOP_TIMES if has_times else ())))
+
+
+def teams_of(routes: Iterable[tuple[str, Iterable[str]]]) -> dict[str, list[str]]:
+    """For each task in routes, which are robots with their tasks, the robots that do it."""
+    teams: dict[str, list[str]] = {}
+    for robot, tasks in routes:
+        for task in tasks:
+            teams.setdefault(task, []).append(robot)
+    return teams
 
 
 def _times_of(route: Route) -> list[dict[str, Any]]:

@@ -6,17 +6,14 @@ from collections import Counter
 from collections.abc import Iterator
 
 from muster.mission.model import Mission
-from muster.mission.plan import Plan, tie_order
+from muster.mission.plan import Plan, teams_of, tie_order
 from muster.verification.agreement import agrees
 from muster.verification.verdict import Violation
 
 
 def _done_by(plan: Plan) -> dict[str, str]:
     """For each task the robot that does it, or the names of its team as an auction writes them."""
-    teams: dict[str, list[str]] = {}
-    for route in plan.routes:
-        for task in route.tasks:
-            teams.setdefault(task, []).append(route.robot)
+    teams = teams_of((route.robot, route.tasks) for route in plan.routes)
     return {task: "+".join(team[k] for k in tie_order(team)) for task, team in teams.items()}
 
 

@@ -63,7 +63,7 @@ class Case:
         return bool(task.is_for_team or task.starts_with or task.id in self.beginning_with)
 
     @cached_property
-    def has_longest_lags(self) -> bool:
+    def has_within(self) -> bool:
         """Whether a task may begin only so long after a prerequisite."""
         return any(lag.within_s is not None for task in self.mission.tasks for lag in task.lags.values())
 

@@ -56,7 +56,7 @@ class Places:
 
         A length that is off moves both ends of a lag, by more than the margin of a short one.
         """
-        inexact = self.case.has_longest_lags and self.case.travel.tolerance
+        inexact = self.case.has_within and self.case.travel.tolerance
         return not inexact and self._is_kept({}, -self._margin)
 
     def can_do(self, robot: Robot, task: Task) -> bool | None:

@@ -12,7 +12,7 @@ from muster.execution.reallocation import reasons_in_one_line
 from muster.execution.report import Account
 from muster.execution.task_ledger import Ledger
 from muster.mission.model import Event
-from muster.mission.plan import Plan
+from muster.mission.plan import Plan, teams_of
 from muster.mission.yaml_writer import plain
 from muster.motion.port import Telemetry
 from muster.verification import verify
@@ -252,8 +252,5 @@ def _difference(before: Plan, after: Plan) -> dict[str, Any]:
 
 def _robots(plan: Plan) -> dict[str, str]:
     """The robots of each task in a plan, in words."""
-    teams: dict[str, list[str]] = {}
-    for route in plan.routes:
-        for task in route.tasks:
-            teams.setdefault(task, []).append(route.robot)
+    teams = teams_of((route.robot, route.tasks) for route in plan.routes)
     return {task: ", ".join(team) for task, team in teams.items()}

@@ -36,4 +36,4 @@ class Unreachable:
         """
         if not case.insertions(route).is_reachable(task, case.first_gap(route, task)):
             return True
-        return None if case.needs_others(task) or case.has_longest_lags else False
+        return None if case.needs_others(task) or case.has_within else False
