@@ -6,7 +6,7 @@ import pytest
 from tests.execution.test_executor import carried_out, plan_of
 from tests.execution.world import World, carry_out
 
-from muster import Mission, Robot, Task
+from muster import Mission, Robot, Rules, Task
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Revision
 from muster.execution.report import report_of
@@ -238,3 +238,16 @@ def test_what_was_left_out_is_planned_once_more_when_robots_are_free():
 def test_what_a_plan_leaves_out_without_a_reason_stays_undone():
     executor = carried_out(mission_of(task("a"), task("b", x=2.0), robots=1), plan_of(r_0=["a"]))
     assert executor.lost() == {"b": "left out by the plan"}
+
+
+def test_a_team_that_breaks_takes_no_other_task_from_its_robot():
+    """`watch` begins with the lift; a free search gives it to another robot."""
+    lift, watch = task("lift", x=20.0, robots_needed=2), task("watch", x=5.0, starts_with=("lift",))
+    events = [Event(at_s=0.25, robot_fails="r_1")]
+    for stability, stays in ((0, True), (None, False)):
+        rules = Rules(stability=stability, objective="total")
+        mission = replace(mission_of(lift, watch, robots=4, events=events), rules=rules)
+        executor = carried_out(mission, plan_of(r_0=["lift"], r_1=["lift"], r_3=["watch"]))
+        (revision,) = executor.revisions
+        assert "lift" in revision.forced
+        assert ("watch" not in revision.moved) == stays

@@ -6,7 +6,7 @@ one robot that could do them to another.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -42,8 +42,8 @@ class Revision:
         for each robot what it will use after each task of its route, in the mission's unit, the way to its end
         included; under the empty name after what it is doing.
     moved
-        tasks that went from one robot to another: from, to. Of them, and of the tasks dropped, those of `forced` had
-        to go: their robot is out, refused, or could not do all that it had.
+        tasks that went from one robot or team to another: from, to. Of them, and of the tasks dropped, those of
+        `forced` had to go: a robot of theirs is out, refused, or could not do all that it had.
     added, dropped
         tasks that had no robot and have one now, and the other way round.
     left_out
@@ -115,21 +115,21 @@ class Reallocation:
         problem = what.problem.ready()
         before = _routes_before(problem, rest)
         robots_of = _robots_of(problem, before)
+        forced = _torn(problem, rest, before)
+        start = admissible_part(problem, _without_units(problem, before, forced))
         stable = rest.mission.rules.stability
         if stable is None:
-            routes, forced = self._searched(problem, admissible_part(problem, before)), frozenset[int]()
+            routes = self._searched(problem, start)
         else:
-            routes, forced = self._stable(problem, before, robots_of, stable)
+            routes, forced = self._stable(problem, start, robots_of, forced, stable)
         if self.fill_waiting:
             routes = rewired(problem, routes)
-        return _revision(rest, what, routes, {problem.tasks[j].id for j in forced})
+        return _revision(rest, what, routes, forced)
 
     def _stable(
-        self, problem: Problem, before: Routes, robots_of: RobotsOf, most: int
+        self, problem: Problem, routes: Routes, robots_of: RobotsOf, forced: frozenset[int], most: int
     ) -> tuple[Routes, frozenset[int]]:
         """Routes in which at most so many tasks have another robot or team, beyond those that theirs cannot do."""
-        forced: frozenset[int] = frozenset()
-        routes = admissible_part(problem, before)
         while True:
             routes = self._searched(_locked(problem, robots_of, forced), routes)
             lost = frozenset(robots_of) - forced - {j for route in routes for j in route}
@@ -156,20 +156,33 @@ def _routes_before(problem: Problem, rest: RemainingMission) -> Routes:
     for i, robot in enumerate(problem.robots):
         still = [problem.task_index[name] for name in rest.routes.get(robot.id, ()) if name in problem.task_index]
         routes.append([*problem.beginning(i), *(j for j in still if problem.may(i, j))])
-    return _with_whole_teams(problem, rest, routes)
+    return routes
 
 
-def _with_whole_teams(problem: Problem, rest: RemainingMission, routes: Routes) -> Routes:
-    """The routes without tasks whose team is not whole any more, and without those that begin with them."""
-    there = _robots_of(problem, routes)
-    broken = {
-        j
-        for j, robots in there.items()
-        if len(robots) < len(rest.former.get(problem.tasks[j].id, "").split(", "))
-        or not there.keys() >= set(problem.timed_rules.beginning_with(j))
+def _torn(problem: Problem, rest: RemainingMission, before: Routes) -> frozenset[int]:
+    """The tasks that not all robots can do any more that were to do them: one is out, refused, or may not."""
+    still = _teams(_named(problem, rest, before))
+    torn = (name for name, robots in rest.former.items() if still.get(name) != robots)
+    return frozenset(problem.task_index[name] for name in torn if name in problem.task_index)
+
+
+def _named(problem: Problem, rest: RemainingMission, routes: Routes) -> dict[str, tuple[str, ...]]:
+    """For each robot, in the order of the crew, the tasks that it will do, without work under way."""
+    index = {snapshot.robot.id: problem.robot_index[snapshot.robot.id] for snapshot in rest.crew}
+    return {
+        name: tuple(problem.tasks[j].id for j in routes[i][len(problem.beginning(i)) :]) for name, i in index.items()
     }
-    broken |= {other for j in broken for other in problem.timed_rules.beginning_with(j)}
-    return [[j for j in route if j not in broken] for route in routes]
+
+
+def _teams(routes: Mapping[str, Sequence[str]]) -> dict[str, str]:
+    """For each task the names of its robots, as in `RemainingMission.former`."""
+    return {task: ", ".join(team) for task, team in teams_of(routes.items()).items()}
+
+
+def _without_units(problem: Problem, routes: Routes, tasks: Iterable[int]) -> Routes:
+    """The routes without some tasks, and without those that begin with them."""
+    gone = {other for j in tasks for other in (j, *problem.timed_rules.beginning_with(j))}
+    return [[j for j in route if j not in gone] for route in routes]
 
 
 def _robots_of(problem: Problem, routes: Routes) -> RobotsOf:
@@ -231,24 +244,21 @@ def usage_ahead(rest: RemainingMission, travel: Travel) -> dict[str, dict[str, f
     return {robot.id: _ahead(problem, i, routes[i]) for i, robot in enumerate(problem.robots)}
 
 
-def _revision(rest: RemainingMission, what: RemainingProblem, routes: Routes, forced: Iterable[str]) -> Revision:
+def _revision(rest: RemainingMission, what: RemainingProblem, routes: Routes, forced: Collection[int]) -> Revision:
     problem = what.problem
-    planned = {
-        robot.id: tuple(problem.tasks[j].id for j in routes[i][len(problem.beginning(i)) :])
-        for i, robot in enumerate(problem.robots)
-    }
-    now = {task: ", ".join(team) for task, team in teams_of(planned.items()).items()}
+    planned = _named(problem, rest, routes)
+    now = _teams(planned)
     left_out = {item.task: _why(item, rest) for item in unassigned(problem, routes)} | dict(what.hopeless)
     moved = {task: (rest.former[task], robot) for task, robot in now.items() if rest.former.get(task, robot) != robot}
-    still = {task for robot, tasks in rest.routes.items() for task in tasks}
-    freed = {task for task in moved if task not in still or moved[task][0] in rest.refusals.get(task, {})}
+    dropped = tuple(task for task in left_out if task in rest.former)
+    had_to_go = {problem.tasks[j].id for j in forced} | what.hopeless.keys()
     return Revision(
         routes=planned,
         ahead={robot.id: _ahead(problem, i, routes[i]) for i, robot in enumerate(problem.robots)},
         moved=moved,
-        forced=frozenset(forced) | freed,
+        forced=frozenset(had_to_go.intersection((*moved, *dropped))),
         added={task: robot for task, robot in now.items() if task not in rest.former},
-        dropped=tuple(task for task in left_out if task in rest.former),
+        dropped=dropped,
         left_out=left_out,
     )
 
