@@ -30,6 +30,8 @@ Timeline::Timeline(const Problem& problem)
       routes_(problem.robots()),
       nodes_(problem.units()),
       work_(problem.tasks(), 0.0),
+      forward_(problem.units(), UnitQueue::Order::rising),
+      backward_(problem.units(), UnitQueue::Order::falling),
       stamp_of_(problem.tasks(), 0) {
   build_arcs();
   const int robots = problem.robots();
@@ -205,7 +207,7 @@ void Timeline::insert(int unit, std::span<const Member> members) {
     return std::pair{std::max(places.low, allowed.low), std::min(places.high, allowed.high)};
   };
   auto [low, high] = label_between();
-  if (nodes_[unit].queued) settle();
+  if (forward_.has(unit) || backward_.has(unit)) settle();
   if (0.5 * (low + high) <= low || 0.5 * (low + high) >= high) {  // no number is left between
     settle();
     auto labels = all_labels();
@@ -224,8 +226,8 @@ void Timeline::insert(int unit, std::span<const Member> members) {
     put(number, member.at + 1);
   }
   measure_work(unit);
-  queue(unit, kForward);
-  queue(unit, kBackward);
+  queue_forward(unit);
+  queue_backward(unit);
   queue_later(unit);
   queue_earlier(unit);
 }
@@ -238,7 +240,7 @@ void Timeline::remove(int unit) {
   queue_earlier(unit);
   for (const int number : node.visits) {
     const Visit& last = before(visits_[number]);  // from which the way to the end may be longer
-    if (last.unit >= 0 && behind(visits_[number]).unit < 0) queue(last.unit, kForward);
+    if (last.unit >= 0 && behind(visits_[number]).unit < 0) queue_forward(last.unit);
     take(number);
     taken_.push_back(number);
   }

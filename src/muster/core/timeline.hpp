@@ -8,6 +8,7 @@
 
 #include "problem.hpp"
 #include "routes.hpp"
+#include "unit_queue.hpp"
 
 namespace muster {
 
@@ -127,8 +128,7 @@ class Timeline {
     std::vector<int> visits;
     int task = -1;  // its only one, if it has only one
     double label = 0.0, begin = 0.0, latest = kNever, tail = 0.0;
-    int saved = 0;    // the step in which its times were saved
-    char queued = 0;  // bits: forward, backward
+    int saved = 0;  // the step in which its times were saved
   };
   struct Times {
     int unit;
@@ -140,11 +140,6 @@ class Timeline {
     int first;  // of its visits in `taken_`, where it was removed
     double label;
   };
-  struct Entry {
-    double label;
-    int unit;
-  };
-  enum Side : char { kForward = 1, kBackward = 2 };
   static constexpr double kRounding = 1e-11;
 
   void build_arcs();
@@ -166,8 +161,10 @@ class Timeline {
   const Visit& before(const Visit& v) const { return visits_[v.last]; }
   const Visit& behind(const Visit& v) const { return visits_[v.next]; }
 
-  void queue(int unit, Side side);
-  int pop(std::vector<Entry>& heap, Side side);
+  void queue_forward(int unit) { forward_.push(nodes_[unit].label, unit); }
+  void queue_backward(int unit) {
+    if (looks_back_) backward_.push(nodes_[unit].label, unit);
+  }
   void queue_later(int unit);
   void queue_earlier(int unit);
   void queue_all();
@@ -194,7 +191,7 @@ class Timeline {
   std::vector<std::vector<int>> routes_;
   std::vector<Node> nodes_;
   std::vector<double> work_;  // by task, of its slowest member
-  std::vector<Entry> forward_, backward_;
+  UnitQueue forward_, backward_;
   int budget_ = 0;  // units that `settle_cycles` still looks at, before it holds that bounds rise for ever
   std::vector<double> works_;
   // Undo.

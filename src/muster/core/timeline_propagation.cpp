@@ -5,29 +5,11 @@
 
 namespace muster {
 
-void Timeline::queue(int unit, Side side) {
-  Node& node = nodes_[unit];
-  if ((node.queued & side) || (side == kBackward && !looks_back_)) return;
-  node.queued = static_cast<char>(node.queued | side);
-  auto& heap = side == kForward ? forward_ : backward_;
-  heap.push_back({side == kForward ? -node.label : node.label, unit});
-  std::ranges::push_heap(heap, {}, &Entry::label);
-}
-
-int Timeline::pop(std::vector<Entry>& heap, Side side) {
-  std::ranges::pop_heap(heap, {}, &Entry::label);
-  Node& node = nodes_[heap.back().unit];
-  const int unit = heap.back().unit;
-  heap.pop_back();
-  node.queued = static_cast<char>(node.queued & ~side);
-  return unit;
-}
-
 void Timeline::queue_all() {
   for (std::size_t unit = 0; unit < nodes_.size(); ++unit) {
     if (!present(static_cast<int>(unit))) continue;
-    queue(static_cast<int>(unit), kForward);
-    queue(static_cast<int>(unit), kBackward);
+    queue_forward(static_cast<int>(unit));
+    queue_backward(static_cast<int>(unit));
   }
 }
 
@@ -117,34 +99,34 @@ bool Timeline::keeps_bounds(int unit) const {
 
 void Timeline::queue_later(int unit) {
   for (const int number : nodes_[unit].visits) {
-    if (const int next = behind(visits_[number]).unit; next >= 0) queue(next, kForward);
+    if (const int next = behind(visits_[number]).unit; next >= 0) queue_forward(next);
   }
   for (const Arc& arc : behind_[unit]) {
-    if (present(arc.unit)) queue(arc.unit, kForward);
+    if (present(arc.unit)) queue_forward(arc.unit);
   }
   if (!has_within_) return;
   for (const Arc& arc : before_[unit]) {
-    if (arc.within < kNever && present(arc.unit)) queue(arc.unit, kForward);
+    if (arc.within < kNever && present(arc.unit)) queue_forward(arc.unit);
   }
 }
 
 void Timeline::queue_earlier(int unit) {
   for (const int number : nodes_[unit].visits) {
-    if (const int last = before(visits_[number]).unit; last >= 0) queue(last, kBackward);
+    if (const int last = before(visits_[number]).unit; last >= 0) queue_backward(last);
   }
   for (const Arc& arc : before_[unit]) {
-    if (present(arc.unit)) queue(arc.unit, kBackward);
+    if (present(arc.unit)) queue_backward(arc.unit);
   }
   if (!has_within_) return;
   for (const Arc& arc : behind_[unit]) {
-    if (arc.within < kNever && present(arc.unit)) queue(arc.unit, kBackward);
+    if (arc.within < kNever && present(arc.unit)) queue_backward(arc.unit);
   }
 }
 
 bool Timeline::forward() {
   bool possible = true;
   while (!forward_.empty()) {
-    const int unit = pop(forward_, kForward);
+    const int unit = forward_.pop();
     Node& node = nodes_[unit];
     if (node.visits.empty()) continue;
     if (has_within_ && --budget_ < 0) return false;
@@ -164,7 +146,7 @@ bool Timeline::forward() {
 
 void Timeline::backward() {
   while (!backward_.empty()) {
-    const int unit = pop(backward_, kBackward);
+    const int unit = backward_.pop();
     Node& node = nodes_[unit];
     if (node.visits.empty()) continue;
     const double latest = has_limits_ ? latest_begin(unit) : kNever;
@@ -197,10 +179,8 @@ bool Timeline::settle_cycles() {
 }
 
 void Timeline::drop_queues() {
-  for (auto* heap : {&forward_, &backward_}) {
-    for (const Entry& entry : *heap) nodes_[entry.unit].queued = 0;
-    heap->clear();
-  }
+  forward_.clear();
+  backward_.clear();
 }
 
 double Timeline::end_of_route(int robot) const {
