@@ -26,6 +26,8 @@ OTHER_NAMES = {
     "earliest_s": "window_s: [earliest, latest]",
     "latest_s": "window_s: [earliest, latest], or deadline_s where it must have ended by then",
     "time_window": "window_s: [from, until]",
+    "abilities": "needs: {name: amount}; abilities are those of robots",
+    "needs": "abilities: {name: amount}; needs are those of tasks",
 }
 """Keys that people try, and what says it here."""
 
