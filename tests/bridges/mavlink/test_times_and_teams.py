@@ -4,18 +4,16 @@ from dataclasses import replace
 
 import pytest
 from tests.bridges.mavlink.drones import Sky, mission
+from tests.times_and_teams import judge, tasks_of
 
 import muster
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.simulated_faults import Faults
-from muster.mission.model import Rules, Task
+from muster.mission.model import Rules
 from muster.running.live import carry_out_live
 
-TASKS = (
-    Task(id="look", position=(20.0, 0.0, 10.0), duration_s=4.0, window_s=((40.0, None),)),
-    Task(id="lift", position=(30.0, 6.0, 10.0), duration_s=5.0, robots_needed=2, prerequisites=("look",)),
-    Task(id="watch", position=(40.0, 12.0, 10.0), duration_s=5.0, starts_with=("lift",)),
-)
+OPENS_S = 40.0
+TASKS = tasks_of(OPENS_S, side=10.0, height=(10.0,))
 
 
 def flown(there, plan, sky, offboard):
@@ -34,12 +32,7 @@ def test_drones_wait_for_a_window_and_begin_together(kind, offboard):
     plan = muster.solve(there, iterations=300)
     assert plan.complete
     report, heard = flown(there, plan, Sky(there, kind), offboard)
-    assert set(report.tasks_done) == {"look", "lift", "watch"}
-    assert report.starts_s["look"] == pytest.approx(40.0, abs=1.0)
-    assert report.starts_s["lift"] >= report.ends_s["look"]
-    assert report.starts_s["watch"] == report.starts_s["lift"]
-    (lift,) = [task for task in report.tasks if task.task == "lift"]
-    assert len(lift.team) == 2
+    judge(report.as_dict(), OPENS_S)
     assert any("window" in str(event.data) for event in heard if event.kind == "waits")
 
 

@@ -7,6 +7,9 @@ import time
 
 import pytest
 from tests.bridges.ros1.conftest import own_words
+from tests.times_and_teams import judge, tasks_of
+
+from muster import Mission, Robot
 
 MISSION = """
 schema: muster/1
@@ -83,6 +86,20 @@ def test_goals_are_given_to_robots_that_find_their_way(ros, mission):
         assert any(math.dist((goal["x"], goal["y"]), places[row["task"]]) < 1e-6 for goal in goals)
     assert {data["header"]["frame_id"] for topic, data in said if topic == "/r_0/WP"} == {"map"}
     assert not [data for topic, data in said if topic == "/r_0/cmd_vel"]
+
+
+def test_robots_wait_for_a_window_and_begin_together(ros):
+    opens_s = 6.0
+    places = {f"r_{k}": (0.0, 3.0 * k) for k in range(3)}
+    drive = {"speed_mps": 3.0, "yaw_rate_radps": 6.0, "radius_m": 0.2, "kinematics": "differential-drive"}
+    robots = tuple(Robot(id=name, position=place, **drive) for name, place in places.items())
+    Mission(robots=robots, tasks=tasks_of(opens_s)).save(ros.folder / "together.yaml")
+    for name, place in places.items():
+        ros.robot(name, *place)
+    carried = ros.muster("together.yaml", *QUICK)
+    out, err = carried.communicate(timeout=60)
+    assert carried.returncode == 0, err
+    judge(json.loads(out), opens_s)
 
 
 def test_ctrl_c_lets_robots_stand(ros, mission):

@@ -73,7 +73,8 @@ def do(asked):
     return dict(map(tuple, state()[0])).get(asked["publishers"], [])
 
 
+answers, sys.stdout = sys.stdout, sys.stderr  # what libraries print is no answer
 rospy.init_node("user", anonymous=True)
 for line in sys.stdin:
-    sys.stdout.write(json.dumps(do(json.loads(line))) + "\n")
-    sys.stdout.flush()
+    answers.write(json.dumps(do(json.loads(line))) + "\n")
+    answers.flush()

@@ -1,9 +1,11 @@
 """Robots of ROS 2 over DDS: robots in other processes, with types of their own, on this computer alone."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.times_and_teams import judge, tasks_of
 
 import muster
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
@@ -93,6 +95,17 @@ def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
     until(fleet, lambda: all(port.telemetry() is not None for port in fleet.ports.values()))
     report = carry_out_live(there, muster.solve(there, "greedy"), fleet)
     assert set(report.tasks_done) == {"t_0", "t_1", "t_2"}
+    fleet.close()
+
+
+def test_robots_wait_for_a_window_and_begin_together(robots):
+    opens_s = 8.0
+    there = replace(mission("r_0", "r_1", "r_2"), tasks=tasks_of(opens_s))
+    for k, robot in enumerate(there.robots):
+        robots(robot.id, 0, 3 * k, "pose")
+    fleet = Ros2Fleet(there, middleware=DdsMiddleware())
+    until(fleet, lambda: all(port.telemetry() is not None for port in fleet.ports.values()))
+    judge(carry_out_live(there, muster.solve(there, iterations=300), fleet).as_dict(), opens_s)
     fleet.close()
 
 
