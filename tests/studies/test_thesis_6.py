@@ -9,24 +9,34 @@ import pytest
 import muster as package
 from muster.cli.main import run as muster
 from muster.mission.errors import MissingExtraError, MusterError
+from muster.motion.laws import LAWS
 from muster.simulation import Noise
 from muster_studies.effort import Effort
 from muster_studies.registry import study_named
-from muster_studies.thesis_6 import physics
+from muster_studies.thesis_6 import misaligned, physics
 from muster_studies.thesis_6.flights import Flight, fly, mission_with
+from muster_studies.thesis_6.laws import ByLaw
+from muster_studies.thesis_6.misaligned import CHOSEN, WITHIN, MisalignedMarkers
 from muster_studies.thesis_6.published import excess, plans
 from muster_studies.thesis_6.totals import best_of, search_flights
 
 ROUTES = ("6.2", "6.6", "6.8", "6.9")
 FLOWN_PLANS = [plan for number in ROUTES for plan in plans(number)]
+TABLES = ("6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11", "actions", "physics", "noise", "capacity-reserve")
 ACTIONS = ("16T-3R-actions", "31T-6R50-actions", "6T-2R-actions", "11T-2R-actions")
 
 
 @pytest.fixture(scope="module")
 def report():
-    report = study_named("thesis-6").run(Effort(seeds=2, iterations=300))
+    report = study_named("thesis-6").run(Effort(seeds=2, iterations=300, tables=TABLES))
     assert report.runs > 0
     return report
+
+
+def table_of(reproduction):
+    """One table, made with little effort."""
+    effort = Effort(seeds=1, iterations=300)
+    return reproduction.table(effort, {flight: fly(flight) for flight in reproduction.jobs(effort)})
 
 
 @pytest.fixture(scope="module")
@@ -196,6 +206,26 @@ def test_without_the_extra_the_physics_table_says_what_to_install(monkeypatch):
     assert report.runs == 0
     assert report.tables[0].rows == ()
     assert "muster-robotics[physics]" in report.tables[0].notes[0]
+
+
+def test_table_of_laws():
+    """Of the smallest mission; all of them are in docs/measured."""
+    rows = table_of(ByLaw(routes=("6.8",))).records()
+    assert {row["law"] for row in rows} == set(LAWS)
+    for row in rows:
+        assert row["tasks"] == "6/6"
+        assert row["contacts"] == 0
+        assert row["flown"] == pytest.approx(row["planned"], rel=0.25)
+
+
+def test_table_of_misaligned_markers(monkeypatch):
+    """In the kinematic world; both are in docs/measured."""
+    monkeypatch.setattr(misaligned, "lacking_physics", lambda: "not asked for")
+    rows = table_of(MisalignedMarkers()).records()
+    chosen = [row for row in rows if (row["left m"], row["turn deg"]) == CHOSEN]
+    assert chosen
+    for row in chosen:
+        assert abs(row["%"] - row["thesis %"]) <= WITHIN
 
 
 def test_slip_costs_half_of_it(tables):
