@@ -37,8 +37,10 @@ def test_what_is_no_number_or_may_be_two(typed):
         ("spans", "600 to 1200", [600, 1200]),
         ("spans", "600 to 1200; 2000 to", [[600, 1200], [2000, None]]),
         ("clock spans", "10:00 to 14:00", ["10:00", "14:00"]),
+        ("spans", "1,5 to 2,5, 3 to 4", [[1.5, 2.5], [3, 4]]),
         ("clock spans", "to 14:00", [None, "14:00"]),
         ("amounts", "lift_kg 20, water_l 1,5", {"lift_kg": 20, "water_l": 1.5}),
+        ("amounts", "lift_kg: 20; water_l = 1", {"lift_kg": 20, "water_l": 1}),
         (
             "parts",
             "2 type=rover; 1 kind=air requires=camera+gripper",

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from muster.mission.errors import ParameterError
 
 _AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _LAG = re.compile(r"(?P<task>.+)\((?P<after>[^()]*)\.\.(?P<within>[^()]*)\)")
-_AMOUNT = re.compile(r"(?P<name>.+)\s+(?P<amount>\S+)")
+_AMOUNT = re.compile(r"(?P<name>.+?)(?:\s*[:=])?\s+(?P<amount>\S+)")
+_BETWEEN = re.compile(r"[,;]\s+|;")  # a comma may be that of a decimal
 _PART_KEYS = ("type", "kind", "requires")
 
 
@@ -86,7 +87,7 @@ def _lagged_text(value: Any) -> str:
 def _spans(typed: str, where: str, end_of: Callable[[str, str], object]) -> list[Any]:
     """`600 to 1200; 2000 to`: one span as a pair, several as a list of pairs; an end that is missing is open."""
     spans = []
-    for part in filter(None, (piece.strip() for piece in typed.split(";"))):
+    for part in _pieces(typed):
         begins, word, ends = (end.strip() for end in re.split(r"(\bto\b|$)", part, maxsplit=1))
         if word != "to":
             raise ParameterError(f"{where}: {part!r}; expected spans, as 600 to 1200; 2000 to")
@@ -101,10 +102,14 @@ def _spans_text(value: Any) -> str:
     return "; ".join(f"{text_of(begins)} to {text_of(ends)}".strip() for begins, ends in pairs)
 
 
+def _pieces(typed: str) -> Iterator[str]:
+    return filter(None, (piece.strip() for piece in _BETWEEN.split(typed)))
+
+
 def _amounts(typed: str, where: str) -> dict[str, float]:
     """`lift_kg 20, water_l 3`: names and amounts."""
     amounts = {}
-    for part in filter(None, (piece.strip() for piece in re.split(r"[,;]\s+|;", typed))):
+    for part in _pieces(typed):
         found = _AMOUNT.fullmatch(part)
         if found is None:
             raise ParameterError(f"{where}: {part!r}; expected a name and an amount, as lift_kg 20, water_l 3")
