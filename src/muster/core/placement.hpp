@@ -46,7 +46,7 @@ class Placement {
   template <class Try>
   void walk_cuts(int unit, Try&& attempt);
   void gather_cuts(int unit);
-  bool pass(std::size_t candidate, double cut);
+  void pass(std::size_t candidate, double cut);
   bool offered(std::size_t candidate) const;
   void make_offers(int unit, std::size_t candidate);
   bool may_join(Offer& offer, int task) const;
@@ -100,6 +100,7 @@ class Placement {
   TeamChoice choice_;
   Rows teams_;
   std::vector<double> cuts_, keys_, works_;
+  std::vector<double> next_label_;  // of the stop after a candidate's place
   std::vector<int> candidates_, at_, robots_;
   std::vector<Offer> offers_;  // tasks of the unit x candidates
   std::vector<Part> team_;     // the members that are judged

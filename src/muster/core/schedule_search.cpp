@@ -44,6 +44,7 @@ ScheduleSearch::ScheduleSearch(const Problem& problem, const Routes& start, std:
       roster_(problem),
       sees_end_(problem.objective() == Objective::makespan),
       penalty_(penalty_of(problem)),
+      times_absent_(problem.units(), 1.0),
       ruined_(problem.robots(), 0) {
   trial_.most_places = kMostPlaces;
   trial_.blink = settings.blink;
@@ -103,13 +104,15 @@ void ScheduleSearch::anneal(int steps, double hot, double cold) {
 
 void ScheduleSearch::step(double temperature) {
   const double most = current_ - temperature * std::log(random_.uniform() + 1e-300);
+  const double absent_weight = roster_.absent_weight(), difficulty = absent_difficulty();
   ruin();
   const bool complete = roster_.settle() && recreate(most);
   trial_.latest_end = kNever;
   if (complete) {
     const bool possible = roster_.finish(trial_) && roster_.admissible();
     const double next = possible ? cost() : kNever;
-    if (next < most) {
+    const bool easier = possible && leaves_out_easier_than(difficulty, absent_weight);
+    if (next < most || easier) {
       current_ = next;
       note_best();
       roster_.commit();
@@ -181,6 +184,9 @@ void ScheduleSearch::order_pending() {
     std::swap(pending_[k - 1], pending_[random_.below(static_cast<int>(k))]);
   }
   const int kind = random_.below(10);
+  if (kind < 2 && !roster_.absent().empty()) {  // what was left out most often
+    std::ranges::stable_sort(pending_, std::ranges::greater{}, [&](int unit) { return times_absent_[unit]; });
+  }
   if (kind < 4) return;
   const auto key = [&](int unit) {
     const int task = problem_.tasks_of_unit(unit).front();
@@ -230,6 +236,22 @@ void ScheduleSearch::note_best() {
   if (problem_.objective() != Objective::lateness) return;
   scale_ = value.objective > 0.0 ? 1.0 : 1.0 / kTie;
   current_ = cost();
+}
+
+// How hard it is to place what is left out, by how often it was.
+double ScheduleSearch::absent_difficulty() const {
+  double sum = 0.0;
+  for (const int unit : roster_.absent()) sum += times_absent_[unit];
+  return sum;
+}
+
+// Whether what is left out now is no more than before, and easier to place, as in the minimisation of fleets
+// [christiaens2020].
+bool ScheduleSearch::leaves_out_easier_than(double difficulty, double absent_weight) {
+  if (difficulty == 0.0) return false;
+  const bool easier = roster_.absent_weight() <= absent_weight && absent_difficulty() < difficulty;
+  for (const int unit : roster_.absent()) ++times_absent_[unit];
+  return easier;
 }
 
 double ScheduleSearch::mean_way() const {

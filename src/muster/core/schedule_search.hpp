@@ -46,6 +46,8 @@ class ScheduleSearch {
   double team_size(int unit) const;
   double ties() const;
   void note_best();
+  double absent_difficulty() const;
+  bool leaves_out_easier_than(double difficulty, double absent_weight);
 
   const Problem& problem_;
   SearchSettings settings_;
@@ -61,6 +63,7 @@ class ScheduleSearch {
   Routes best_;
   Value best_value_;
   std::vector<int> pending_, removed_, critical_;
+  std::vector<double> times_absent_;  // by unit: in how many plans it was left out, and 1
   std::vector<char> ruined_;
   std::vector<std::pair<double, int>> nearest_;
 };

@@ -38,11 +38,13 @@ void Placement::try_cuts(int unit) {
 // Gives each robot its place at one cut after the other, and tries teams there.
 template <class Try>
 void Placement::walk_cuts(int unit, Try&& attempt) {
-  at_.assign(candidates_.size(), -1);
+  at_.assign(candidates_.size(), 0);
+  next_label_.assign(candidates_.size(), -kNever);
   for (const double cut : cuts_) {
     bool any_moved = false;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      if (!pass(c, cut)) continue;
+      if (next_label_[c] > cut) continue;
+      pass(c, cut);
       const bool could = offered(c);
       make_offers(unit, c);
       if (!could && !offered(c)) continue;
@@ -115,12 +117,16 @@ void Placement::gather_cuts(int unit) {
   if (trial_->append_only) cuts_.erase(cuts_.begin(), cuts_.end() - 1);
 }
 
-// Moves a robot's place behind all that lies before the cut; tells whether it moved.
-bool Placement::pass(std::size_t candidate, double cut) {
-  const int robot = candidates_[candidate];
-  int at = std::max(0, at_[candidate]);
-  while (timeline_.stop(robot, at + 1).unit >= 0 && timeline_.stop(robot, at + 1).label <= cut) ++at;
-  return std::exchange(at_[candidate], at) != at;
+// Moves a robot's place behind all that lies before the cut.
+void Placement::pass(std::size_t candidate, double cut) {
+  const auto& route = timeline_.route(candidates_[candidate]);
+  const auto label_after = [&](int at) {
+    const Visit& next = timeline_.visit(route[at + 1]);
+    return next.unit >= 0 ? next.label : kNever;
+  };
+  int& at = at_[candidate];
+  while (label_after(at) <= cut) ++at;
+  next_label_[candidate] = label_after(at);
 }
 
 // Whether a robot could do any task of the unit where it stands.
