@@ -4,6 +4,10 @@
 
 NB_MODULE(_core, m) {
   m.doc() = "The hot loops of Muster.";
+#ifdef NDEBUG
+  // What a thread still holds when Python ends is no concern of who ran a command.
+  nanobind::set_leak_warnings(false);
+#endif
   muster::bind_problem(m);
   muster::bind_inspection(m);
   muster::bind_greedy(m);
