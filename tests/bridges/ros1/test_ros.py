@@ -91,7 +91,7 @@ def test_goals_are_given_to_robots_that_find_their_way(ros, mission):
 def test_robots_wait_for_a_window_and_begin_together(ros):
     opens_s = 6.0
     places = {f"r_{k}": (0.0, 3.0 * k) for k in range(3)}
-    drive = {"speed_mps": 3.0, "yaw_rate_radps": 6.0, "radius_m": 0.2, "kinematics": "differential-drive"}
+    drive = {"speed_mps": 3.0, "yaw_rate_radps": 6.0, "kinematics": "differential-drive"}
     robots = tuple(Robot(id=name, position=place, **drive) for name, place in places.items())
     Mission(robots=robots, tasks=tasks_of(opens_s)).save(ros.folder / "together.yaml")
     for name, place in places.items():
@@ -127,9 +127,13 @@ def test_it_begins_pauses_goes_on_and_takes_a_task_when_told(ros, mission):
     carried = ros.muster(mission, *QUICK, "--on-start")
     task = json.dumps({"id": "extra", "position": [2, 2]})
     wrong = json.dumps({"id": "wrong", "position": "here"})
-    asked = ros.call("/command_interface/start", f"add_task={wrong}", f"add_task={task}", "/command_interface/pause")
-    told = asked.communicate(timeout=20)[0].splitlines()[-1]
-    assert told == "mission mission is paused; the robots were told to stand"
+    user = ros.user()
+    assert user.call("/command_interface/start")[0]
+    for text in (wrong, task):
+        user.do(publish="/command_interface/add_task", text=text)
+    user.until(lambda status: status["state"] == "carrying-out", last="/muster/status")
+    told = (True, "mission mission is paused; the robots were told to stand")
+    assert user.call("/command_interface/pause") == told
     time.sleep(1.0)
     assert carried.poll() is None
     again = ros.call("/command_interface/start")
