@@ -41,7 +41,7 @@ def load(name: str, folder: Path = FOLDER) -> dict[str, Any] | None:
 
 
 def measure(name: str, command: str, scratch: Path, folder: Path = FOLDER) -> str:
-    """Run a command and store what it prints, its files of Markdown included; returns a remark.
+    """Run a command and store the Markdown that it writes, or what it prints if it writes none; returns a remark.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def measure(name: str, command: str, scratch: Path, folder: Path = FOLDER) -> st
         "command": command,
         "commit": commit(),
         "seconds": round(time.monotonic() - begin),
-        "output": (ran.out + written).splitlines(),
+        "output": (written or ran.out).splitlines(),
     }
     store(name, stored, folder)
     return f"{name}: {stored['seconds']} s"
