@@ -184,13 +184,13 @@ void ScheduleSearch::order_pending() {
     std::swap(pending_[k - 1], pending_[random_.below(static_cast<int>(k))]);
   }
   const int kind = random_.below(10);
-  if (kind < 2 && !roster_.absent().empty()) {  // what was left out most often
-    std::ranges::stable_sort(pending_, std::ranges::greater{}, [&](int unit) { return times_absent_[unit]; });
-  }
-  if (kind < 4) return;
+  if (kind == 2 || kind == 3) return;
   const auto key = [&](int unit) {
     const int task = problem_.tasks_of_unit(unit).front();
     switch (kind) {
+      case 0:
+      case 1:  // what was left out most often
+        return -times_absent_[unit];
       case 4:
         return -distance_from_start(unit);
       case 5:
@@ -246,7 +246,7 @@ double ScheduleSearch::absent_difficulty() const {
 }
 
 // Whether what is left out now is no more than before, and easier to place, as in the minimisation of fleets
-// [christiaens2020].
+// [christiaens2020]. Counts it where anything was left out before.
 bool ScheduleSearch::leaves_out_easier_than(double difficulty, double absent_weight) {
   if (difficulty == 0.0) return false;
   const bool easier = roster_.absent_weight() <= absent_weight && absent_difficulty() < difficulty;

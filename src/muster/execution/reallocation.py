@@ -114,14 +114,13 @@ class Reallocation:
         what = remaining_problem(rest, self.travel)
         problem = what.problem.ready()
         before = _routes_before(problem, rest)
-        robots_of = _robots_of(problem, before)
         forced = _torn(problem, rest, before)
         start = admissible_part(problem, _without_units(problem, before, forced))
         stable = rest.mission.rules.stability
         if stable is None:
             routes = self._searched(problem, start)
         else:
-            routes, forced = self._stable(problem, start, robots_of, forced, stable)
+            routes, forced = self._stable(problem, start, _robots_of(problem, before), forced, stable)
         if self.fill_waiting:
             routes = rewired(problem, routes)
         return _revision(rest, what, routes, forced)
