@@ -17,6 +17,7 @@ from muster.motion.robot_paths import RobotPaths
 from tests import trials
 from tests.disturbances.bodies import Bodies, bodily_mission
 from tests.disturbances.missions import disturbed_mission
+from tests.disturbances.stability import Stability
 from tests.execution.world import World, carry_out
 
 STEP = 0.25
@@ -48,7 +49,8 @@ class Watcher:
 
     def __init__(self, report, mission, world):
         self.report, self.mission, self.world = report, mission, world
-        self.executor, self.robot_of, self.out, self.ends = None, {}, set(), Counter()
+        self.executor, self.ends = None, Counter()
+        self.stability = Stability(report, mission.rules.stability)
 
     def on_telemetry(self, now, robot, telemetry):
         pass
@@ -58,19 +60,14 @@ class Watcher:
         self.report.story.append(f"{now:8.2f}  {kind}  {data}")
         if kind == "robot_stuck" and self.report.bodies:  # only by one that broke down after it had fallen silent
             self.report.check(self.world.beside_broken(data["robot"]), f"{data['robot']} is put out as stuck")
-        if kind in ("robot_fails", "robot_silent", "robot_stuck"):
-            self.out.add(data["robot"])
-        elif kind == "robot_returns":
-            self.out.discard(data["robot"])
-        elif kind == "starts":
+        self.stability.on_event(kind, data, self.executor)
+        if kind == "starts":
             self._begins(data["task"], data["robot"], now)
         elif kind == "ends":
             self._ends(data["task"], data["robot"])
-        elif kind == "replanned":
-            self._replanned(data)
 
     def on_plan(self, now, plan):
-        self.robot_of = {name: route.robot for route in plan.routes for name in route.tasks}
+        self.stability.on_plan(plan)
 
     def _begins(self, name, robot, now):
         task = self.executor.ledger.tasks[name]
@@ -87,17 +84,6 @@ class Watcher:
         task, position = self.executor.ledger.tasks[name], self.world.position(robot)
         off = math.dist(position, place(actions.plan(task, self.executor.crew[robot].robot).exit))
         self.report.check(off < (ARRIVAL if self.report.bodies else 1e-6), f"{robot} ends {name} {off} m beside it")
-
-    def _replanned(self, data):
-        """Stability: what changed robot by the plans themselves, but for what had to."""
-        most = self.mission.rules.stability
-        after = {name: hand.robot.id for hand in self.executor.crew.values() for name in (*hand.done, *hand.route)}
-        changed = {name for name, robot in after.items() if self.robot_of.get(name, robot) != robot}
-        self.report.check(changed == set(data["moved"]), f"moved {changed}, but said {set(data['moved'])}")
-        free = {name for name in changed if self.robot_of[name] not in self.out}
-        self.report.counts["moved"] += len(changed)
-        if most is not None:
-            self.report.check(len(free - set(data["forced"])) <= most, f"{free} changed robot, at most {most} may")
 
 
 def trial(seed):

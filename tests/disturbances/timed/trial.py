@@ -11,6 +11,7 @@ from muster.execution.report import report_of
 from muster.execution.teams import units_of
 from muster.execution.travel import travel_of
 from tests import trials
+from tests.disturbances.stability import Stability
 from tests.disturbances.timed.missions import mission_of, with_members_failing
 from tests.disturbances.timed.still_possible import covers, still_possible
 from tests.execution.world import World, carry_out
@@ -29,50 +30,19 @@ class Report(trials.Report):
 
 
 class Watcher:
-    """Compares the team of each task before and after every new plan."""
+    """Hears of every new plan."""
 
-    def __init__(self, report, stability):
-        self.report, self.stability = report, stability
-        self.executor, self.teams, self.out = None, {}, set()
+    def __init__(self, stability):
+        self.executor, self.stability = None, stability
 
     def on_telemetry(self, now, robot, telemetry):
         pass
 
     def on_event(self, now, kind, data):
-        if kind in ("robot_fails", "robot_silent", "robot_stuck"):
-            self.out.add(data["robot"])
-        elif kind == "robot_returns":
-            self.out.discard(data["robot"])
-        elif kind == "replanned":
-            self._replanned(data)
+        self.stability.on_event(kind, data, self.executor)
 
     def on_plan(self, now, plan):
-        self.teams = _teams((route.robot, route.tasks) for route in plan.routes)
-
-    def _replanned(self, data):
-        crew = self.executor.crew.values()
-        teams = _teams((state.robot.id, (*state.done, *state.route)) for state in crew if not state.out)
-        moved = {name for name, team in teams.items() if self.teams.get(name, team) != team}
-        moved -= self.executor.ledger.ends_s.keys()
-        forced = set(data["forced"])
-        self.report.check(moved == set(data["moved"]), f"moved {moved}, but said {set(data['moved'])}")
-        self.report.check(
-            forced <= moved | data["dropped"].keys(), f"{forced} are forced, and neither moved nor dropped"
-        )
-        broken = {name for name in moved if self.teams[name] & self.out}
-        self.report.check(broken <= forced, f"{broken} have a robot that is out, and are not forced")
-        self.report.counts["moved"] += len(moved)
-        self.report.counts["moved by force"] += len(forced & moved)
-        if self.stability is not None:
-            self.report.check(len(moved - forced) <= self.stability, f"{moved - forced} moved, {self.stability} may")
-
-
-def _teams(routes):
-    teams = {}
-    for robot, tasks in routes:
-        for name in tasks:
-            teams.setdefault(name, set()).add(robot)
-    return teams
+        self.stability.on_plan(plan)
 
 
 def trial(seed):
@@ -85,7 +55,7 @@ def trial(seed):
         mission = with_members_failing(mission, plan, seed)
         world = World(mission)
         report.story += [f"planned by {first}, again by {replan.allocator.name}: {plan.routes}"]
-        watcher = Watcher(report, mission.rules.stability)
+        watcher = Watcher(Stability(report, mission.rules.stability))
         executor = watcher.executor = Executor(mission, plan, world.ports, replan=replan, observer=watcher)
         watcher.on_plan(0.0, executor.plan)
         carry_out(executor, world, step=STEP_S, until=ENDS_S)
