@@ -209,7 +209,7 @@ def test_without_the_extra_the_physics_table_says_what_to_install(monkeypatch):
 
 
 def test_table_of_laws():
-    """Of the smallest mission; all of them are in docs/measured."""
+    """Of the smallest mission."""
     rows = table_of(ByLaw(routes=("6.8",))).records()
     assert {row["law"] for row in rows} == set(LAWS)
     for row in rows:

@@ -69,10 +69,6 @@ class Ros:
         own = ("--kinematics", "differential-drive", "--speed", 3, "--yaw-rate", 6, *more)
         return self.start("-m", "muster.bridges.ros1.simulated_robot", name, "--at", x, y, *own)
 
-    def call(self, *asked):
-        """Calls services, and publishes tasks, in turn; prints what services answer."""
-        return self.start(self.file("caller.py"), *asked)
-
     def user(self):
         """One who asks in turn, as often as is wanted."""
         return User(self.start(Path(__file__).with_name("user.py")))

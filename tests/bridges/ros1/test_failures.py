@@ -54,14 +54,13 @@ def test_a_master_that_is_started_anew_does_not_stop_a_mission(own_ros, far):
 def test_another_controller_takes_the_first_ones_place_which_ends_with_a_line(ros, far):
     ros.robot("r_0", 0, 0)
     first = ros.muster(far, *QUICK, "--on-start")
-    called = ros.call("/command_interface/start")
+    assert ros.user().call("/command_interface/start")[0]
     until_it_drives(first)
     second = ros.muster(far, *QUICK)
     _, err = first.communicate(timeout=20)
     assert first.returncode == 2
     assert err.splitlines()[-1].startswith("node /muster: it was shut down, or another took its name; ")
     assert "muster/cli" not in err  # no traceback of the program; rospy may say what it met in its threads
-    called.communicate(timeout=20)
     out, err = second.communicate(timeout=40)
     assert second.returncode == 0, err
     assert json.loads(out)["tasks_done"] == ["t_1", "t_2"]
