@@ -30,7 +30,7 @@ from muster.mission.model import (
 def examples(count: int) -> settings:
     """So many examples, where the profile has 100; more where it has more (`HYPOTHESIS_PROFILE=search`)."""
     assert settings.default is not None
-    return settings(max_examples=count * settings.default.max_examples // 100)
+    return settings(max_examples=max(1, count * settings.default.max_examples // 100))
 
 
 TRICKY = (
