@@ -9,7 +9,7 @@ from tests.campaign.trial import trial
 
 pytest.importorskip("ortools", reason="needs the extra exact")
 pytest.importorskip("shapely", reason="needs the extra `map`")
-MISSIONS, CHUNK = 150, 25
+MISSIONS, CHUNK = 75, 25
 
 
 @pytest.mark.parametrize("first", range(0, MISSIONS, CHUNK))

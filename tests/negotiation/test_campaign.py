@@ -14,7 +14,7 @@ from muster.running.negotiation_trials import replay
 from muster.running.negotiation_trials.observer import Observer
 from muster.running.negotiation_trials.scenario import scenario_of
 
-RUNS, TIMED_RUNS, CHUNK = 1000, 200, 50
+RUNS, TIMED_RUNS, CHUNK = 300, 100, 50
 
 
 @pytest.mark.parametrize("first", range(0, RUNS, CHUNK))
