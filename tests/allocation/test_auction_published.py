@@ -6,6 +6,10 @@ from statistics import fmean
 import pytest
 
 import muster
+from muster.allocation.allocator import make_parameters
+from muster.allocation.problem import Problem
+from muster.allocation.registry import ALLOCATORS
+from muster.allocation.stop import Stop
 from muster.library import as_corrected, mission_names, published
 from muster.verification.travel import Travel
 
@@ -154,12 +158,11 @@ def test_market_comes_near_the_best_known_plan_of_20_survivors():
     assert fmean(seconds) <= 1.03 * BEST_KNOWN_S
 
 
-def admissible(name, allocator, **options):
-    mission = muster.load(name)
-    plan = muster.solve(mission, allocator, **options)
-    verdict = muster.verify(mission, plan)
+def admissible(problem, allocator, stop, **params):
+    plan = ALLOCATORS[allocator].solve(problem, stop, params=make_parameters(ALLOCATORS[allocator], params))
+    verdict = muster.verify(problem.mission, plan)
     assert verdict.violations == ()
-    assert plan.objective_value == pytest.approx(verdict.value(), rel=max(1e-9, Travel(mission).tolerance))
+    assert plan.objective_value == pytest.approx(verdict.value(), rel=max(1e-9, Travel(problem.mission).tolerance))
 
 
 OTHERS = ("berlin52", "eil51", "eil76", "collapsed-building")  # files of other kinds; a mission for coalitions
@@ -168,15 +171,17 @@ SHIPPED = [name for name in mission_names() if name not in OTHERS]
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_auctions_of_every_kind_are_admissible(name):
-    """Of missions over a map, whose ways take seconds to find, each option once."""
+    """Of missions over a map, which the judge finds ways through anew for each plan, each option once."""
+    problem = Problem.compile(muster.load(name))
     kinds = list(product(BIDS, PLACEMENTS, WINNERS))
-    if muster.load(name).map is not None:
+    if problem.mission.map is not None:
         kinds = list(zip(BIDS, cycle(PLACEMENTS), cycle(WINNERS), strict=False))
     for bid, placement, winner in kinds:
-        admissible(name, "auction", bid=bid, placement=placement, winner=winner)
+        admissible(problem, "auction", Stop(), bid=bid, placement=placement, winner=winner)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_markets_are_admissible(name):
-    for bid in (None, "total"):
-        admissible(name, "market", bid=bid, iterations=3, annealing_steps=300)
+    problem = Problem.compile(muster.load(name))
+    for bid in ({}, {"bid": "total"}):
+        admissible(problem, "market", Stop(iterations=3), **bid, annealing_steps=300)

@@ -83,18 +83,9 @@ def test_the_plan_is_that_of_threads(address):
     assert not ray.is_initialized()
 
 
-def test_from_outside_of_the_cluster(cluster):
-    port = cluster.head_node._ray_params.ray_client_server_port
-    by_threads, by_ray = (
-        muster.solve(MISSION, "search", iterations=500, seed=4, parts=4, **where)
-        for where in ({}, {"ray": f"ray://127.0.0.1:{port}"})
-    )
-    assert by_ray.routes == by_threads.routes
-
-
-def test_joining_from_outside_is_tried_again(cluster, monkeypatch):
+def test_from_outside_of_the_cluster_joining_is_tried_again(cluster, monkeypatch):
     """Where the process that Ray starts for us is dead at once; but not for ever."""
-    init, failures = ray.init, [2]
+    init, failures = ray.init, [1]
 
     def fail_at_first(**options):
         if failures[0]:
@@ -104,20 +95,14 @@ def test_joining_from_outside_is_tried_again(cluster, monkeypatch):
 
     monkeypatch.setattr(ray, "init", fail_at_first)
     outside = f"ray://127.0.0.1:{cluster.head_node._ray_params.ray_client_server_port}"
-    with joined(outside) as workers:
-        assert workers.count == 2
+    by_threads, by_ray = (
+        muster.solve(MISSION, "search", iterations=500, seed=4, parts=4, **where) for where in ({}, {"ray": outside})
+    )
+    assert by_ray.routes == by_threads.routes
     failures[0] = 4
     with pytest.raises(ParameterError, match=r"no cluster \(Starting Ray client server failed"), joined(outside):
         pass
     assert failures == [1]
-
-
-def test_within_a_time(address):
-    plan = muster.solve(MISSION, "search", time_limit=4.0, parts=4, ray=address)
-    assert plan.complete
-    assert muster.verify(MISSION, plan).violations == ()
-    values = [value for _, value in plan.history]
-    assert values == sorted(values, reverse=True)
 
 
 def at_work(cluster):
@@ -129,23 +114,27 @@ def at_work(cluster):
 
 
 @contextmanager
-def ctrl_c_when(begun, then_s):
-    """Ctrl-C, so long after something has begun; none if the block has ended before."""
+def once_both_work(cluster, then_s, act):
+    """Act so long after both nodes have begun a part; never if the block has ended before."""
     over = threading.Event()
 
-    def press():
-        while not begun() and not over.wait(0.1):
+    def wait():
+        while at_work(cluster) < 2 and not over.wait(0.1):
             pass
         if not over.wait(then_s):
-            os.kill(os.getpid(), signal.SIGINT)
+            act()
 
-    presses = threading.Thread(target=press)
-    presses.start()
+    waits = threading.Thread(target=wait)
+    waits.start()
     try:
         yield
     finally:
         over.set()
-        presses.join()
+        waits.join()
+
+
+def ctrl_c():
+    os.kill(os.getpid(), signal.SIGINT)
 
 
 def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(cluster, address, tmp_path, capsys):
@@ -153,7 +142,7 @@ def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(cluster, address
     mission.write_text(yaml_text(MISSION))
     muster.solve(MISSION, "greedy").save(start)
     words = f"solve {mission} --ray {address} --set parts=2 --iterations 1000000000 --start {start} -o {plan}"
-    with ctrl_c_when(lambda: at_work(cluster) == 2, then_s=5.0):
+    with once_both_work(cluster, 2.0, ctrl_c):
         assert run(words.split()) == 130
     written = read_plan(plan)
     assert muster.verify(muster.load(mission), written).violations == ()
@@ -221,12 +210,13 @@ def test_where_the_head_is_lost_parts_keep_their_routes(address, caplog):
     assert sorted(j for route in better for j in route) == list(range(600))
 
 
-def test_jobs_end_when_it_is_time(address):
+def test_jobs_end_when_it_is_time(cluster, address):
     """Those at work return the best they have; those that have not begun, nothing."""
     endless = [replace(job, limits=Limits(None, 10**9)) for job in jobs(improvement(lambda seed: None))]
-    with joined(address) as workers:
+    stop = Stop()
+    with joined(address) as workers, once_both_work(cluster, 3.0, stop.interrupt):
         assert workers.count == 2
-        offers = list(workers.map(endless, Stop(time_limit=20.0)))
+        offers = list(workers.map(endless, stop))
     held = [offer for offer in offers if offer is not None]
     assert 1 <= len(held) <= 2  # how many have begun by then is up to Ray, and how busy the machine is
     assert all(sorted(offer.routes[0]) == list(range(20)) for offer in held)
