@@ -59,7 +59,7 @@ def test_refuses(capsys, arguments, message):
 
 def test_quick_study_prints_all_tables(capsys, tmp_path):
     file = tmp_path / "study.json"
-    assert run(["study", "thesis-3.3", "--quick", "--workers", "2", "-o", str(file)]) == 0
+    assert run(["study", "thesis-3.3", "--quick", "--iterations", "50", "--workers", "2", "-o", str(file)]) == 0
     captured = capsys.readouterr()
     assert captured.err == ""
     report = json.loads(file.read_text(encoding="utf-8"))

@@ -105,20 +105,17 @@ def test_motion_capture_says_where_robots_are(ros, one):
     assert "expected a topic such as /vrpn_client_node/{robot}/pose" in err
 
 
-def test_robots_are_steered_by_the_method_that_is_asked_for(ros, one):
-    """The thesis' node RVO_planner; who finds the way itself is not steered."""
-    ros.robot("r_0", 0, 0)
-    tasks, _ = done(ros.muster(one, *QUICK, "--avoidance", "rvo", "--allocator", "greedy"))
-    assert set(tasks) == {"t_1", "t_2"}
+def test_who_finds_the_way_itself_is_not_steered(ros, one):
     _, err = ros.muster(one, *QUICK, "--avoidance", "rvo", "--drive", "goals").communicate(timeout=20)
     assert err == "--avoidance rvo with --drive goals; expected --drive cmd_vel\n"
 
 
 def test_tasks_routes_and_robots_are_drawn_for_rviz(ros, one):
+    """Of robots that are steered by the method that is asked for: the thesis' node RVO_planner."""
     pytest.importorskip("visualization_msgs", reason="python3-visualization-msgs is not installed")
     ros.robot("r_0", 0, 0)
     listener = ros.listener("/muster/markers=visualization_msgs/MarkerArray")
-    tasks, _ = done(ros.muster(one, *QUICK, "--markers"))
+    tasks, _ = done(ros.muster(one, *QUICK, "--markers", "--avoidance", "rvo", "--allocator", "greedy"))
     drawn = [data["markers"] for _, data in listener.heard()]
     first, last = ([marker for marker in some if marker["action"] == 0] for some in (drawn[1], drawn[-1]))
     assert all(marker["header"]["frame_id"] == "map" for marker in first)
@@ -131,7 +128,7 @@ def test_tasks_routes_and_robots_are_drawn_for_rviz(ros, one):
         [m["color"]["g"] for m in some if m["ns"] == "tasks"] for some in (first, last)
     )
     assert open_last == done_last != done_first  # both are done at the end
-    assert len(tasks) == 2
+    assert set(tasks) == {"t_1", "t_2"}
 
 
 def test_a_frame_that_nothing_ties_to_the_map_is_one_line(ros, one):
