@@ -2,8 +2,7 @@
 # Builds the core with the address and undefined-behaviour sanitizers into an environment of its own, build/sanitized,
 # and runs the tests that exercise it, with few examples of each property; those of the Ray cluster, which is not installed
 # there, are skipped, and so are those of the planning doors: a server's worker may take too little memory for the
-# sanitizers' shadow of it. Left out is what exercises Python, SciPy or MuJoCo alone. The first report of a sanitizer ends
-# the run with an error.
+# sanitizers' shadow of it. The first report of a sanitizer ends the run with an error.
 set -eu
 python=${PYTHON:-python3}
 environment=build/sanitized
@@ -22,7 +21,5 @@ ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
 HYPOTHESIS_PROFILE=few \
     "$environment/bin/python" -m pytest -p no:cacheprovider -n 3 --dist loadgroup --max-worker-restart 0 -rs \
-    tests/core tests/allocation tests/conformance tests/motion/avoidance tests/motion/paths tests/motion/test_grid.py \
-    tests/simulation --ignore tests/core/test_stub.py --ignore tests/conformance/test_planning_doors.py \
-    --ignore tests/allocation/test_bounds.py --ignore tests/allocation/test_bundle_clearing.py \
-    --ignore-glob 'tests/allocation/test_consensus*' --ignore tests/simulation/physics
+    tests/core tests/allocation tests/conformance tests/motion tests/simulation \
+    --ignore tests/core/test_stub.py --ignore tests/conformance/test_planning_doors.py

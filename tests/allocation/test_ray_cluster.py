@@ -105,6 +105,14 @@ def test_from_outside_of_the_cluster_joining_is_tried_again(cluster, monkeypatch
     assert failures == [1]
 
 
+def test_within_a_time(address):
+    plan = muster.solve(MISSION, "search", time_limit=4.0, parts=4, ray=address)
+    assert plan.complete
+    assert muster.verify(MISSION, plan).violations == ()
+    values = [value for _, value in plan.history]
+    assert values == sorted(values, reverse=True)
+
+
 def at_work(cluster):
     """How many of the cluster's workers do a part at this moment, as Ray names their processes."""
     raylets = [one.process.pid for node in cluster.list_all_nodes() for one in node.all_processes["raylet"]]

@@ -254,7 +254,7 @@ def test_a_mission_without_tasks(muster):
         flags = ["-a", allocator, "--iterations", 3, "-o", "p.json", "--require-complete"]
         assert muster("solve", "idle.yaml", *flags)[0] == 0
         assert muster("verify", "idle.yaml", "p.json")[0] == 0
-    assert muster("explain", "idle.yaml", "p.json")[0] == 0
+        assert muster("explain", "idle.yaml", "p.json")[0] == 0
     pictures = ["--plot", "p.png", "--gantt", "g.png"]
     assert muster("solve", "idle.yaml", "--start", "p.json", "--iterations", 3, *pictures)[0] == 0
 
