@@ -114,23 +114,36 @@ def test_within_a_time(address):
 
 
 def at_work(cluster):
-    """How many of the cluster's workers do a part at this moment, as Ray names their processes."""
+    """How many of the cluster's workers do a part at this moment, after the second or so that its start takes them.
+
+    In time of the processor, which does not depend on what else this machine does; names are as Ray gives them.
+    """
     raylets = [one.process.pid for node in cluster.list_all_nodes() for one in node.all_processes["raylet"]]
     begun = [file.read_text() for pid in raylets for file in Path(f"/proc/{pid}/task").glob("*/children")]
-    names = [Path(f"/proc/{pid}/cmdline") for pids in begun for pid in pids.split()]
-    return sum(name.exists() and name.read_bytes().startswith(b"ray::_done_by_worker") for name in names)
+    return sum(used_s(Path("/proc", pid)) > 3.0 for pids in begun for pid in pids.split())
+
+
+def used_s(process):
+    """Seconds of the processor that a worker has used; 0 for one that does no part, or has just ended."""
+    try:
+        if not process.joinpath("cmdline").read_bytes().startswith(b"ray::_done_by_worker"):
+            return 0.0
+        figures = process.joinpath("stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return sum(int(ticks) for ticks in figures[11:13]) / os.sysconf("SC_CLK_TCK")
 
 
 @contextmanager
-def once_both_work(cluster, then_s, act):
-    """Act so long after both nodes have begun a part; never if the block has ended before."""
-    over = threading.Event()
+def once_both_work(cluster, act, monkeypatch):
+    """Act while both nodes work on a part, or after two minutes; not if the block ends before. Workers may be slow."""
+    monkeypatch.setattr("muster.allocation.ray_cluster._RETURNED_WITHIN_S", 60.0)
+    over, until = threading.Event(), time.monotonic() + 120
 
     def wait():
-        while at_work(cluster) < 2 and not over.wait(0.1):
-            pass
-        if not over.wait(then_s):
-            act()
+        while not over.wait(0.1):
+            if at_work(cluster) == 2 or time.monotonic() > until:
+                return act()
 
     waits = threading.Thread(target=wait)
     waits.start()
@@ -145,12 +158,12 @@ def ctrl_c():
     os.kill(os.getpid(), signal.SIGINT)
 
 
-def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(cluster, address, tmp_path, capsys):
+def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(cluster, address, tmp_path, capsys, monkeypatch):
     start, plan, mission = tmp_path / "start.json", tmp_path / "plan.json", tmp_path / "mission.yaml"
     mission.write_text(yaml_text(MISSION))
     muster.solve(MISSION, "greedy").save(start)
     words = f"solve {mission} --ray {address} --set parts=2 --iterations 1000000000 --start {start} -o {plan}"
-    with once_both_work(cluster, 2.0, ctrl_c):
+    with once_both_work(cluster, ctrl_c, monkeypatch):
         assert run(words.split()) == 130
     written = read_plan(plan)
     assert muster.verify(muster.load(mission), written).violations == ()
@@ -218,15 +231,15 @@ def test_where_the_head_is_lost_parts_keep_their_routes(address, caplog):
     assert sorted(j for route in better for j in route) == list(range(600))
 
 
-def test_jobs_end_when_it_is_time(cluster, address):
+def test_jobs_end_when_it_is_time(cluster, address, monkeypatch):
     """Those at work return the best they have; those that have not begun, nothing."""
     endless = [replace(job, limits=Limits(None, 10**9)) for job in jobs(improvement(lambda seed: None))]
     stop = Stop()
-    with joined(address) as workers, once_both_work(cluster, 3.0, stop.interrupt):
+    with joined(address) as workers, once_both_work(cluster, stop.interrupt, monkeypatch):
         assert workers.count == 2
         offers = list(workers.map(endless, stop))
     held = [offer for offer in offers if offer is not None]
-    assert 1 <= len(held) <= 2  # how many have begun by then is up to Ray, and how busy the machine is
+    assert len(held) >= 2  # a worker that has returned one may begin another before that is cancelled
     assert all(sorted(offer.routes[0]) == list(range(20)) for offer in held)
 
 

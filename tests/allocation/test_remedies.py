@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from tests.all_plans import AllPlans
 from tests.allocation.test_conflicts import crowded, judge, mission, robot, task
@@ -294,8 +294,13 @@ def test_what_is_said_of_six_tasks_is_true(seed):
     check_all(random_mission(seed, tasks=6, robots=2))
 
 
+LATENESS = mission([robot(), robot("r_1")], [task("0", 0, 0), task("1", 0, 1)], objective="lateness")
+"""Where no task is ever late, any place costs the same; the remedy names the one that takes least."""
+
+
 @examples(50)
 @given(asked=tiny_missions(max_robots=2, max_tasks=4))
+@example(asked=LATENESS)
 def test_what_is_said_of_tiny_missions_is_true(asked):
     check_all(asked)
 

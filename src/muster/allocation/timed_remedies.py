@@ -112,7 +112,7 @@ def _lifted_and_tried(
     found = _searched(opened, routes, at, of) if searched else _placed(problem, opened, routes, i, j, at, of)
     if found is None:
         return None
-    needed = _needed(problem, opened, found, i, j, remedy)
+    needed = _needed(problem, opened, found, i, j, remedy, as_is=not searched)
     target = changed(problem, needed, i, j)
     plan = bare_plan(target, _as_named(opened, target, found))
     return replace(needed, enough=True, routes=plan.routes) if judge(target.mission, plan, target.ignored) else None
@@ -162,7 +162,7 @@ def _searched(opened: Problem, rest: Routes, at: int, of: int) -> Routes | None:
 def _lack(
     problem: Problem, opened: Problem, routes: Routes, found: core.Inspection, i: int, j: int, at: int, of: int
 ) -> tuple[int, float, float]:
-    """What a plan needs beyond the limits of task and robot: kinds of change, seconds, capacity."""
+    """What a plan needs beyond the limits of task and robot, kinds of change and seconds, then its robot's usage."""
     begin, end, over = _times(opened, routes, found, at, of)
     rules = problem.timed_rules
     close = rules.windows[j][-1][1] if rules.windows[j] else math.inf
@@ -171,8 +171,8 @@ def _lack(
         for time, limit in ((begin, close), (end, float(rules.deadline[j])), (over, float(rules.available_until[i])))
         if time > limit * (1 + ROUNDING)
     ]
-    used = max(0.0, found.usages[at] - float(problem.capacity[i]))
-    return len(beyond) + (used > 0), sum(beyond), used
+    used = found.usages[at]
+    return len(beyond) + (used > problem.capacity[i]), sum(beyond), used
 
 
 def _times(opened: Problem, routes: Routes, found: core.Inspection, at: int, of: int) -> tuple[float, float, float]:
@@ -185,8 +185,13 @@ def _times(opened: Problem, routes: Routes, found: core.Inspection, at: int, of:
     return begin, end, over
 
 
-def _needed(problem: Problem, opened: Problem, routes: Routes, i: int, j: int, remedy: Remedy) -> Remedy:
-    """The remedy with the times and the capacity that routes need, and what is proven to be needed."""
+def _needed(
+    problem: Problem, opened: Problem, routes: Routes, i: int, j: int, remedy: Remedy, *, as_is: bool
+) -> Remedy:
+    """The remedy with the times and the capacity that routes need, and what is proven to be needed.
+
+    `as_is` tells whether these are the routes of the plan as it is, with the task.
+    """
     at, of = opened.robot_index[remedy.robot], opened.task_index[problem.tasks[j].id]
     inspection = core.Inspection(opened.core, routes)
     begin, end, over = _times(opened, routes, inspection, at, of)
@@ -205,4 +210,5 @@ def _needed(problem: Problem, opened: Problem, routes: Routes, i: int, j: int, r
     now = remedy.capacity.now
     used = inspection.usages[at] / (1.0 - problem.mission.rules.capacity_reserve)
     enough = None if now is None else max(used, now)
-    return replace(remedy, changes=changes, capacity=CapacityChange(now=now, as_is=used, enough=enough))
+    capacity = CapacityChange(now=now, as_is=used if as_is else None, enough=enough)
+    return replace(remedy, changes=changes, capacity=capacity)

@@ -113,7 +113,8 @@ def test_ctrl_c_lets_robots_stand(ros, mission):
             break
     time.sleep(0.5)
     carried.send_signal(signal.SIGINT)
-    assert carried.wait(timeout=20) == 130
+    _, rest = carried.communicate(timeout=20)
+    assert carried.returncode == 130, rest
     said = heard.heard()
     for robot in ("r_0", "r_1"):
         last = [data for topic, data in said if topic == f"/{robot}/cmd_vel"][-1]

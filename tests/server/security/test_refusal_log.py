@@ -1,4 +1,4 @@
-"""What is on its way to the audit log when the server ends."""
+"""Logins and refusals in the audit log, and what of it is on its way there when the server ends."""
 
 import asyncio
 
@@ -33,3 +33,23 @@ def test_a_database_that_does_not_answer_keeps_no_server_from_ending(monkeypatch
         await asyncio.Event().wait()
 
     _settled(keep, monkeypatch)
+
+
+def test_an_entry_tells_how_many_refusals_were_left_out_before_it():
+    now_s, kept = 0.0, []
+
+    async def keep(who, verb, data):
+        kept.append((who.address, data))
+
+    async def story():
+        nonlocal now_s
+        audit = Audit(lambda: keep, clock=lambda: now_s)
+        for address in ("10.0.0.1", "10.0.0.1", "10.0.0.1", "10.0.0.2"):
+            audit.forbade(User("wall", "watch", address), "run.pause", "no")
+        now_s = 10.0
+        audit.forbade(User("wall", "watch", "10.0.0.1"), "run.pause", "no")
+        await audit.settle()
+
+    asyncio.run(story())
+    said = {"why": "no", "command": "run.pause"}
+    assert kept == [("10.0.0.1", said), ("10.0.0.2", said | {"left_out": 2}), ("10.0.0.1", said)]
