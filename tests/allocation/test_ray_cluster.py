@@ -141,9 +141,10 @@ def once_both_work(cluster, act, monkeypatch):
     over, until = threading.Event(), time.monotonic() + 120
 
     def wait():
-        while not over.wait(0.1):
-            if at_work(cluster) == 2 or time.monotonic() > until:
-                return act()
+        while at_work(cluster) < 2 and time.monotonic() < until:
+            if over.wait(0.1):
+                return
+        act()
 
     waits = threading.Thread(target=wait)
     waits.start()
