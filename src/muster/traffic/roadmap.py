@@ -1,0 +1,198 @@
+"""The roadmap: points and straight lanes that robots share, and which of them are in each other's way.
+
+A robot stands at a point or moves along an edge. Two robots of radii r_i and r_j are in each other's way where their
+centres come nearer than r_i + r_j + margin. Which points an edge comes near to is worked out once, for two of the widest
+robots ([hoenig2018] annotates roadmaps so); what follows from it for two smaller ones is found by their own radii.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.mission.errors import ParameterError
+from muster.motion.free_space import GridSpace, PolygonSpace, Space
+from muster.motion.grid import Grid
+from muster.traffic.edge_conflicts import conflicts
+from muster.traffic.lane_network import Network, network
+
+Bools = npt.NDArray[np.bool_]
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+MARGIN_M = 0.02
+"""What two robots keep between them beyond touching."""
+_MOST_POINTS = 40_000
+"""About as many points has a roadmap of open space at most: there the lattice is made coarser."""
+
+
+@dataclass(frozen=True, eq=False)
+class Roadmap:
+    """Points, directed straight edges, and the conflicts between them; map frame.
+
+    Parameters
+    ----------
+    points
+        (n, 2) metres.
+    edges
+        (m, 2): from, to; numbers of points.
+    clearance_m
+        (m,): a robot of `radius_m` keeps at least so much more from every obstacle.
+    radius_m, margin_m
+        of the widest robot; what two robots keep between them beyond touching.
+    reach_start, reach_point, reach_m
+        (m + 1,), (l,), (l,): the points that a robot on edge k comes near to, by number, are
+        `reach_point[reach_start[k]:reach_start[k + 1]]`; `reach_m` is how near its centre comes. The end of the edge is
+        one of them, at 0. Not among them are its beginning, and the points from which it only moves away.
+    places
+        (k,): for each place that was to be joined its point; -1 where no way leads there.
+    capacity
+        (m,): how many robots may be on an edge at once; 0 where distance alone decides.
+    speed_mps
+        (m,): the greatest speed on an edge; inf where robots alone decide.
+    names
+        of the points of given lanes, by number; empty where the roadmap was made from a map.
+    """
+
+    points: Floats
+    edges: Indices
+    clearance_m: Floats
+    radius_m: float
+    margin_m: float
+    reach_start: Indices
+    reach_point: Indices
+    reach_m: Floats
+    places: Indices
+    capacity: Indices
+    speed_mps: Floats
+    names: tuple[str, ...] = ()
+
+    @property
+    def reach(self) -> float:
+        """Metres: two of the widest robots whose centres are nearer are in each other's way."""
+        return 2 * self.radius_m + self.margin_m
+
+    @cached_property
+    def lengths_m(self) -> Floats:
+        """(m,)."""
+        return np.asarray(np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1))
+
+    @cached_property
+    def holding(self) -> Bools:
+        """(n,): whether others get past a robot that rests at a point: no passage for one leads through it."""
+        from muster.traffic.holding_places import holding_places
+
+        return holding_places(self.points, self.edges, self.reach_start, self.reach_point, self.reach)
+
+    @cached_property
+    def out_start(self) -> Indices:
+        """(n + 1,): the edges that begin at point u are those from `out_start[u]` to `out_start[u + 1]`."""
+        return np.searchsorted(self.edges[:, 0], np.arange(len(self.points) + 1))
+
+    def reached(self, edge: int) -> Indices:
+        """The points that a robot on an edge comes near to."""
+        return self.reach_point[self.reach_start[edge] : self.reach_start[edge + 1]]
+
+    def point_at(self, x: float, y: float) -> int:
+        """The nearest point that an edge leads to or from; of a place that was joined its own. Metres, map frame.
+
+        Raises
+        ------
+        ParameterError
+            for a roadmap without edges.
+        """
+        if self._tree is None:
+            raise ParameterError("roadmap: no edges; expected some")
+        _, k = self._tree.query((x, y))
+        return int(self._joined[k])
+
+    @cached_property
+    def _joined(self) -> Indices:
+        return np.unique(self.edges)
+
+    @cached_property
+    def _tree(self):  # type: ignore[no-untyped-def]
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self.points[self._joined]) if len(self._joined) else None
+
+    @classmethod
+    def of(
+        cls,
+        space: Space | None,
+        radius_m: float,
+        places: npt.ArrayLike = (),
+        *,
+        margin_m: float = MARGIN_M,
+    ) -> Roadmap:
+        """The roadmap of a free space, or of the open area around some places.
+
+        Parameters
+        ----------
+        space
+            free for the centre of the widest robot (`World.free_space(radius_m, "ground", three_d=False)`); None for the
+            open plane.
+        radius_m
+            of the widest robot; greater than 0.
+        places
+            (k, 2) or (k, 3): starts of robots and places of tasks, metres in the map frame; each gets a point of its own.
+
+        Raises
+        ------
+        ParameterError
+            for a space with heights, a radius or margin that is not a finite number above 0, or neither space nor places.
+        """
+        for name, value in (("radius_m", radius_m), ("margin_m", margin_m)):
+            if not 0 < value < math.inf:
+                raise ParameterError(f"{name}: {value}; expected a finite number above 0")
+        points = np.reshape(np.asarray(places, dtype=np.float64), (len(np.atleast_1d(places)), -1))[:, :2]
+        if isinstance(space, GridSpace | PolygonSpace):
+            made = network(space, 2 * radius_m + margin_m, points, _MOST_POINTS)
+        elif space is None and len(points):
+            made = network(_open(points, 2 * radius_m + margin_m), 2 * radius_m + margin_m, points, _MOST_POINTS)
+        else:
+            raise ParameterError("space: with heights or empty; expected the plane, or None and some places")
+        return cls.joined(made, radius_m, margin_m)
+
+    @classmethod
+    def joined(
+        cls,
+        made: Network,
+        radius_m: float,
+        margin_m: float,
+        *,
+        capacity: Indices | None = None,
+        speed_mps: Floats | None = None,
+        names: Sequence[str] = (),
+    ) -> Roadmap:
+        """The roadmap of a network of points and directed edges, with its conflicts."""
+        order = np.lexsort(made.edges.T[::-1])
+        edges = made.edges[order]
+        start, point, metres = conflicts(made.points, edges, 2 * radius_m + margin_m)
+        return cls(
+            points=made.points,
+            edges=edges,
+            clearance_m=made.clearance_m[order],
+            radius_m=radius_m,
+            margin_m=margin_m,
+            reach_start=start,
+            reach_point=point,
+            reach_m=metres,
+            places=made.places,
+            capacity=np.zeros(len(edges), dtype=np.int64) if capacity is None else capacity[order],
+            speed_mps=np.full(len(edges), np.inf) if speed_mps is None else speed_mps[order],
+            names=tuple(names),
+        )
+
+
+def _open(points: Floats, apart_m: float) -> GridSpace:
+    """The open plane around points, with room for some robots to pass on every side."""
+    low, high = points.min(axis=0) - 4 * apart_m, points.max(axis=0) + 4 * apart_m
+    cell = max(apart_m / 6, float((high - low).max()) / 1000)
+    columns, rows = np.ceil((high - low) / cell).astype(int)
+    return GridSpace(Grid(np.zeros((rows, columns), dtype=np.bool_), cell, (float(low[0]), float(low[1]), 0.0)))
