@@ -24,5 +24,6 @@ void bind_tree(nanobind::module_& m);
 void bind_avoidance(nanobind::module_& m);
 void bind_crowd_world(nanobind::module_& m);
 void bind_passing_order(nanobind::module_& m);
+void bind_safe_intervals(nanobind::module_& m);
 
 }  // namespace muster

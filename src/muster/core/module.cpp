@@ -27,4 +27,5 @@ NB_MODULE(_core, m) {
   muster::bind_avoidance(m);
   muster::bind_crowd_world(m);
   muster::bind_passing_order(m);
+  muster::bind_safe_intervals(m);
 }

@@ -17,6 +17,9 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;
+constexpr double kNearly = 1e-6;  // metres by which two may be nearer
+constexpr double kTailsToLeave = 4.0;
+constexpr int kTriesWhereLost = 4;  // times as many orders are tried where some find no path
 constexpr double kRestingInTheWay = 10.0;  // seconds that a path may be longer to rest out of the way
 
 double turned(double from, double to) {
@@ -26,7 +29,7 @@ double turned(double from, double to) {
 
 }  // namespace
 
-SafeIntervals::SafeIntervals(const SharedLanes& lanes, std::vector<char> rests, double margin)
+SafeIntervals::SafeIntervals(const SharedLanes& lanes, std::vector<bool> rests, double margin)
     : lanes_(lanes),
       rests_(std::move(rests)),
       margin_(margin),
@@ -38,6 +41,10 @@ SafeIntervals::SafeIntervals(const SharedLanes& lanes, std::vector<char> rests, 
 void SafeIntervals::clear() {
   for (auto& stays : stays_) stays.clear();
   for (auto& passes : passes_) passes.clear();
+}
+
+double SafeIntervals::apart(const Traveller& who, double radius) const {
+  return who.radius + radius + margin_ - kNearly;
 }
 
 // Half the time that a robot takes to get clear of a point: one that comes is as far away still.
@@ -59,9 +66,9 @@ const std::vector<SafeIntervals::Span>& SafeIntervals::safe(const Traveller& who
   std::vector<Span> taken;
   for (const Near& near : lanes_.around(point))
     for (const Stay& stay : stays_[near.point])
-      if (near.gap < who.radius + stay.radius + margin_) taken.push_back({stay.from - before, stay.until});
+      if (near.gap < apart(who, stay.radius)) taken.push_back({stay.from - before, stay.until});
   for (const Pass& pass : passes_[point])
-    if (pass.gap < who.radius + pass.radius + margin_) taken.push_back({pass.start - before, pass.start + before});
+    if (pass.gap < apart(who, pass.radius)) taken.push_back({pass.start - before, pass.start + before});
   std::ranges::sort(taken, {}, &Span::from);
   double from = -kNever;
   for (const Span& span : taken) {
@@ -78,7 +85,7 @@ double SafeIntervals::earliest(const Traveller& who, int lane, double from, doub
     moved = false;
     for (const Near& near : lanes_.reach(lane))
       for (const Stay& stay : stays_[near.point])
-        if (near.gap < who.radius + stay.radius + margin_ && from > stay.from - before && from < stay.until - kRounding) {
+        if (near.gap < apart(who, stay.radius) && from > stay.from - before && from < stay.until - kRounding) {
           from = stay.until;
           moved = true;
         }
@@ -131,7 +138,7 @@ bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, do
     if (!inside) {  // too near to somebody: it may leave as soon as it likes
       until = kNever;
       for (const Pass& pass : passes_[who.start])
-        if (pass.gap < who.radius + pass.radius + margin_) until = std::min(until, pass.start - tail(who));
+        if (pass.gap < apart(who, pass.radius)) until = std::min(until, pass.start - tail(who));
     }
     start.until = until;
   }
@@ -211,10 +218,21 @@ Paths SafeIntervals::in_order(std::span<const Traveller> travellers, std::span<c
   Paths paths{{}, std::vector<double>(travellers.size(), kNever)};
   for (const int k : order)
     if (travellers[k].fixed) reserve(travellers[k], {}, paths.ends[k] = 0.0);
+  // Those that come later in the order get some time to leave where they start.
   for (const int k : order) {
+    const Traveller& who = travellers[k];
+    if (!who.fixed) stays_[who.start].push_back({-kNever, who.ready + kTailsToLeave * tail(who), who.radius});
+  }
+  for (const int k : order) {
+    const Traveller& who = travellers[k];
+    if (who.fixed) continue;
+    std::erase_if(stays_[who.start], [](const Stay& stay) { return stay.from == -kNever; });
     std::vector<TimedMove> moves;
-    if (travellers[k].fixed || !path(travellers[k], moves, paths.ends[k])) continue;
-    reserve(travellers[k], moves, paths.ends[k]);
+    if (path(who, moves, paths.ends[k])) {
+      reserve(who, moves, paths.ends[k]);
+    } else {
+      stays_[who.start].push_back({-kNever, kNever, who.radius});
+    }
     for (TimedMove& move : moves) {
       move.traveller = k;
       paths.moves.push_back(move);
@@ -240,7 +258,7 @@ Paths SafeIntervals::best_of(std::span<const Traveller> travellers, int tries, s
   Random random(seed);
   Paths best;
   std::pair<int, double> least{n + 1, kNever};
-  for (int k = 0; k < tries; ++k) {
+  for (int k = 0; k < tries || (least.first > 0 && k < kTriesWhereLost * tries); ++k) {
     Paths paths = in_order(travellers, order);
     int lost = 0;
     double sum = 0.0;

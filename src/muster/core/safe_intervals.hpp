@@ -41,7 +41,7 @@ struct Paths {
 class SafeIntervals {
  public:
   // `rests`: whether a robot may rest at a point without standing in the way of others.
-  SafeIntervals(const SharedLanes& lanes, std::vector<char> rests, double margin);
+  SafeIntervals(const SharedLanes& lanes, std::vector<bool> rests, double margin);
 
   // Paths of all travellers, the first of the order first.
   Paths in_order(std::span<const Traveller> travellers, std::span<const int> order);
@@ -66,6 +66,7 @@ class SafeIntervals {
   };
 
   void clear();
+  double apart(const Traveller& who, double radius) const;
   double tail(const Traveller& who) const;
   bool path(const Traveller& who, std::vector<TimedMove>& moves, double& end);
   void reserve(const Traveller& who, std::span<const TimedMove> moves, double end);
@@ -76,7 +77,7 @@ class SafeIntervals {
   const std::vector<double>& metres_to(int goal, double radius);
 
   const SharedLanes& lanes_;
-  std::vector<char> rests_;
+  std::vector<bool> rests_;
   double margin_;
   std::vector<std::vector<Stay>> stays_;
   std::vector<std::vector<Pass>> passes_;

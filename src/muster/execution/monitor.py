@@ -55,6 +55,8 @@ def is_stuck(state: RobotState, now: float, limits: Limits) -> bool:
         return now > state.nearest_s + 2 * state.work_s + limits.stuck_after_s
     if state.activity not in (Activity.DRIVING, Activity.RETURNING):
         return False
+    if state.telemetry is not None and state.telemetry.waits_for is not None:
+        state.nearest_s = now
     left = state.way_left_m
     if left < state.nearest_m - _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s:
         state.nearest_m, state.nearest_s = left, now

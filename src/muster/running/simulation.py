@@ -27,6 +27,8 @@ from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.localisation import Localise
+from muster.running.robots_in_traffic import RobotsInTraffic
+from muster.traffic.managers import reserved
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.replanning import reallocation_by
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
@@ -99,6 +101,7 @@ class Simulation:
         seed: int = 0,
         dt_s: float = 0.1,
         avoidance: str = "orca",
+        traffic: str = "free",
         law: str = "profile",
         noise: Noise = NO_NOISE,
         wind: Wind = CALM,
@@ -124,7 +127,7 @@ class Simulation:
             rotor_level=rotor_level,
             seed=seed,
             dt_s=dt_s,
-            avoidance=avoidance,
+            avoidance="none" if traffic == "reserve" else avoidance,
             noise=noise,
         )
         if on_world is not None:
@@ -132,6 +135,8 @@ class Simulation:
         self._robots: RobotsInWorld = with_state_estimation(
             self._world, mission, pose=pose, localise=localise, seed=seed
         )
+        if traffic == "reserve":
+            self._robots = RobotsInTraffic(self._robots, self._world, reserved(mission, seed), mission)
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
@@ -289,6 +294,8 @@ class Simulation:
             self._world.recover(event.robot_returns)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
+            if isinstance(self._robots, RobotsInTraffic):
+                self._robots.join(event.robot_joins)
             if self._camera_search is not None:
                 self._camera_search.join(event.robot_joins)
 

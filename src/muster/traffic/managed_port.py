@@ -90,6 +90,11 @@ class ManagedPort:
         return bool(self._next())
 
     @property
+    def hold_s(self) -> float:
+        """Seconds for which it stays at its goal, at most."""
+        return sum(self._waypoints[k].hold_s for k in self._next())
+
+    @property
     def busy(self) -> bool:
         """Whether the robot does something at its goal: it is not to be sent elsewhere."""
         return bool(self._numbers) and self._sent_passed < self._marks + len(self._numbers) and self._at_goal

@@ -42,6 +42,12 @@ class Traveller:
         metres, where its moves begin.
     goal
         metres, where it is to go; None: anywhere.
+    heading_rad
+        at its start.
+    ready_s, hold_s
+        seconds for which it stays at its start, and at its goal.
+    stays
+        whether it stays at its goal for good; else it is expected to leave then.
     fixed
         whether it stays at its start in any case.
     """
@@ -49,7 +55,11 @@ class Traveller:
     robot: Robot
     start: Point
     goal: Point | None
-    fixed: bool
+    heading_rad: float = 0.0
+    ready_s: float = 0.0
+    hold_s: float = 0.0
+    stays: bool = True
+    fixed: bool = False
 
 
 class Move(NamedTuple):
@@ -169,15 +179,30 @@ class ReservedTraffic:
         travellers = []
         for part in self._parts:
             part.goal = self._goal(part)
-            fixed = part.broken or part.port.busy
-            travellers.append(Traveller(part.robot, self._order.end(part.number), part.goal, fixed))
+            travellers.append(self._traveller(part))
         stopped = set[int]()
         for traveller, to in self.plan(travellers):
             if traveller not in stopped and not self._order.append(self._parts[traveller].number, to):
                 stopped.add(traveller)
 
+    def _traveller(self, part: _Part) -> Traveller:
+        said, hold_s = part.port.heard, part.port.hold_s
+        return Traveller(
+            robot=part.robot,
+            start=self._order.end(part.number),
+            goal=part.goal,
+            heading_rad=0.0 if said is None else said.heading,
+            ready_s=hold_s if part.port.busy else 0.0,
+            hold_s=0.0 if part.port.busy else hold_s,
+            stays=not part.port.arrives,
+            fixed=part.broken,
+        )
+
     def _let_go(self, part: _Part) -> None:
         """Send a robot as far as it may go."""
+        if part.port.busy:
+            part.port.waits_for, part.to_go = None, False
+            return
         grant = self._order.grant(part.number)
         part.port.waits_for = self._parts[grant.waits_for].robot.id if grant.waits_for >= 0 else None
         part.to_go = grant.metres > _MOVED_M
