@@ -25,7 +25,7 @@ _CELLS = 12
 _FEWEST_CELLS = 6
 """Coarser maps are divided more finely."""
 _MOST_CELLS = 1_500_000
-_APART = 1 + 1e-9
+_APART = 1 + 1e-6
 """Points that are to be apart are so whatever float64 says."""
 _NEIGHBOURS = 2.0
 """Points up to so many times the pitch of the lattice from each other may be joined."""
@@ -111,7 +111,7 @@ def _cells(space: GridSpace | PolygonSpace, apart_m: float) -> Grid:
     """Cells that are free as a whole, small beside the distance of robots."""
     if isinstance(space, PolygonSpace):
         west, south, east, north = space.region.bounds
-        return grid_of(space, max(apart_m / _CELLS, math.sqrt((east - west) * (north - south) / _MOST_CELLS)))
+        return grid_of(space, max(apart_m * _APART / _CELLS, math.sqrt((east - west) * (north - south) / _MOST_CELLS)))
     grid = space.grid
     finer = math.ceil(grid.resolution_m * _FEWEST_CELLS / apart_m)
     finer = max(1, min(finer, math.isqrt(_MOST_CELLS // max(1, grid.blocked.size))))
@@ -143,13 +143,11 @@ def _with_places(lanes: Floats, places: Floats, is_free: npt.NDArray[np.bool_], 
     from scipy.spatial import cKDTree
 
     numbers = np.full(len(places), -1, dtype=np.int64)
-    points = lanes
-    for k in np.flatnonzero(is_free):
-        metres, at = cKDTree(points).query(places[k]) if len(points) else (math.inf, -1)
-        if metres > 1e-6 * pitch:
-            at, points = len(points), np.concatenate([points, places[k : k + 1]])
-        numbers[k] = at
-    return points, numbers
+    away, numbers[is_free] = cKDTree(lanes).query(places[is_free])
+    further = np.flatnonzero(is_free)[away > 1e-6 * pitch]
+    fresh, which = np.unique(places[further], axis=0, return_inverse=True)
+    numbers[further] = len(lanes) + which.ravel()
+    return np.concatenate([lanes, fresh]), numbers
 
 
 def _clearance(depth: Floats, points: Floats, pairs: Indices) -> Floats:
