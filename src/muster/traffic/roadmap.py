@@ -19,7 +19,8 @@ from muster.mission.errors import ParameterError
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
 from muster.traffic.edge_conflicts import conflicts
-from muster.traffic.lane_network import Network, network
+from muster.traffic.exact_ways import Network
+from muster.traffic.lane_network import network
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -150,7 +151,8 @@ class Roadmap:
         for name, value in (("radius_m", radius_m), ("margin_m", margin_m)):
             if not 0 < value < math.inf:
                 raise ParameterError(f"{name}: {value}; expected a finite number above 0")
-        points = np.reshape(np.asarray(places, dtype=np.float64), (len(np.atleast_1d(places)), -1))[:, :2]
+        given = np.asarray(places, dtype=np.float64)
+        points = given[:, :2] if given.size else np.zeros((0, 2))
         if isinstance(space, GridSpace | PolygonSpace):
             made = network(space, 2 * radius_m + margin_m, points, _MOST_POINTS)
         elif space is None and len(points):
