@@ -5,7 +5,7 @@ They are joined by exact shortest paths. Where all is joined already, this costs
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,8 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 _CANDIDATES = 12
-"""Nearest points that a place may be joined to straight."""
+"""Nearest points that a place may be joined to."""
+_SAME_M = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,18 +37,27 @@ class Network:
     places: Indices
 
     def with_way(self, start: int, way: Floats, end: int) -> Network:
-        """With the corners (k, 2) of a way between two points; nothing is known of its clearance but that it is free."""
+        """With the corners (k, 2) of a way between two points; of its clearance only that it is free is known."""
         first = len(self.points)
         numbers = [start, *range(first, first + len(way)), end]
         edges = np.concatenate([self.edges, np.array(list(pairwise(numbers)), dtype=np.int64)])
         clearance = np.concatenate([self.clearance_m, np.zeros(len(way) + 1)])
         return Network(np.concatenate([self.points, way]), edges, clearance, self.places)
 
-    def with_place(self, place: int, at: Floats) -> Network:
-        """With a point for a place."""
+    def with_way_back(self, count: int) -> Network:
+        """With the last so many edges in the other direction as well."""
+        edges = np.concatenate([self.edges, self.edges[-count:, ::-1]])
+        clearance = np.concatenate([self.clearance_m, self.clearance_m[-count:]])
+        return replace(self, edges=edges, clearance_m=clearance)
+
+    def with_point(self, at: Floats) -> Network:
+        return replace(self, points=np.concatenate([self.points, at[np.newaxis]]))
+
+    def with_place(self, place: int, point: int) -> Network:
+        """With a point, by number, as that of a place."""
         numbers = self.places.copy()
-        numbers[place] = len(self.points)
-        return Network(np.concatenate([self.points, at[np.newaxis]]), self.edges, self.clearance_m, numbers)
+        numbers[place] = point
+        return replace(self, places=numbers)
 
 
 def joined_exactly(made: Network, space: GridSpace | PolygonSpace, places: Floats) -> Network:
@@ -60,7 +70,7 @@ def joined_exactly(made: Network, space: GridSpace | PolygonSpace, places: Float
             made = _mended(made, groups, finder, part)
     for place in np.flatnonzero(made.places < 0):
         finder = finder or PathFinder(space)
-        made = _with_place(made, int(place), places[place], finder, lanes)
+        made = with_place(made, int(place), places[place], finder, lanes)
     return made
 
 
@@ -90,7 +100,7 @@ def _mended(made: Network, groups: list[Indices], finder: PathFinder, part: Any)
 
     if not groups:
         inside = part.representative_point()
-        return Network(np.concatenate([made.points, [[inside.x, inside.y]]]), made.edges, made.clearance_m, made.places)
+        return made.with_point(np.array([inside.x, inside.y]))
     joined = groups[0]
     for group in groups[1:]:
         away, near = cKDTree(made.points[joined]).query(made.points[group])
@@ -102,19 +112,43 @@ def _mended(made: Network, groups: list[Indices], finder: PathFinder, part: Any)
     return made
 
 
-def _with_place(made: Network, place: int, at: Floats, finder: PathFinder, lanes: int) -> Network:
-    """With a point for a place, joined straight to a near one, else by the shortest path to the nearest there is."""
+def with_place(
+    made: Network, place: int, at: Floats, finder: PathFinder | None, lanes: int, *, both_ways: bool = False
+) -> Network:
+    """With a point for a place, joined straight to a near one, else by the shortest path to the nearest there is.
+
+    Parameters
+    ----------
+    finder
+        of the free space; None where all is free.
+    lanes
+        the place is joined to one of the first so many points; one of them is its own where it is there.
+    both_ways
+        for a directed network: whether edges lead there and back.
+    """
     from scipy.spatial import cKDTree
 
     if not lanes:
         return made
-    _, near = cKDTree(made.points[:lanes]).query(at, k=min(_CANDIDATES, lanes))
+    away, near = cKDTree(made.points[:lanes]).query(at, k=min(_CANDIDATES, lanes))
     candidates = [int(k) for k in np.atleast_1d(near)]
-    seen = next((k for k in candidates if finder.clear(np.stack([at, made.points[k]]))), None)
-    if seen is not None:
-        return made.with_place(place, at).with_way(len(made.points), np.zeros((0, 2)), seen)
-    for k in candidates:
-        found = finder.path(at, made.points[k])
+    if np.atleast_1d(away)[0] < _SAME_M:
+        return made.with_place(place, candidates[0])
+    way = _way(at, made.points[candidates], finder)
+    if way is None:
+        return made
+    k, corners = way
+    there = made.with_point(at).with_place(place, len(made.points)).with_way(len(made.points), corners, candidates[k])
+    return there.with_way_back(len(corners) + 1) if both_ways else there
+
+
+def _way(at: Floats, points: Floats, finder: PathFinder | None) -> tuple[int, Floats] | None:
+    """The nearest of points to which a straight way leads, else a path: its number, and the corners of the way."""
+    for k, point in enumerate(points):
+        if finder is None or finder.clear(np.stack([at, point])):
+            return k, np.zeros((0, 2))
+    for k, point in enumerate(points):
+        found = finder.path(at, point) if finder is not None else None
         if isinstance(found, Path):
-            return made.with_place(place, at).with_way(len(made.points), found.points[1:-1], k)
-    return made
+            return k, found.points[1:-1]
+    return None

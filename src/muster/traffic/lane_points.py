@@ -3,7 +3,8 @@
 Three kinds of room, told apart by how wide the free space is for the centre of the widest robot, `apart` being the
 distance at which two such robots do not touch:
 
-- narrower than `apart` (a passage for one): points along the middle, the innermost first: the sill of a door, the end of a dead end;
+- narrower than `apart` (a passage for one): points along the middle, the innermost first: the sill of a door, the end
+  of a dead end;
 - between `apart` and twice that: two lanes, as far from the walls as they can be;
 - wider: a square lattice, shifted to where the most of its points are free.
 

@@ -36,7 +36,7 @@ def visible_pairs(sight: core.GridMap, depth: Floats, points: Floats, reach: flo
 
 
 def pruned(pairs: Indices, points: Floats, lanes: int) -> Indices:
-    """The pairs without those that a point of the lanes stands between: a Gabriel graph among points that see each other.
+    """The pairs without those that a point of the lanes stands between: a Gabriel graph of what sees each other.
 
     A pair goes where both its points see a third one from which the two appear at more than a right angle. Each pair
     that goes is replaced by two shorter ones, so what is connected stays so. [gabriel1969]
@@ -147,7 +147,7 @@ def detours(regions: Regions, points: Floats, pairs: Indices, sight: core.GridMa
 
 
 def ways_to_lanes(regions: Regions, points: Floats, hidden: Indices, sight: core.GridMap) -> tuple[Floats, Indices]:
-    """Further points (k, 2) and pairs (l, 2) that join points which see no lane, by number, to the point of their region."""
+    """Further points (k, 2) and pairs (l, 2) that join points which see no lane, by number, to that of their region."""
     ways = []
     for a in hidden.tolist():
         cell = regions.cell_at(points[a])
@@ -157,7 +157,7 @@ def ways_to_lanes(regions: Regions, points: Floats, hidden: Indices, sight: core
 
 
 def _cornered(ways: list[tuple[int, list[Floats], int]], count: int, sight: core.GridMap) -> tuple[Floats, Indices]:
-    """The corners (k, 2) of ways from one point to another, and the pairs (l, 2) along them; the first corner is `count`."""
+    """The corners (k, 2), numbered from `count`, of ways from one point to another, and the pairs (l, 2) along them."""
     found: list[Floats] = []
     pairs: list[tuple[int, int]] = []
     for a, way, b in ways:
