@@ -12,7 +12,7 @@ _NEARER_M = 1e-9
 
 
 def conflicts(points: Floats, edges: Indices, reach_m: float) -> tuple[Indices, Indices, Floats]:
-    """For each edge u -> v the points w that a robot on it comes near to: `start` (m + 1,), `point` (l,), `distance` (l,).
+    """For each edge u -> v the points w that a robot on it comes near to: start (m + 1,), point (l,), distance (l,).
 
     Those of edge k are at `start[k]` to `start[k + 1]`, by number; distances, in metres, are from w to the segment.
     v is one of them, at distance 0; u is not, nor is a point to which u is the nearest of the segment: from there the

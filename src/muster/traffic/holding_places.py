@@ -9,13 +9,11 @@ Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
-_AROUND = 2.5
+_AROUND = 2.0
 """Others get past where they do so within so many times the distance of the edges' ends."""
 
 
-def holding_places(
-    points: Floats, edges: Indices, reach_start: Indices, reach_point: Indices, reach_m: float
-) -> Bools:
+def holding_places(points: Floats, edges: Indices, reach_start: Indices, reach_point: Indices, reach_m: float) -> Bools:
     """For each point whether its neighbours stay joined, close by, by edges that do not come near to it: (n,).
 
     A point with one neighbour, or none, is at the end of a way and holds nobody up.
@@ -42,7 +40,6 @@ def holding_places(
     blocked = np.unique(np.repeat(np.arange(len(edges)), np.diff(reach_start)) * n + reach_point)
     # Copies of the graph, one around each point, side by side: node k of them is (centre, point).
     keys = around[:, 0] * n + around[:, 1]
-    start = np.searchsorted(around[:, 0], np.arange(n + 1))
     of_point = np.argsort(around[:, 1], kind="stable")
     first = np.searchsorted(around[of_point, 1], np.arange(n + 1))
     counts = np.diff(first)[edges[:, 0]]
@@ -63,7 +60,6 @@ def holding_places(
     least, most = np.full(n, len(keys)), np.full(n, -1)
     np.minimum.at(least, ends[:, 0], parts)
     np.maximum.at(most, ends[:, 0], parts)
-    del start
     return least >= most
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -13,10 +12,11 @@ from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.distance_field import distance_field
 from muster.motion.maps.raster import grid_of
-from muster.motion.paths import PathFinder
+from muster.traffic.exact_ways import Network, joined_exactly
 from muster.traffic.lane_points import Room, lane_points
-from muster.traffic.roadmap_edges import Regions, detours, pruned, visible_pairs
+from muster.traffic.roadmap_edges import Regions, detours, pruned, visible_pairs, ways_to_lanes
 
+Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
@@ -25,22 +25,10 @@ _CELLS = 12
 _FEWEST_CELLS = 6
 """Coarser maps are divided more finely."""
 _MOST_CELLS = 1_500_000
-_APART = 1 + 1e-9
+_APART = 1 + 1e-6
 """Points that are to be apart are so whatever float64 says."""
 _NEIGHBOURS = 2.0
 """Points up to so many times the pitch of the lattice from each other may be joined."""
-_CANDIDATES = 12
-"""Nearest points of lanes to which a place outside the free cells may be joined."""
-
-
-@dataclass(frozen=True, eq=False)
-class Network:
-    """Points (n, 2) in metres, directed edges (m, 2), their clearance (m,) in metres, and the point of each place."""
-
-    points: Floats
-    edges: Indices
-    clearance_m: Floats
-    places: Indices
 
 
 def network(space: GridSpace | PolygonSpace, apart_m: float, places: Floats, most_points: int) -> Network:
@@ -64,22 +52,22 @@ def network(space: GridSpace | PolygonSpace, apart_m: float, places: Floats, mos
     inside = grid.to_grid(places)
     is_free = np.array([_is_inside(free, place) for place in inside], dtype=np.bool_)
 
-    lanes = lane_points(Room.of(free, depth, apart), apart, pitch, inside[is_free])
-    lanes = _with_all_parts(free, depth, lanes)
+    lanes = _with_all_parts(free, depth, lane_points(Room.of(free, depth, apart), apart, pitch, inside[is_free]))
     reach = _NEIGHBOURS * pitch
     regions = Regions.of(free, lanes)
-    further, more = detours(regions, lanes, visible_pairs(sight, depth, lanes, reach), sight)
-    lanes = np.concatenate([lanes, further])
-    points, place_points = _with_places(lanes, inside, is_free, pitch)
+    bends, around = detours(regions, lanes, visible_pairs(sight, depth, lanes, reach), sight)
+    lanes = np.concatenate([lanes, bends])
+    points, numbers = _with_places(lanes, inside, is_free, pitch)
     seen = visible_pairs(sight, depth, points, reach)
     pairs = pruned(seen[(seen < len(lanes)).any(axis=1)], points, len(lanes))
-    pairs = np.unique(np.concatenate([pairs, np.sort(more, axis=1)]), axis=0)
-    clearance = np.asarray(_clearance(depth, points, pairs)) * cell
+    hidden = np.setdiff1d(np.arange(len(lanes), len(points)), pairs)
+    corners, ways = ways_to_lanes(regions, points, hidden, sight)
+    points = np.concatenate([points, corners])
+    pairs = np.unique(np.sort(np.concatenate([pairs, around, ways]), axis=1), axis=0)
     metres = grid.to_map(points)
-    metres[place_points[place_points >= 0]] = places[place_points >= 0]
-    made = Network(metres, pairs, clearance, place_points)
-    outside = np.flatnonzero(place_points < 0)
-    return _both_ways(_with_outside(made, space, places, outside, len(lanes)) if len(outside) else made)
+    metres[numbers[is_free]] = places[is_free]
+    made = Network(metres, pairs, _clearance(depth, points, pairs) * cell, numbers)
+    return _both_ways(joined_exactly(made, space, places))
 
 
 def _both_ways(made: Network) -> Network:
@@ -87,31 +75,11 @@ def _both_ways(made: Network) -> Network:
     return Network(made.points, edges, np.tile(made.clearance_m, 2), made.places)
 
 
-def _with_outside(
-    made: Network, space: GridSpace | PolygonSpace, places: Floats, outside: Indices, lanes: int
-) -> Network:
-    """With points for the places that are free in the space itself, though not in its cells; clearance 0 along the way."""
-    from scipy.spatial import cKDTree
-
-    finder, tree = PathFinder(space), cKDTree(made.points[:lanes])
-    points, pairs, numbers = list(made.points), [], made.places.copy()
-    for k in outside:
-        _, near = tree.query(places[k], k=min(_CANDIDATES, lanes))
-        seen = next((int(at) for at in np.atleast_1d(near) if finder.clear(np.stack([places[k], made.points[at]]))), None)
-        if seen is not None:
-            numbers[k] = len(points)
-            pairs.append((seen, len(points)))
-            points.append(places[k])
-    edges = np.concatenate([made.edges, np.reshape(np.array(pairs, dtype=np.int64), (-1, 2))])
-    clearance = np.concatenate([made.clearance_m, np.zeros(len(pairs))])
-    return Network(np.array(points), edges, clearance, numbers)
-
-
 def _cells(space: GridSpace | PolygonSpace, apart_m: float) -> Grid:
     """Cells that are free as a whole, small beside the distance of robots."""
     if isinstance(space, PolygonSpace):
         west, south, east, north = space.region.bounds
-        return grid_of(space, max(apart_m / _CELLS, math.sqrt((east - west) * (north - south) / _MOST_CELLS)))
+        return grid_of(space, max(apart_m * _APART / _CELLS, math.sqrt((east - west) * (north - south) / _MOST_CELLS)))
     grid = space.grid
     finer = math.ceil(grid.resolution_m * _FEWEST_CELLS / apart_m)
     finer = max(1, min(finer, math.isqrt(_MOST_CELLS // max(1, grid.blocked.size))))
@@ -119,13 +87,13 @@ def _cells(space: GridSpace | PolygonSpace, apart_m: float) -> Grid:
     return Grid(blocked, grid.resolution_m / finer, grid.origin)
 
 
-def _is_inside(free: npt.NDArray[np.bool_], place: Floats) -> bool:
+def _is_inside(free: Bools, place: Floats) -> bool:
     column, row = np.floor(place).astype(int)
     rows, columns = free.shape
     return bool(0 <= column < columns and 0 <= row < rows and free[row, column])
 
 
-def _with_all_parts(free: npt.NDArray[np.bool_], depth: Floats, points: Floats) -> Floats:
+def _with_all_parts(free: Bools, depth: Floats, points: Floats) -> Floats:
     """The points, and one more in each connected part of the free cells that has none."""
     from scipy.ndimage import label, maximum_position
 
@@ -138,18 +106,16 @@ def _with_all_parts(free: npt.NDArray[np.bool_], depth: Floats, points: Floats) 
     return np.concatenate([points, deepest[:, ::-1] + 0.5])
 
 
-def _with_places(lanes: Floats, places: Floats, is_free: npt.NDArray[np.bool_], pitch: float) -> tuple[Floats, Indices]:
+def _with_places(lanes: Floats, places: Floats, is_free: Bools, pitch: float) -> tuple[Floats, Indices]:
     """The points with those of places that are on none yet, and the point of each place (-1: it is not free)."""
     from scipy.spatial import cKDTree
 
     numbers = np.full(len(places), -1, dtype=np.int64)
-    points = lanes
-    for k in np.flatnonzero(is_free):
-        metres, at = cKDTree(points).query(places[k]) if len(points) else (math.inf, -1)
-        if metres > 1e-6 * pitch:
-            at, points = len(points), np.concatenate([points, places[k : k + 1]])
-        numbers[k] = at
-    return points, numbers
+    away, numbers[is_free] = cKDTree(lanes).query(places[is_free])
+    further = np.flatnonzero(is_free)[away > 1e-6 * pitch]
+    fresh, which = np.unique(places[further], axis=0, return_inverse=True)
+    numbers[further] = len(lanes) + which.ravel()
+    return np.concatenate([lanes, fresh]), numbers
 
 
 def _clearance(depth: Floats, points: Floats, pairs: Indices) -> Floats:

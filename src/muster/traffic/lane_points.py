@@ -3,7 +3,8 @@
 Three kinds of room, told apart by how wide the free space is for the centre of the widest robot, `apart` being the
 distance at which two such robots do not touch:
 
-- narrower than `apart` (a passage for one): points along the middle, the narrowest places, as door sills, first;
+- narrower than `apart` (a passage for one): points along the middle, the innermost first: the sill of a door, the end
+  of a dead end;
 - between `apart` and twice that: two lanes, as far from the walls as they can be;
 - wider: a square lattice, shifted to where the most of its points are free.
 
@@ -26,6 +27,7 @@ _SHIFTS = 8
 """Shifts of the lattice that are tried, along each axis."""
 _ON_LANE = 0.75
 """Cells by which a point may be off the middle of a passage."""
+_SLACK = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +51,7 @@ class Room:
     def of(cls, free: Bools, depth: Floats, apart: float) -> Room:
         """`apart` in cells."""
         wide = free & _spread(depth >= apart, apart)
-        for_two = free & _spread(depth >= (apart + 1) / 2, apart / 2)
+        for_two = free & _spread(depth >= (apart + 1) / 2 - _SLACK, apart / 2)
         return cls(free, depth, free & ~for_two & ~wide, for_two & ~wide)
 
 
@@ -65,11 +67,11 @@ def lane_points(room: Room, apart: float, pitch: float, places: Floats) -> Float
     """
     taken = Taken(room.free.shape, apart)
     on_lanes = [taken.take(place) for place in places if _is_on_lane(room, place) and not taken.at(place)]
-    lanes = taken.pack(_in_order(_ridge(room), room.depth, narrowest_first=True))
-    pairs = taken.pack(_in_order(_two_lanes(room, apart), room.depth, narrowest_first=True))
+    lanes = taken.pack(_in_order(_ridge(room), _away_from(room.free & ~room.narrow)))
+    pairs = taken.pack(_in_order(_two_lanes(room, apart), _away_from(room.free & ~room.narrow & ~room.double)))
     lattice = _lattice(room, taken, pitch, places)
     taken.take_near(lattice)
-    corners = taken.pack(_in_order(room.free & ~taken.cells, room.depth, narrowest_first=False))
+    corners = taken.pack(_in_order(room.free & ~taken.cells, room.depth))
     return np.concatenate([np.reshape(some, (-1, 2)) for some in (on_lanes, lanes, pairs, lattice, corners)])
 
 
@@ -96,7 +98,7 @@ class Taken:
         column, row = int(point[0]), int(point[1])
         across = column + self._offsets + 0.5 - point[0]
         up = row + self._offsets + 0.5 - point[1]
-        near = up[:, np.newaxis] ** 2 + across**2 < self._apart**2 - 1e-9
+        near = up[:, np.newaxis] ** 2 + across**2 < (self._apart - _SLACK) ** 2
         self._padded[row : row + len(up), column : column + len(across)] |= near
         return point
 
@@ -143,13 +145,19 @@ def _is_on_lane(room: Room, place: Floats) -> bool:
     return bool(room.narrow[row, column] and room.depth[row, column] > around.max() - 2 * _ON_LANE)
 
 
-def _in_order(cells: Bools, depth: Floats, *, narrowest_first: bool) -> list[int]:
-    """Cells as row * columns + column, by depth in whole cells, then row by row."""
+def _in_order(cells: Bools, key: Floats) -> list[int]:
+    """Cells as row * columns + column, those with the greatest key in whole cells first, then row by row."""
     found = np.flatnonzero(cells)
-    steps = np.round(depth.ravel()[found])
-    order = np.argsort(steps if narrowest_first else -steps, kind="stable")
+    order = np.argsort(-np.round(key.ravel()[found]), kind="stable")
     ordered: list[int] = found[order].tolist()
     return ordered
+
+
+def _away_from(cells: Bools) -> Floats:
+    """How far each cell is from the nearest of these, in cells."""
+    from scipy.ndimage import distance_transform_edt
+
+    return np.asarray(distance_transform_edt(~cells))
 
 
 def _lattice(room: Room, taken: Taken, pitch: float, places: Floats) -> Floats:

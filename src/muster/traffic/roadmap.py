@@ -1,14 +1,13 @@
 """The roadmap: points and straight lanes that robots share, and which of them are in each other's way.
 
 A robot stands at a point or moves along an edge. Two robots of radii r_i and r_j are in each other's way where their
-centres come nearer than r_i + r_j + margin. Which points an edge comes near to is worked out once, for two of the widest
-robots ([hoenig2018] annotates roadmaps so); what follows from it for two smaller ones is found by their own radii.
+centres come nearer than r_i + r_j + margin. Which points an edge comes near to is worked out once, for two of the
+widest robots, with the distances, as [hoenig2018] annotates roadmaps; for two smaller ones the distances tell.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,10 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.mission.lanes import Lanes
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
 from muster.traffic.edge_conflicts import conflicts
-from muster.traffic.lane_network import Network, network
+from muster.traffic.exact_ways import Network
+from muster.traffic.given_lanes import lane_network
+from muster.traffic.lane_network import network
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -51,12 +53,10 @@ class Roadmap:
         one of them, at 0. Not among them are its beginning, and the points from which it only moves away.
     places
         (k,): for each place that was to be joined its point; -1 where no way leads there.
-    capacity
-        (m,): how many robots may be on an edge at once; 0 where distance alone decides.
     speed_mps
         (m,): the greatest speed on an edge; inf where robots alone decide.
     names
-        of the points of given lanes, by number; empty where the roadmap was made from a map.
+        of the first points, the nodes of given lanes; empty where the roadmap was made from free space.
     """
 
     points: Floats
@@ -68,7 +68,6 @@ class Roadmap:
     reach_point: Indices
     reach_m: Floats
     places: Indices
-    capacity: Indices
     speed_mps: Floats
     names: tuple[str, ...] = ()
 
@@ -123,41 +122,53 @@ class Roadmap:
 
     @classmethod
     def of(
-        cls,
-        space: Space | None,
-        radius_m: float,
-        places: npt.ArrayLike = (),
-        *,
-        margin_m: float = MARGIN_M,
+        cls, space: Space | None, radius_m: float, places: npt.ArrayLike = (), *, margin_m: float = MARGIN_M
     ) -> Roadmap:
         """The roadmap of a free space, or of the open area around some places.
 
         Parameters
         ----------
         space
-            free for the centre of the widest robot (`World.free_space(radius_m, "ground", three_d=False)`); None for the
-            open plane.
+            free for the centre of the widest robot: `World.free_space(radius_m, "ground", three_d=False)`; None for
+            the open plane.
         radius_m
             of the widest robot; greater than 0.
         places
-            (k, 2) or (k, 3): starts of robots and places of tasks, metres in the map frame; each gets a point of its own.
+            (k, 2) or (k, 3): starts of robots and places of tasks, metres in the map frame; each gets a point of its
+            own.
 
         Raises
         ------
         ParameterError
-            for a space with heights, a radius or margin that is not a finite number above 0, or neither space nor places.
+            for a space with heights, a radius or margin that is not a finite number above 0, or neither space nor
+            places.
         """
-        for name, value in (("radius_m", radius_m), ("margin_m", margin_m)):
-            if not 0 < value < math.inf:
-                raise ParameterError(f"{name}: {value}; expected a finite number above 0")
-        points = np.reshape(np.asarray(places, dtype=np.float64), (len(np.atleast_1d(places)), -1))[:, :2]
-        if isinstance(space, GridSpace | PolygonSpace):
-            made = network(space, 2 * radius_m + margin_m, points, _MOST_POINTS)
-        elif space is None and len(points):
-            made = network(_open(points, 2 * radius_m + margin_m), 2 * radius_m + margin_m, points, _MOST_POINTS)
-        else:
+        apart_m, points = _checked(radius_m, margin_m, places)
+        if space is None and len(points):
+            space = _open(points, apart_m)
+        if not isinstance(space, GridSpace | PolygonSpace):
             raise ParameterError("space: with heights or empty; expected the plane, or None and some places")
-        return cls.joined(made, radius_m, margin_m)
+        return cls.joined(network(space, apart_m, points, _MOST_POINTS), radius_m, margin_m)
+
+    @classmethod
+    def of_lanes(
+        cls,
+        lanes: Lanes,
+        radius_m: float,
+        places: npt.ArrayLike = (),
+        *,
+        space: Space | None = None,
+        margin_m: float = MARGIN_M,
+    ) -> Roadmap:
+        """The roadmap of given lanes, without those that are too narrow or lead through an obstacle; else as `of`.
+
+        Places are joined to the nearest point that a straight way leads to; the first points are the nodes, in order.
+        """
+        apart_m, points = _checked(radius_m, margin_m, places)
+        if not isinstance(space, GridSpace | PolygonSpace | None):
+            raise ParameterError("space: with heights; expected the plane, or None")
+        made, speeds = lane_network(lanes, radius_m, apart_m, points, space)
+        return cls.joined(made, radius_m, margin_m, speed_mps=speeds, names=tuple(lanes.nodes))
 
     @classmethod
     def joined(
@@ -166,9 +177,8 @@ class Roadmap:
         radius_m: float,
         margin_m: float,
         *,
-        capacity: Indices | None = None,
         speed_mps: Floats | None = None,
-        names: Sequence[str] = (),
+        names: tuple[str, ...] = (),
     ) -> Roadmap:
         """The roadmap of a network of points and directed edges, with its conflicts."""
         order = np.lexsort(made.edges.T[::-1])
@@ -184,10 +194,18 @@ class Roadmap:
             reach_point=point,
             reach_m=metres,
             places=made.places,
-            capacity=np.zeros(len(edges), dtype=np.int64) if capacity is None else capacity[order],
             speed_mps=np.full(len(edges), np.inf) if speed_mps is None else speed_mps[order],
-            names=tuple(names),
+            names=names,
         )
+
+
+def _checked(radius_m: float, margin_m: float, places: npt.ArrayLike) -> tuple[float, Floats]:
+    """How far apart two robots do not touch, and the places (k, 2)."""
+    for name, value in (("radius_m", radius_m), ("margin_m", margin_m)):
+        if not 0 < value < math.inf:
+            raise ParameterError(f"{name}: {value}; expected a finite number above 0")
+    given = np.asarray(places, dtype=np.float64)
+    return 2 * radius_m + margin_m, given[:, :2] if given.size else np.zeros((0, 2))
 
 
 def _open(points: Floats, apart_m: float) -> GridSpace:

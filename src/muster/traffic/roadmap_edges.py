@@ -36,7 +36,7 @@ def visible_pairs(sight: core.GridMap, depth: Floats, points: Floats, reach: flo
 
 
 def pruned(pairs: Indices, points: Floats, lanes: int) -> Indices:
-    """The pairs without those that a point of the lanes stands between: a Gabriel graph among points that see each other.
+    """The pairs without those that a point of the lanes stands between: a Gabriel graph of what sees each other.
 
     A pair goes where both its points see a third one from which the two appear at more than a right angle. Each pair
     that goes is replaced by two shorter ones, so what is connected stays so. [gabriel1969]
@@ -59,7 +59,9 @@ def pruned(pairs: Indices, points: Floats, lanes: int) -> Indices:
     other = pairs[pair, 1]
     fits = (third < lanes) & (third != other)
     pair, third, other = pair[fits], third[fits], other[fits]
-    legs = ((points[pairs[pair, 0]] - points[third]) ** 2).sum(axis=1) + ((points[other] - points[third]) ** 2).sum(axis=1)
+    legs = ((points[pairs[pair, 0]] - points[third]) ** 2).sum(axis=1) + ((points[other] - points[third]) ** 2).sum(
+        axis=1
+    )
     between = legs < squared[pair] * (1 - _SAME)
     pair, wanted = pair[between], third[between] * n + other[between]
     at = np.searchsorted(keys, wanted).clip(max=len(keys) - 1)
@@ -105,6 +107,10 @@ class Regions:
             front = np.concatenate(grown)
         return cls(np.maximum(owner, -1), parent, width)
 
+    def cell_at(self, point: Floats) -> int:
+        """The cell of the fenced grid in which a point is."""
+        return (int(point[1]) + 1) * self.width + int(point[0]) + 1
+
     def back(self, cell: int) -> list[Floats]:
         """The middles of the cells from one to the point that it belongs to."""
         way = [cell]
@@ -132,17 +138,34 @@ def detours(regions: Regions, points: Floats, pairs: Indices, sight: core.GridMa
     Where the regions of two points touch and no three pairs join them, the corners of a path through both regions are
     added. So the pairs connect whatever the free cells connect.
     """
-    found: list[Floats] = []
-    more: list[tuple[int, int]] = []
     touching = regions.touching(len(points))
-    for a, b, one, other in touching[~_joined(touching, pairs, len(points))].tolist():
-        way = [points[a], *regions.back(one)[::-1], *regions.back(other), points[b]]
+    ways = [
+        (a, [points[a], *regions.back(one)[::-1], *regions.back(other), points[b]], b)
+        for a, b, one, other in touching[~_joined(touching, pairs, len(points))].tolist()
+    ]
+    return _cornered(ways, len(points), sight)
+
+
+def ways_to_lanes(regions: Regions, points: Floats, hidden: Indices, sight: core.GridMap) -> tuple[Floats, Indices]:
+    """Further points (k, 2) and pairs (l, 2) that join points which see no lane, by number, to that of their region."""
+    ways = []
+    for a in hidden.tolist():
+        cell = regions.cell_at(points[a])
+        b = int(regions.owner[cell])
+        ways.append((a, [points[a], *regions.back(cell), points[b]], b))
+    return _cornered(ways, len(points), sight)
+
+
+def _cornered(ways: list[tuple[int, list[Floats], int]], count: int, sight: core.GridMap) -> tuple[Floats, Indices]:
+    """The corners (k, 2), numbered from `count`, of ways from one point to another, and the pairs (l, 2) along them."""
+    found: list[Floats] = []
+    pairs: list[tuple[int, int]] = []
+    for a, way, b in ways:
         corners = _taut(way, sight)[1:-1]
-        first = len(points) + len(found)
-        numbers = [a, *range(first, first + len(corners)), b]
+        first = count + len(found)
+        pairs += pairwise([a, *range(first, first + len(corners)), b])
         found += corners
-        more += pairwise(numbers)
-    return np.reshape(found, (-1, 2)), np.reshape(np.array(more, dtype=np.int64), (-1, 2))
+    return np.reshape(found, (-1, 2)), np.reshape(np.array(pairs, dtype=np.int64), (-1, 2))
 
 
 def _joined(touching: Indices, pairs: Indices, n: int) -> Bools:
