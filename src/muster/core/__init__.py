@@ -1,6 +1,6 @@
 """The hot loops, in C++20. A verb here has the name of the step that it carries out.
 
-Called from `allocation`, `motion` and `simulation` alone.
+Called from `allocation`, `motion`, `simulation` and `traffic` alone.
 """
 
 from muster.core._core import (
@@ -10,11 +10,14 @@ from muster.core._core import (
     Colony,
     CrowdWorld,
     Decoder,
+    DirectedGraph,
     Greedy,
     GridMap,
     Insertion,
     Inspection,
+    Lacam,
     Matching,
+    MovePlanner,
     PlaneAgents,
     Population,
     Problem,
@@ -46,11 +49,14 @@ __all__ = [
     "Colony",
     "CrowdWorld",
     "Decoder",
+    "DirectedGraph",
     "Greedy",
     "GridMap",
     "Insertion",
     "Inspection",
+    "Lacam",
     "Matching",
+    "MovePlanner",
     "PlaneAgents",
     "Population",
     "Problem",

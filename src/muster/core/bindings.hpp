@@ -23,5 +23,7 @@ void bind_air(nanobind::module_& m);
 void bind_tree(nanobind::module_& m);
 void bind_avoidance(nanobind::module_& m);
 void bind_crowd_world(nanobind::module_& m);
+void bind_lacam(nanobind::module_& m);
+void bind_move_planner(nanobind::module_& m);
 
 }  // namespace muster

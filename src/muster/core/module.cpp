@@ -26,4 +26,6 @@ NB_MODULE(_core, m) {
   muster::bind_tree(m);
   muster::bind_avoidance(m);
   muster::bind_crowd_world(m);
+  muster::bind_lacam(m);
+  muster::bind_move_planner(m);
 }
