@@ -777,3 +777,76 @@ class CrowdWorld:
     def headings(self) -> NDArray[numpy.float64]: ...
 
     def travelled(self) -> NDArray[numpy.float64]: ...
+
+class DirectedGraph:
+    """A directed graph in compressed rows."""
+
+    def __init__(self, first: Sequence[int], heads: Sequence[int], costs: Sequence[float]) -> None:
+        """
+        The edges of vertex u are those from first[u] to first[u + 1]. Raises ValueError if they are not, or if a cost is not above 0.
+        """
+
+    @property
+    def size(self) -> int: ...
+
+    @property
+    def edges(self) -> int: ...
+
+    def costs_to(self, goal: int) -> list[float]:
+        """
+        What it costs to come to a vertex from each; infinite where there is no way.
+        """
+
+class Lacam:
+    """
+    Search over configurations of robots that take a step on a graph at once.
+    """
+
+    def __init__(self, graph: DirectedGraph, starts: Sequence[int], goals: Sequence[int], *, samples: int = 1, seed: int = 0, anytime: bool = False) -> None:
+        """
+        Raises ValueError where starts or goals are no vertices, or not of the same number.
+        """
+
+    def advance(self, expansions: int) -> None: ...
+
+    @property
+    def connected(self) -> bool:
+        """Whether each robot alone comes to its goal."""
+
+    @property
+    def state(self) -> str:
+        """
+        searching, solved, optimal (solved, and nothing is better), or unsolvable: the space is exhausted.
+        """
+
+    @property
+    def nodes(self) -> int:
+        """The number of configurations that it knows."""
+
+    @property
+    def cost(self) -> float:
+        """
+        Steps in which robots do not rest at their goals, of the best solution.
+        """
+
+    def solution(self) -> list[list[int]]:
+        """The vertex of each robot, step by step. Only after it is solved."""
+
+class MovePlanner:
+    """
+    Sequences of single moves of a team on a roadmap with annotated conflicts.
+    """
+
+    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], first: Sequence[int], heads: Sequence[int], costs: Sequence[float], near_first: Sequence[int], near_points: Sequence[int], near_metres: Sequence[float]) -> None:
+        """
+        `points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not fit.
+        """
+
+    def planned(self, starts: Sequence[int], goals: Sequence[int], radii: Sequence[float], priorities: Sequence[float], pinned: Sequence[bool], *, margin: float, turn_cost: float, horizon: int, settle: bool, expansions: int, seed: int) -> tuple[str, list[tuple[int, int]], list[int], list[bool]]:
+        """
+        The outcome (arrived, horizon, unfinished, impossible), the moves (robot, edge), where all stand in the end, and who has been at its goal.
+        """
+
+    @property
+    def tables(self) -> int:
+        """The number of goals to which it knows the ways."""

@@ -1,0 +1,43 @@
+// Plans of single moves for a team on a roadmap, again and again.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "single_moves.hpp"
+
+namespace muster {
+
+struct MovePlan {
+  enum class Outcome { kArrived, kHorizon, kUnfinished, kImpossible };
+
+  Outcome outcome;
+  std::vector<Move> moves;
+  Configuration places;       // where the robots stand in the end
+  std::vector<char> arrived;  // who has been at its goal
+};
+
+// Keeps the ways to goals from one plan to the next.
+class MovePlanner {
+ public:
+  struct Limits {
+    int horizon;     // moves after which a plan may end before all have arrived
+    int expansions;  // steps of the search without coming nearer to the goals, before it gives up
+    bool settle;     // whether all must be at their goals at once in the end
+  };
+
+  explicit MovePlanner(std::shared_ptr<const AnnotatedRoadmap> roadmap) : roadmap_(std::move(roadmap)) {}
+
+  MovePlan plan(Team team, const Limits& limits, std::uint64_t seed);
+  std::size_t tables() const { return tables_.size(); }
+  const AnnotatedRoadmap& roadmap() const { return *roadmap_; }
+
+ private:
+  static constexpr std::size_t kMostTables = 2000;
+
+  std::shared_ptr<const AnnotatedRoadmap> roadmap_;
+  SingleMoves::Tables tables_;
+};
+
+}  // namespace muster
