@@ -72,6 +72,8 @@ class Telemetry:
         the share of its work capacity that its battery has left, 0 to 1; None where it does not report that.
     refused
         why it cannot reach the next way point of this order, by its own navigation; empty while it goes on.
+    waits_for
+        the robot that it waits for in traffic; empty while it waits for nobody, None where it does not tell.
     """
 
     time_s: float
@@ -84,6 +86,7 @@ class Telemetry:
     inertial: Inertial | None = None
     charge: float | None = None
     refused: str = ""
+    waits_for: str | None = None
 
 
 class RobotPort(Protocol):
