@@ -41,7 +41,7 @@ class Limits:
 
     silent_after_s: float = 5.0
     stuck_after_s: float = 30.0
-    aside_after_s: float = 10.0
+    aside_after_s: float = 5.0
     aside_s: float = 5.0
     jam_after_s: float = 30.0
     look_every_s: float = 0.5

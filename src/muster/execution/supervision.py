@@ -12,6 +12,9 @@ from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.execution.task_ledger import Ledger
 from muster.execution.traffic_waits import TrafficWaits
 
+GIVES_UP_AFTER = 4
+"""Times the limit of a jam after which one of its robots gives up its task."""
+
 
 @dataclass
 class Supervisor:
@@ -99,7 +102,7 @@ class Supervisor:
             lasted_s, asides = self.traffic.jammed_s(jam), sum(one.asides for one in known)
             if lasted_s >= self.limits.jam_after_s and not all(one.told for one in known):
                 self._tell_jam(jam, members, now - lasted_s)
-            if lasted_s >= 2 * self.limits.jam_after_s:
+            if lasted_s >= GIVES_UP_AFTER * self.limits.jam_after_s:
                 for one in known:
                     one.jammed_s = self.limits.jam_after_s
                 yield from self._give_up_in_jam(_first_to_yield(members, self.traffic), jam, now)
@@ -117,14 +120,14 @@ class Supervisor:
         self.traffic.progress[robot].asides += 1
         self.emit("robot_stands_aside", {"robot": robot, "waits_for": self.traffic.waits[robot].waits_for})
         if state.activity is not Activity.WORKING:
-            self.dispatch.stand_aside(state, now + self.limits.aside_s, now)
+            self.dispatch.stand_aside(state, now + self.traffic.progress[robot].asides * self.limits.aside_s, now)
 
     def _give_up_in_jam(self, state: RobotState, jam: Collection[str], now: float) -> Iterator[Change]:
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
         else:
             others = ", ".join(robot for robot in sorted(jam) if robot != state.robot.id)
-            reason = f"jam: held up by {others} for {2 * self.limits.jam_after_s:g} s"
+            reason = f"jam: held up by {others} for {GIVES_UP_AFTER * self.limits.jam_after_s:g} s"
             yield from self.dispatch.refuse(state, state.route[0], reason, now)
 
     def _let_refuse(self, state: RobotState, now: float) -> Iterator[Change]:
