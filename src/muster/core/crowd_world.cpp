@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kAside = 0.05;    // share of the top speed by which a velocity differs from one that is followed
 constexpr double kTurned = 0.01;   // radians: the laws of [tcf-thesis] never turn a robot exactly to a heading
+constexpr double kApproach = 0.5;  // seconds over which an approach is a mean
 constexpr double kWallsFor = 1.0;  // metres for which the walls once collected are enough
 constexpr std::uint64_t kWheels = 0x5eed0fc0de0d0e7cULL;  // what wheels do by themselves is drawn apart from the rest
 
@@ -60,6 +61,7 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.patience = {};
   robot.trail = {robot.position, {}, false};
   robot.waits = false;
+  robot.approach = 0.0;
   robot.asked_until = kNever;
   robot.aside.clear();
 }
@@ -284,6 +286,9 @@ void CrowdWorld::take_note(int i) {
     robot.errors = {robot.errors.sum + error, std::max(robot.errors.most, error), robot.errors.steps + 1};
   }
   if (robot.phase == Phase::going) {
+    const Vec<3>& goal = robot.goal();
+    const double nearer = (norm(goal - before_[i]) - norm(goal - robot.position)) / settings_.dt;
+    robot.approach += std::min(1.0, settings_.dt / kApproach) * (nearer - robot.approach);
     while (robot.phase == Phase::going && passes(robot, before_[i], settings_.tolerances, settings_.dt)) {
       if (robot.way[robot.next].stops())
         robot.phase = Phase::turning;

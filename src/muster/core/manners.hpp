@@ -35,6 +35,7 @@ class Manners {
   Vec<3> wanted_under_way(int i, const Vec<3>& course, const std::vector<int>& near) const;
   Vec<3> wanted_back(CrowdRobot& robot, const Vec<3>& course) const;
   Vec<3> wanted_aside(int i, const Vec<3>& course, const std::vector<int>& near) const;
+  bool is_before(int i, int k) const;
   bool is_on(int k, const Vec<3>& place, double radius) const;
 
   std::vector<CrowdRobot>& robots_;

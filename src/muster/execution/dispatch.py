@@ -76,6 +76,8 @@ class Dispatch:
 
     def send_on(self, state: RobotState, now: float) -> Iterator[Change]:
         """Send a robot on that is available, or may begin; yields a change that requires a new plan if it cannot."""
+        if now < state.aside_until_s:
+            return
         if state.activity is Activity.WAITING:
             yield from self._begin_or_wait(state, state.route[0], now)
         elif state.available and state.route and now >= state.robot.available_from_s:
@@ -106,6 +108,11 @@ class Dispatch:
             state.send_again(now)
         else:
             state.stop(now)
+
+    def stand_aside(self, state: RobotState, until_s: float, now: float) -> None:
+        """Let a robot under way stop for a while; without an order it makes room for others."""
+        state.stop(now)
+        state.aside_until_s = until_s
 
     def take_route(self, state: RobotState, tasks: Sequence[str], now: float) -> None:
         """Give a robot another route; it goes on with its work, and with its path if that leads to the same task."""

@@ -12,11 +12,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from muster.execution.beginning import Beginning
-from muster.execution.changes import OUT, SILENT, Change, Changes, may_bring_work, new_robot_state
+from muster.execution.changes import OUT, SILENT, STUCK, Change, Changes, may_bring_work, new_robot_state
 from muster.execution.completed_work import CompletedWork
 from muster.execution.dispatch import Dispatch
 from muster.execution.forecast import Forecast
-from muster.execution.monitor import Limits
+from muster.execution.monitor import Limits, moves_again
 from muster.execution.peers import Peers
 from muster.execution.punctuality import Punctuality
 from muster.execution.reallocation import Reallocation, Revision, reasons_in_one_line, usage_ahead
@@ -29,6 +29,7 @@ from muster.execution.supervision import Supervisor
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
 from muster.execution.team_work import break_off
+from muster.execution.traffic_waits import TrafficWaits
 from muster.execution.travel import Travel, travel_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
@@ -108,8 +109,17 @@ class Executor:
         self._dispatch = Dispatch(
             self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, peers
         )
+        self.traffic = TrafficWaits(self.crew)
         self._supervisor = Supervisor(
-            self.crew, self.ledger, self._dispatch, self._changes, self._capacity, limits or Limits(), self.emit, now
+            self.crew,
+            self.ledger,
+            self._dispatch,
+            self._changes,
+            self.traffic,
+            self._capacity,
+            limits or Limits(),
+            self.emit,
+            now,
         )
         self._script = sorted(mission.events, key=lambda event: event.at_s)
         self._asked: list[Change] = []
@@ -245,6 +255,8 @@ class Executor:
                 self._observer.on_telemetry(self.now_s, state.robot.id, said)
                 if state.out == SILENT:
                     self._ask(self._changes.readmit(state, self.now_s))
+                elif state.out == STUCK and moves_again(state):
+                    self._ask(self._changes.readmit(state, self.now_s, "it moves again"))
 
     def _follow_script(self) -> None:
         """Let those events of the mission file happen that are due."""
@@ -268,7 +280,8 @@ class Executor:
             return
         waiting = [state.route[0] for state in self._present if state.activity is Activity.WAITING]
         still = all(
-            state.activity is Activity.WAITING or (state.activity is Activity.IDLE and not state.route)
+            state.activity is Activity.WAITING
+            or (state.activity is Activity.IDLE and not state.route and state.aside_until_s <= self.now_s)
             for state in self._present
         )
         if not waiting or not still:
@@ -363,6 +376,7 @@ class Executor:
             reallocations=len(self.revisions),
             charges={name: state.charge for name, state in self.crew.items() if state.charge is not None},
             shifts_exceeded_s=self._shifts_exceeded(),
+            traffic=self.traffic.account.with_waits(self.traffic.waits),
             back_s=tuple(self._back_s()) if self.mission.rules.makespan_includes_return else (),
         )
 

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.execution.changes import SILENT, STUCK, Change, Changes
 from muster.execution.dispatch import Dispatch, Emit
-from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck, seems_late, stands_in_the_way
+from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.execution.task_ledger import Ledger
+from muster.execution.traffic_waits import TrafficWaits
+
+GIVES_UP_AFTER = 4
+"""Times the limit of a jam after which one of its robots gives up its task."""
 
 
 @dataclass
 class Supervisor:
-    """Notices missed telemetry, way points refused, no progress, and too little capacity.
+    """Notices missed telemetry, way points refused, waiting in traffic, jams, no progress, and too little capacity.
 
     Parameters
     ----------
-    crew, ledger, dispatch, changes
+    crew, ledger, dispatch, changes, traffic
         of the executor.
     capacity
         how much a robot can use; None: any amount.
@@ -34,6 +38,7 @@ class Supervisor:
     ledger: Ledger
     dispatch: Dispatch
     changes: Changes
+    traffic: TrafficWaits
     capacity: Callable[[RobotState], float | None]
     limits: Limits
     emit: Emit
@@ -44,14 +49,18 @@ class Supervisor:
         if now < self.look_s:
             return
         self.look_s = now + self.limits.look_every_s
-        if any(seems_late(state, now, self.limits) for state in self._present):
-            for state in held_up(self._present):
-                state.nearest_s = now
+        for kind, data in self.traffic.look(now):
+            self.emit(kind, data)
+        for robot in self.traffic.waits:
+            self.crew[robot].nearest_s = now
+        yield from self._break_jams(now)
         for state in self._present:
             if is_silent(state, now, self.limits):
                 yield from self.changes.exclude(state, SILENT, now)
             elif state.refused and state.activity in MOVING:
                 yield from self._let_refuse(state, now)
+            elif (broken := self._broken_before(state, now)) is not None:
+                yield from self._give_way_to_broken(state, broken, now)
             elif is_stuck(state, now, self.limits):
                 yield from self._free_or_put_out(state, now)
             elif state.activity is Activity.DRIVING and self.capacity(state) is not None:
@@ -65,15 +74,61 @@ class Supervisor:
         """A robot without progress is sent again, and excluded the next time; not if a failed robot blocks it."""
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, state.robot, state.points_left)), None)
-        if blocking is not None and state.activity is Activity.RETURNING:
-            self.dispatch.end_here(state, now)
-        elif blocking is not None:
-            yield from self._give_up_blocked(state, blocking, now)
+        if blocking is not None:
+            yield from self._give_way_to_broken(state, blocking, now)
         elif state.stuck_before:
-            yield from self.changes.exclude(state, STUCK, now, "no progress")
+            yield from self.changes.exclude(state, STUCK, now, "no progress with nobody in its way")
         else:
             self.emit("robot_sent_again", {"robot": state.robot.id, "reason": "no progress"})
             self.dispatch.again(state, now)
+
+    def _broken_before(self, state: RobotState, now: float) -> RobotState | None:
+        """The robot that is out for which another has waited too long."""
+        other = self.crew.get(self.traffic.waits_for(state.robot.id))
+        too_long = now - self.traffic.progress[state.robot.id].since_s > self.limits.stuck_after_s
+        return other if other is not None and other.out and too_long else None
+
+    def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> Iterator[Change]:
+        if state.activity is Activity.RETURNING:
+            self.dispatch.end_here(state, now)
+        else:
+            yield from self._give_up_blocked(state, broken, now)
+
+    def _break_jams(self, now: float) -> Iterator[Change]:
+        """In a jam one robot after the other stands aside; a long one is told, and at last a robot gives up its task."""
+        for jam in self.traffic.jams():
+            members = [self.crew[robot] for robot in sorted(jam) if robot in self.traffic.waits]
+            known = [self.traffic.progress[state.robot.id] for state in members]
+            lasted_s, asides = self.traffic.jammed_s(jam), sum(one.asides for one in known)
+            if lasted_s >= self.limits.jam_after_s and not all(one.told for one in known):
+                self._tell_jam(jam, members, now - lasted_s)
+            if lasted_s >= GIVES_UP_AFTER * self.limits.jam_after_s:
+                for one in known:
+                    one.jammed_s = self.limits.jam_after_s
+                yield from self._give_up_in_jam(_first_to_yield(members, self.traffic), jam, now)
+            elif lasted_s >= (1 + asides) * self.limits.aside_after_s:
+                self._let_stand_aside(_first_to_yield(members, self.traffic), now)
+
+    def _tell_jam(self, jam: Collection[str], members: Sequence[RobotState], since_s: float) -> None:
+        for state in members:
+            self.traffic.progress[state.robot.id].told = True
+        place = [round(c, 3) for c in members[0].position]
+        self.emit("traffic_jam", {"robots": sorted(jam), "position": place, "since_s": since_s})
+
+    def _let_stand_aside(self, state: RobotState, now: float) -> None:
+        robot = state.robot.id
+        self.traffic.progress[robot].asides += 1
+        self.emit("robot_stands_aside", {"robot": robot, "waits_for": self.traffic.waits[robot].waits_for})
+        if state.activity is not Activity.WORKING:
+            self.dispatch.stand_aside(state, now + self.traffic.progress[robot].asides * self.limits.aside_s, now)
+
+    def _give_up_in_jam(self, state: RobotState, jam: Collection[str], now: float) -> Iterator[Change]:
+        if state.activity is Activity.RETURNING:
+            self.dispatch.end_here(state, now)
+        else:
+            others = ", ".join(robot for robot in sorted(jam) if robot != state.robot.id)
+            reason = f"jam: held up by {others} for {GIVES_UP_AFTER * self.limits.jam_after_s:g} s"
+            yield from self.dispatch.refuse(state, state.route[0], reason, now)
 
     def _let_refuse(self, state: RobotState, now: float) -> Iterator[Change]:
         """A robot cannot reach its way point: other robots do the task, or it ends where it is."""
@@ -101,3 +156,14 @@ class Supervisor:
         elif state.warned_of != task and exceeds(after + self.dispatch.ahead[state.robot.id].get(task, 0.0), capacity):
             state.warned_of = task
             yield Change("robot_runs_low", {"robot": state.robot.id, "capacity": capacity})
+
+
+def _first_to_yield(members: Sequence[RobotState], traffic: TrafficWaits) -> RobotState:
+    """Who stands aside next: by turns, first who has no task there, then by priority."""
+
+    def rank(state: RobotState) -> tuple[int, bool, float, str]:
+        robot = state.robot
+        asides = traffic.progress[robot.id].asides
+        return asides, state.activity is not Activity.RETURNING, robot.avoidance_priority, robot.id
+
+    return min(members, key=rank)

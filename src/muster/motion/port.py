@@ -76,7 +76,7 @@ class Telemetry:
     refused
         why it cannot reach the next way point of this order, by its own navigation; empty while it goes on.
     waits_for
-        the robot that passes first, where this one waits in traffic; None while it goes on.
+        the robot that it waits for in traffic; empty while it waits for nobody, None where it does not tell.
     left_m
         metres that it has still to go to the next way point that is no `via`, by its own navigation; None where that does
         not say.

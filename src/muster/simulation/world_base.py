@@ -215,7 +215,7 @@ class WorldBase(SimulatedWorld, ABC):
         self._numbers[robot.id] = number
         self._robots.append(robot)
         trajectories = self._trajectories_of(robot)
-        port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories)
+        port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories, self._name_of)
         self._ports[robot.id] = port
         at_start = charge_at_start(self._batteries, robot.id)
         if at_start is not None:
@@ -353,6 +353,9 @@ class WorldBase(SimulatedWorld, ABC):
     def _observe(self) -> None:
         if self._observer is not None:
             self._observer(self.time_s, self.positions, self.headings, self.velocities)
+
+    def _name_of(self, number: int) -> str:
+        return self._robots[number].id
 
     def _number(self, robot: str) -> int:
         if robot not in self._numbers:

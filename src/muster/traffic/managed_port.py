@@ -30,7 +30,7 @@ class ManagedPort:
         self._sent_order = 0
         self._marks = 0  # how many of those sent come before what is to be done at the goal
         self._numbers: tuple[int, ...] = ()  # of the others, among the way points
-        self.waits_for: str | None = None
+        self.waits_for = ""
         self.left_m: float | None = None
         self.refused = ""
 
@@ -43,7 +43,7 @@ class ManagedPort:
         self._orders += 1
         self._waypoints, self._passed = tuple(waypoints), 0
         self._sent, self._numbers = None, ()
-        self.waits_for, self.left_m, self.refused = None, None, ""
+        self.waits_for, self.left_m, self.refused = "", None, ""
         return self._orders
 
     def cancel(self) -> int:

@@ -201,10 +201,10 @@ class ReservedTraffic:
     def _let_go(self, part: _Part) -> None:
         """Send a robot as far as it may go."""
         if part.port.busy:
-            part.port.waits_for, part.to_go = None, False
+            part.port.waits_for, part.to_go = "", False
             return
         grant = self._order.grant(part.number)
-        part.port.waits_for = self._parts[grant.waits_for].robot.id if grant.waits_for >= 0 else None
+        part.port.waits_for = self._parts[grant.waits_for].robot.id if grant.waits_for >= 0 else ""
         part.to_go = grant.metres > _MOVED_M
         left_m = self._order.metres_left(part.number)
         goal = part.goal
