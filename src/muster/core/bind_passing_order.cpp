@@ -41,6 +41,7 @@ class CheckedOrder {
   PassingOrder::Grant grant(int robot) { return checked(robot).grant(robot); }
   Pair end(int robot) { return pair_of(checked(robot).end(robot)); }
   Pair begun_end(int robot) { return pair_of(checked(robot).begun_end(robot)); }
+  int passed(int robot) { return checked(robot).passed(robot); }
   int left(int robot) { return checked(robot).left(robot); }
   double metres_left(int robot) { return checked(robot).metres_left(robot); }
   std::vector<Pair> places_left(int robot) { return pairs_of(checked(robot).places_left(robot)); }
@@ -82,6 +83,7 @@ void bind_passing_order(nb::module_& m) {
       .def("grant", &CheckedOrder::grant, "robot"_a, "How far a robot may go now; what it is told it keeps.")
       .def("end", &CheckedOrder::end, "robot"_a, "Where a robot is after all its moves.")
       .def("begun_end", &CheckedOrder::begun_end, "robot"_a, "Where a robot is after the moves that it has begun.")
+      .def("passed", &CheckedOrder::passed, "robot"_a, "Moves that a robot has finished since it was added.")
       .def("left", &CheckedOrder::left, "robot"_a, "Moves that a robot has not finished.")
       .def("metres_left", &CheckedOrder::metres_left, "robot"_a, "Metres that a robot has still to go.")
       .def("places_left", &CheckedOrder::places_left, "robot"_a, "The ends of the moves that are not finished.");

@@ -11,6 +11,7 @@ namespace muster {
 namespace {
 
 constexpr double kSample = 0.05;    // metres between the places of a move that are looked at
+constexpr double kCorner = 0.02;    // metres before the end of a move at which it is as good as passed
 constexpr double kRounding = 1e-6;  // metres
 
 double side(Point a, Point b, Point p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
@@ -89,8 +90,10 @@ Point PassingOrder::place(const Move& m, double at) const {
   return {m.from.x + share * (m.to.x - m.from.x), m.from.y + share * (m.to.y - m.from.y)};
 }
 
-void PassingOrder::finish(std::size_t number) {
-  move(number).robot = -1;
+void PassingOrder::finish_first(Bot& bot) {
+  move(bot.moves.front()).robot = -1;
+  bot.moves.pop_front();
+  ++bot.passed;
   while (!moves_.empty() && moves_.front().robot < 0) {
     moves_.pop_front();
     ++first_;
@@ -99,18 +102,16 @@ void PassingOrder::finish(std::size_t number) {
 
 void PassingOrder::progress(int robot, int passed, Point near) {
   Bot& bot = bots_[robot];
-  while (bot.passed < passed && !bot.moves.empty()) {
-    const std::size_t number = bot.moves.front();
-    bot.moves.pop_front();
-    ++bot.passed;
-    finish(number);
+  while (bot.passed < passed && !bot.moves.empty()) finish_first(bot);
+  for (; !bot.moves.empty(); finish_first(bot)) {
+    Move& m = move(bot.moves.front());
+    if (!m.begun || m.length <= 0.0) return;
+    const double dx = (m.to.x - m.from.x) / m.length, dy = (m.to.y - m.from.y) / m.length;
+    const double along = (near.x - m.from.x) * dx + (near.y - m.from.y) * dy;
+    m.at = std::clamp(along, m.at, std::max(m.at, m.granted));
+    // Where it goes on it need not come back to the end of a move that it has as good as passed.
+    if (along < m.length - kCorner || bot.moves.size() < 2 || !move(bot.moves[1]).begun) return;
   }
-  if (bot.moves.empty()) return;
-  Move& m = move(bot.moves.front());
-  if (!m.begun || m.length <= 0.0) return;
-  const double dx = (m.to.x - m.from.x) / m.length, dy = (m.to.y - m.from.y) / m.length;
-  const double along = (near.x - m.from.x) * dx + (near.y - m.from.y) * dy;
-  m.at = std::clamp(along, m.at, std::max(m.at, m.granted));
 }
 
 std::pair<double, int> PassingOrder::limit(const Move& m) const {

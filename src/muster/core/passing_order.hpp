@@ -59,6 +59,8 @@ class PassingOrder {
   Point end(int robot) const { return bots_[robot].end; }
   // Where a robot is when its moves are done that have begun.
   Point begun_end(int robot) const;
+  // Moves that a robot has finished since it was added.
+  int passed(int robot) const { return bots_[robot].passed; }
   // Moves that a robot has not finished.
   int left(int robot) const { return static_cast<int>(bots_[robot].moves.size()); }
   // Metres that a robot has still to go.
@@ -88,7 +90,7 @@ class PassingOrder {
   bool over(std::size_t number) const { return number < first_ || move(number).robot < 0; }
   double apart(int a, int b) const { return bots_[a].radius + bots_[b].radius + margin_; }
   Point place(const Move& m, double at) const;
-  void finish(std::size_t number);
+  void finish_first(Bot& bot);
   // To where a robot may go of a move, and who stops it there.
   std::pair<double, int> limit(const Move& m) const;
 

@@ -215,9 +215,8 @@ class ReservedTraffic:
             return
         said = part.port.heard
         height = said.position[2] if said is not None else 0.0
-        passed = part.moves_passed + min(part.port.marks_passed, part.ends)
         if part.port.go([(x, y, height) for x, y in grant.points], to_goal=at_goal):
-            part.moves_passed = passed
+            part.moves_passed = self._order.passed(part.number)
         part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
 
 

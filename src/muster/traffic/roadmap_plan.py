@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,10 +14,13 @@ from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.traffic.edge_conflicts import conflicts
 from muster.traffic.reserved import Move, Point, Traveller
 from muster.traffic.roadmap import Roadmap
+from muster.traffic.single_moves import MovePlanner, Parameters
 
 _SAME_M = 1e-6
 _TRIES = 8
 """Orders of robots that are tried."""
+_HORIZON = 10
+"""Moves of each robot that are planned where some find no path by themselves."""
 _ENTRIES = 6
 """Points of the roadmap to which a place beside it is joined, at most."""
 
@@ -39,16 +42,24 @@ class RoadmapPlan:
     roadmap: Roadmap
     clear: Callable[[Floats], bool]
     seed: int = 0
-    _lanes: core.SharedLanes | None = None
-    _points: dict[Point, int] = field(default_factory=dict)
+    inherited: int = 0
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
         places = [place for who in travellers for place in (who.start, who.goal) if place is not None]
         roadmap = with_places(self.roadmap, self.clear, places)
-        lanes = lanes_of(roadmap)
         number = {tuple(point): k for k, point in enumerate(roadmap.points.tolist())}
-        moves, _ends = core.paths_by_safe_intervals(
+        moves = self._by_safe_intervals(roadmap, travellers, number)
+        for traveller, edge in self._by_inheritance(roadmap, travellers, number) if moves is None else moves:
+            x, y = roadmap.points[roadmap.edges[edge, 1]]
+            yield Move(traveller, (float(x), float(y)))
+
+    def _by_safe_intervals(
+        self, roadmap: Roadmap, travellers: Sequence[Traveller], number: Mapping[Point, int]
+    ) -> Sequence[tuple[int, int]] | None:
+        """Moves as (traveller, edge); None where some find no path."""
+        lanes = lanes_of(roadmap)
+        moves, ends = core.paths_by_safe_intervals(
             lanes=lanes,
             rests=roadmap.holding.tolist(),
             travellers=[_told(who, lanes, number) for who in travellers],
@@ -56,9 +67,24 @@ class RoadmapPlan:
             tries=_TRIES,
             seed=self.seed,
         )
-        for _, traveller, edge in moves:
-            x, y = roadmap.points[roadmap.edges[edge, 1]]
-            yield Move(traveller, (float(x), float(y)))
+        import os
+        if os.environ.get("PIBT"): return None
+        return None if math.inf in ends else [(traveller, edge) for _, traveller, edge in moves]
+
+    def _by_inheritance(
+        self, roadmap: Roadmap, travellers: Sequence[Traveller], number: Mapping[Point, int]
+    ) -> Sequence[tuple[int, int]]:
+        self.inherited += 1
+        found = MovePlanner(roadmap).planned(
+            [number[who.start] for who in travellers],
+            [None if who.goal is None else number[who.goal] for who in travellers],
+            [who.robot.radius_m for who in travellers],
+            margin_m=roadmap.margin_m,
+            pinned=[who.fixed or who.ready_s > 0 for who in travellers],
+            seed=self.seed,
+            params=Parameters(horizon=_HORIZON * len(travellers)),
+        )
+        return found.moves
 
 
 def lanes_of(roadmap: Roadmap) -> core.SharedLanes:
@@ -88,22 +114,23 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
         seen = [j for j in nearest.tolist() if clear(points[[k, j]])][:_ENTRIES]
         edges.append(np.array([pair for j in seen for pair in ((k, j), (j, k))], dtype=np.int64).reshape(-1, 2))
     joined = np.concatenate(edges)
-    more = len(joined) - len(roadmap.edges)
+    order = np.lexsort(joined.T[::-1])
+    joined, more = joined[order], len(joined) - len(roadmap.edges)
     start, point, metres = conflicts(points, joined, roadmap.reach)
     return replace(
         roadmap,
         points=points,
         edges=joined,
-        clearance_m=np.append(roadmap.clearance_m, np.zeros(more)),
+        clearance_m=np.append(roadmap.clearance_m, np.zeros(more))[order],
         reach_start=start,
         reach_point=point,
         reach_m=metres,
-        capacity=np.append(roadmap.capacity, np.zeros(more, dtype=np.int64)),
-        speed_mps=np.append(roadmap.speed_mps, np.full(more, np.inf)),
+        capacity=np.append(roadmap.capacity, np.zeros(more, dtype=np.int64))[order],
+        speed_mps=np.append(roadmap.speed_mps, np.full(more, np.inf))[order],
     )
 
 
-def _told(who: Traveller, lanes: core.SharedLanes, number: dict[tuple[float, ...], int]) -> core.Traveller:
+def _told(who: Traveller, lanes: core.SharedLanes, number: Mapping[Point, int]) -> core.Traveller:
     limits, faces = limits_of(who.robot), kinematics_named(who.robot.kinematics).faces_its_way
     return core.Traveller(
         lanes=lanes,
