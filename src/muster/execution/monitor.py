@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-from muster.execution.robot_state import MOVING, Activity, RobotState
+from muster.execution.robot_state import Activity, RobotState
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.kinematics.registry import limits_of

@@ -10,7 +10,7 @@ from muster.execution.dispatch import Dispatch, Emit
 from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.execution.task_ledger import Ledger
-from muster.execution.traffic_waits import TrafficWaits
+from muster.execution.traffic_waits import Progress, TrafficWaits
 
 GIVES_UP_AFTER = 4
 """Times the limit of a jam after which one of its robots gives up its task."""
@@ -99,15 +99,24 @@ class Supervisor:
         for jam in self.traffic.jams():
             members = [self.crew[robot] for robot in sorted(jam) if robot in self.traffic.waits]
             known = [self.traffic.progress[state.robot.id] for state in members]
-            lasted_s, asides = self.traffic.jammed_s(jam), sum(one.asides for one in known)
+            lasted_s = self.traffic.jammed_s(jam)
             if lasted_s >= self.limits.jam_after_s and not all(one.told for one in known):
                 self._tell_jam(jam, members, now - lasted_s)
             if lasted_s >= GIVES_UP_AFTER * self.limits.jam_after_s:
                 for one in known:
                     one.jammed_s = self.limits.jam_after_s
                 yield from self._give_up_in_jam(_first_to_yield(members, self.traffic), jam, now)
-            elif lasted_s >= (1 + asides) * self.limits.aside_after_s:
+            elif lasted_s >= (1 + self._turns(jam, known)) * self.limits.aside_after_s:
                 self._let_stand_aside(_first_to_yield(members, self.traffic), now)
+
+    def _turns(self, jam: Collection[str], known: Sequence[Progress]) -> int:
+        """How often a robot of a jam had to stand aside before it is a known one's turn.
+
+        Of robots that are not of this crew nothing is known: those that see each other alone take turns by their ids.
+        """
+        asides = sum(one.asides for one in known)
+        strangers = [robot for robot in jam if robot not in self.crew]
+        return asides if not strangers else asides * len(jam) + sum(robot < min(self.crew) for robot in strangers)
 
     def _tell_jam(self, jam: Collection[str], members: Sequence[RobotState], since_s: float) -> None:
         for state in members:

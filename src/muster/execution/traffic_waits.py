@@ -84,6 +84,12 @@ class TrafficAccount:
         """Seconds that all robots waited in traffic."""
         return sum(pair.waiting_s for pair in self.pairs.values())
 
+    def take(self, kind: str, data: Mapping[str, Any]) -> None:
+        """An event of another's log: a wait that is over."""
+        if kind == "goes_on":
+            place = [*map(float, data.get("position", ())), 0.0, 0.0, 0.0]
+            self.add(str(data["robot"]), data["waited_s"], (place[0], place[1], place[2]))
+
     def with_waits(self, waits: Mapping[str, TrafficWait]) -> TrafficAccount:
         """The same with waits that are not over."""
         account = TrafficAccount()
@@ -146,10 +152,10 @@ class TrafficWaits:
                     yield "waits_in_traffic", _begun(robot, wait)
             elif wait is not None and (now - wait.until_s >= WAITS_AFTER_S or not _under_way(state)):
                 yield from self._over(robot, wait)
+        since_s, self._looked_s = self._looked_s, now
         for jam in self.jams():
             for robot in jam & self.progress.keys():
-                self.progress[robot].jammed_s += now - self._looked_s
-        self._looked_s = now
+                self.progress[robot].jammed_s += now - since_s
 
     def waits_for(self, robot: str) -> str:
         """For whom a robot waits in traffic; empty where it does not."""
@@ -166,6 +172,8 @@ class TrafficWaits:
             chain = [robot]
             while (wait := self.waits.get(chain[-1])) is not None and wait.waits_for not in chain:
                 chain.append(wait.waits_for)
+            if any(self._stands_aside(one) for one in chain):
+                continue
             if wait is not None:
                 found.add(frozenset(chain[chain.index(wait.waits_for) :]))
             elif self._stands(chain[-1]):
@@ -187,14 +195,19 @@ class TrafficWaits:
         del self.waits[robot]
         if wait.told:
             self.account.add(robot, wait.seconds, wait.place)
-            yield "goes_on", {"robot": robot, "until_s": wait.until_s, "waited_s": _plain(wait.seconds)}
+            yield "goes_on", _ended(robot, wait)
 
     def _stands(self, robot: str) -> bool:
         """Whether a robot stands and does nothing that ends by itself; one of which nothing is known may."""
         state = self._crew.get(robot)
         return state is None or (not state.out and state.activity in (Activity.IDLE, Activity.WAITING))
 
+    def _stands_aside(self, robot: str) -> bool:
+        return robot in self._crew and self._crew[robot].aside_until_s > self._looked_s
+
     def _held_up_by(self, state: RobotState, now: float) -> str:
+        if now < state.aside_until_s and not state.out and state.robot.id in self.waits:
+            return self.waits[state.robot.id].waits_for
         hardly = self._hardly_gets_on(state, now)
         said = state.telemetry
         if said is None or not _under_way(state):
@@ -258,9 +271,13 @@ def _pieces(state: RobotState, reach_m: float) -> Iterator[tuple[Place, Place]]:
 
 
 def _begun(robot: str, wait: TrafficWait) -> dict[str, Any]:
-    place = [round(c, 3) for c in wait.place]
-    return {"robot": robot, "waits_for": wait.waits_for, "position": place, "since_s": wait.since_s}
+    return {"robot": robot, "waits_for": wait.waits_for, "position": _plain(wait.place), "since_s": wait.since_s}
 
 
-def _plain(seconds: Mapping[str, float]) -> dict[str, float]:
-    return {robot: round(waited_s, 6) for robot, waited_s in seconds.items() if waited_s > 0}
+def _ended(robot: str, wait: TrafficWait) -> dict[str, Any]:
+    waited_s = {other: round(seconds, 6) for other, seconds in wait.seconds.items() if seconds > 0}
+    return {"robot": robot, "until_s": wait.until_s, "waited_s": waited_s, "position": _plain(wait.place)}
+
+
+def _plain(place: Place) -> list[float]:
+    return [round(c, 3) for c in place]
