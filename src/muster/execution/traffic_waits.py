@@ -104,20 +104,23 @@ class TrafficAccount:
 class Progress:
     """How a robot gets on to one target: the least way left to it, and when that was reached.
 
-    `jammed_s` is for how long it has been in a jam since then, `asides` how often it stood aside, `told` whether the jam
-    was told.
+    `jammed_s` is for how long it has been in a jam since then, `held_s` the same since one of the jam stood aside,
+    `asides` how often it did itself, `told` whether the jam was told.
     """
 
+    robot: str
     target: str
     least_m: float = math.inf
     since_s: float = 0.0
     jammed_s: float = 0.0
+    held_s: float = 0.0
     asides: int = 0
     told: bool = False
 
     def note(self, left_m: float, now: float) -> None:
         if left_m < self.least_m - _NEARER_M:
-            self.least_m, self.since_s, self.jammed_s, self.asides, self.told = left_m, now, 0.0, 0, False
+            self.least_m, self.since_s = left_m, now
+            self.jammed_s, self.held_s, self.asides, self.told = 0.0, 0.0, 0, False
 
 
 class TrafficWaits:
@@ -153,9 +156,10 @@ class TrafficWaits:
             elif wait is not None and (now - wait.until_s >= WAITS_AFTER_S or not _under_way(state)):
                 yield from self._over(robot, wait)
         since_s, self._looked_s = self._looked_s, now
-        for jam in self.jams():
-            for robot in jam & self.progress.keys():
-                self.progress[robot].jammed_s += now - since_s
+        for core in self._cores():
+            for one in self.members(core):
+                one.jammed_s += now - since_s
+                one.held_s += now - since_s
 
     def waits_for(self, robot: str) -> str:
         """For whom a robot waits in traffic; empty where it does not."""
@@ -167,27 +171,29 @@ class TrafficWaits:
 
         Who waits for one that drives, works or is out is in no jam: that one goes on, or is put out.
         """
+        return {core for core in self._cores() if not any(self._stands_aside(robot) for robot in core)}
+
+    def _cores(self) -> set[frozenset[str]]:
+        """The robots of all jams, of those too in which one stands aside for now."""
         found = set()
         for robot in self.waits:
             chain = [robot]
             while (wait := self.waits.get(chain[-1])) is not None and wait.waits_for not in chain:
                 chain.append(wait.waits_for)
-            if any(self._stands_aside(one) for one in chain):
-                continue
             if wait is not None:
                 found.add(frozenset(chain[chain.index(wait.waits_for) :]))
             elif self._stands(chain[-1]):
                 found.add(frozenset(chain[-2:]))
         return found
 
-    def jammed_s(self, jam: Collection[str]) -> float:
-        """For how long all robots of a jam have been in one without getting on."""
-        return min(self.progress[robot].jammed_s for robot in jam if robot in self.waits)
+    def members(self, jam: Collection[str]) -> list[Progress]:
+        """How those of a jam get on who wait, by their ids."""
+        return [self.progress[robot] for robot in sorted(jam) if robot in self.waits]
 
     def _note_progress(self, state: RobotState, now: float) -> None:
         robot, target = state.robot.id, state.route[0] if state.route else ""
         if robot not in self.progress or self.progress[robot].target != target:
-            self.progress[robot] = Progress(target, since_s=now)
+            self.progress[robot] = Progress(robot, target, since_s=now)
         if _under_way(state):
             self.progress[robot].note(state.way_left_m, now)
 

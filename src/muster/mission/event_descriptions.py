@@ -51,7 +51,9 @@ def _goes_on(data: Mapping[str, Any]) -> str:
 
 def _traffic_jam(data: Mapping[str, Any]) -> str:
     since_s = data.get("since_s", 0.0)
-    return f"traffic jam: {', '.join(data.get('robots', ()))} hold each other up at {_place(data)} since {since_s:.1f} s"
+    return (
+        f"traffic jam: {', '.join(data.get('robots', ()))} hold each other up at {_place(data)} since {since_s:.1f} s"
+    )
 
 
 def _place(data: Mapping[str, Any]) -> str:
