@@ -29,8 +29,8 @@ class Limits:
     silent_after_s
         a robot that has said nothing new for longer counts as silent.
     stuck_after_s
-        a robot that gets on by less than a twentieth of its speed for so long, while nobody is in its way, is sent again,
-        and the next time out.
+        a robot that gets on by less than a twentieth of its speed for so long, while nobody is in its way, is sent
+        again, and the next time out.
     aside_after_s, aside_s
         of robots that hold each other up for so long one after the other stands aside for a while.
     jam_after_s

@@ -97,7 +97,7 @@ class Supervisor:
             yield from self._give_up_blocked(state, broken, now)
 
     def _break_jams(self, now: float) -> Iterator[Change]:
-        """In a jam one robot after the other stands aside; a long one is told, and at last a robot gives up its task."""
+        """In a jam one robot after the other stands aside; a long one is told; at last a robot gives up its task."""
         for jam in self.traffic.jams():
             members = self.traffic.members(jam)
             lasted_s, held_s = (min(getattr(one, key) for one in members) for key in ("jammed_s", "held_s"))
@@ -129,18 +129,19 @@ class Supervisor:
 
         return self.crew[min(members, key=rank).robot]
 
-    def _tell_jam(self, jam: Collection[str], members: Sequence[Progress], since_s: float) -> None:
-        for one in members:
-            one.told = True
+    def _tell_jam(self, jam: frozenset[str], members: Sequence[Progress], since_s: float) -> None:
+        for robot in jam & self.traffic.progress.keys():
+            self.traffic.progress[robot].told = True
         place = [round(c, 3) for c in self.crew[members[0].robot].position]
         self.emit("traffic_jam", {"robots": sorted(jam), "position": place, "since_s": since_s})
 
     def _let_stand_aside(self, state: RobotState, now: float) -> None:
         """Longer each time; work is not broken off for that."""
-        progress, waits_for = (of[state.robot.id] for of in (self.traffic.progress, self.traffic.waits))
+        robot = state.robot.id
+        progress = self.traffic.progress[robot]
         progress.asides += 1
         if state.activity is not Activity.WORKING:
-            self.emit("robot_stands_aside", {"robot": state.robot.id, "waits_for": waits_for.waits_for})
+            self.emit("robot_stands_aside", {"robot": robot, "waits_for": self.traffic.waits[robot].waits_for})
             aside_s = min(progress.asides, LONGEST_ASIDE) * self.limits.aside_s
             self.dispatch.stand_aside(state, now + aside_s, now)
 

@@ -159,6 +159,8 @@ class TrafficWaits:
         for core in self._cores():
             for one in self.members(core):
                 one.jammed_s += now - since_s
+        for jam in self.jams():
+            for one in self.members(jam):
                 one.held_s += now - since_s
 
     def waits_for(self, robot: str) -> str:
@@ -206,7 +208,9 @@ class TrafficWaits:
     def _stands(self, robot: str) -> bool:
         """Whether a robot stands and does nothing that ends by itself; one of which nothing is known may."""
         state = self._crew.get(robot)
-        return state is None or (not state.out and state.activity in (Activity.IDLE, Activity.WAITING))
+        if state is None or state.out:
+            return state is None
+        return state.activity is Activity.WAITING or (state.activity is Activity.IDLE and not state.route)
 
     def _stands_aside(self, robot: str) -> bool:
         return robot in self._crew and self._crew[robot].aside_until_s > self._looked_s
@@ -252,7 +256,7 @@ def _under_way(state: RobotState) -> bool:
 
 
 def _has_way(state: RobotState) -> bool:
-    """Whether it is not where it is to be next: at work at a place it stands as near to that as its body lets others."""
+    """Whether it is not yet where it is to be next; at work a robot stands as near to that as its body lets others."""
     near_m = state.robot.radius_m if state.activity is Activity.WORKING else 0.0
     return bool(state.points_left) and math.dist(state.position, state.points_left[0]) > near_m
 

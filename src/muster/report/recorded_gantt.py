@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 
 def plot_flown_gantt(recording: Recording) -> Axes:
-    """Draw when each robot travelled, worked and waited, at tasks and in traffic: the robots of the mission, then those that joined.
+    """Draw when each robot travelled, worked and waited, at tasks and in traffic.
+
+    There is a row for each robot of the mission, then for those that joined.
 
     Looks like `plot_gantt`. The lines are the end of the mission, and the makespan of the plan that it began with.
 

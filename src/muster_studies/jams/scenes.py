@@ -139,7 +139,7 @@ def _box(left: float, low: float, right: float, high: float) -> Zone:
 
 
 def _robot(number: int, place: Place, heading: float, kinematics: str) -> Robot:
-    drives = {"acceleration_mps2": ACCELERATION_MPS2, "yaw_rate_radps": YAW_RATE_RADPS}
+    drives = kinematics == DIFFERENTIAL
     return Robot(
         id=f"r_{number}",
         position=place,
@@ -147,7 +147,8 @@ def _robot(number: int, place: Place, heading: float, kinematics: str) -> Robot:
         radius_m=RADIUS_M,
         speed_mps=SPEED_MPS,
         kinematics=kinematics,
-        **(drives if kinematics == DIFFERENTIAL else {}),
+        acceleration_mps2=ACCELERATION_MPS2 if drives else None,
+        yaw_rate_radps=YAW_RATE_RADPS if drives else None,
     )
 
 
