@@ -1,7 +1,7 @@
 """Scenes for teams in narrow places: doors, aisles, dead ends, corridors, circles and streams.
 
-Robots have a radius of 0.3 m and drive at 1 m/s. Places lie on grids, and with a seed above 0 they are shifted at random
-by up to `SHIFT_M`: the regular scene has the most symmetries.
+Robots have a radius of 0.3 m and drive at 1 m/s. Places lie on grids. With a seed above 0 they are shifted at random by
+up to `SHIFT_M`: the regular scene has the most symmetries.
 """
 
 from __future__ import annotations
