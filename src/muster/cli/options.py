@@ -179,18 +179,19 @@ def objective_option(verb: Verb) -> Verb:
     return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
 
 
-AVOIDANCE = ("orca", "rvo", "hrvo", "avo", "none")
+def avoidance_option(*names: str) -> Callable[[Verb], Verb]:
+    """--avoidance, one of these; the first is the default."""
 
+    def add(verb: Verb) -> Verb:
+        return click.option(
+            "--avoidance",
+            type=click.Choice(names),
+            default=names[0],
+            show_default=True,
+            help="How robots pass each other.",
+        )(verb)
 
-def avoidance_option(verb: Verb) -> Verb:
-    """--avoidance."""
-    return click.option(
-        "--avoidance",
-        type=click.Choice(AVOIDANCE),
-        default="orca",
-        show_default=True,
-        help="How robots pass each other.",
-    )(verb)
+    return add
 
 
 def require_complete_option(verb: Verb) -> Verb:

@@ -14,7 +14,10 @@ from muster.mission.model import Mission, Tag
 _NEAR_M = 1.0
 """What was found farther from a tag is another one."""
 _SHOWN_S = 0.01  # by which waiting differs in what is printed
+_MOST_HELD_UP = 5
+"""Rows of waiting in traffic that are printed."""
 _CAUSES = {
+    "traffic": "other robots",
     "prerequisite": "prerequisites",
     "window": "time windows",
     "lag": "lags",
@@ -45,6 +48,7 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
     _print_lateness(report)
+    _print_traffic(report)
     if report.get("reallocations"):
         of_tasks = "; of tasks by the one in force then" if with_tasks else ""
         click.echo(f"planned           of robots: by the plan that the mission began with{of_tasks}")
@@ -104,6 +108,27 @@ def _print_lateness(report: Report) -> None:
     rows = [(row["task"], number(row.get("at_s")), str(row.get("reason", "-"))) for row in report.get("missed", ())]
     if rows:
         print_table(("task not begun in time", "at [s]", "reason"), rows, right=("at [s]",))
+
+
+def _print_traffic(report: Report) -> None:
+    """Print who held up whom in traffic, the longest waiting first."""
+    found = report.get("traffic", ())
+    rows = [
+        (
+            row["robot"],
+            row["waits_for"],
+            number(row.get("waiting_s")),
+            str(row.get("times", "-")),
+            number(row.get("longest_s")),
+            ", ".join(number(value) for value in row.get("position", ())[:2]),
+        )
+        for row in found[:_MOST_HELD_UP]
+    ]
+    if rows:
+        columns = ("waits in traffic", "for", "waited [s]", "times", "longest [s]", "there at [m]")
+        print_table(columns, rows, right=columns[2:5])
+    if len(found) > len(rows):
+        click.echo(f"{'in traffic':<17} and {counted(len(found) - len(rows), 'more pair')} of robots")
 
 
 def _nearness(report: Report) -> str:

@@ -34,6 +34,7 @@ from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
+from muster.motion.avoidance_names import METHODS
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
@@ -72,7 +73,7 @@ _LEFT = "the robots were told to stand"
     metavar="HZ",
     help="Rate at which velocities are sent.",
 )
-@avoidance_option
+@avoidance_option(*METHODS)
 @click.option(
     "--odometry",
     type=click.Choice(["map", "start"]),

@@ -768,6 +768,11 @@ class CrowdWorld:
         Metres off its trajectory: the sum over steps in which it followed it, the most, the steps.
         """
 
+    def held_up_by(self, robot: int) -> int:
+        """
+        The robot that holds one up on the way of its order; -1 where none does.
+        """
+
     def busy(self, robot: int) -> bool: ...
 
     def positions(self) -> NDArray[numpy.float64]: ...

@@ -4,6 +4,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <stdexcept>
 #include <tuple>
@@ -59,10 +60,10 @@ Traveller traveller_of(const SharedLanes& lanes, int start, const Stops& stops, 
   return who;
 }
 
-std::pair<std::vector<std::tuple<double, int, int>>, std::vector<double>> told(const Paths& paths) {
+std::tuple<std::vector<std::tuple<double, int, int>>, std::vector<double>, std::vector<int>> told(const Paths& paths) {
   std::vector<std::tuple<double, int, int>> moves;
   for (const TimedMove& move : paths.moves) moves.emplace_back(move.start, move.traveller, move.lane);
-  return {std::move(moves), paths.ends};
+  return {std::move(moves), paths.ends, paths.order};
 }
 
 }  // namespace
@@ -92,15 +93,20 @@ void bind_safe_intervals(nb::module_& m) {
   m.def(
       "paths_by_safe_intervals",
       [](const SharedLanes& lanes, const std::vector<bool>& rests, const std::vector<Traveller>& travellers,
-         double margin, int tries, std::uint64_t seed) {
+         std::vector<int> order, double margin, int tries, std::uint64_t seed) {
         if (static_cast<int>(rests.size()) != lanes.points()) throw std::invalid_argument("rests: one for each point");
+        std::vector<int> sorted = order;
+        std::ranges::sort(sorted);
+        for (std::size_t k = 0; k < travellers.size(); ++k)
+          if (sorted.size() != travellers.size() || sorted[k] != static_cast<int>(k))
+            throw std::invalid_argument("order: expected each traveller once");
         if (tries < 1) throw std::invalid_argument("tries: expected at least 1");
         nb::gil_scoped_release free;
-        return told(SafeIntervals(lanes, rests, margin).best_of(travellers, tries, seed));
+        return told(SafeIntervals(lanes, rests, margin).best_of(travellers, std::move(order), tries, seed));
       },
-      nb::kw_only(), "lanes"_a, "rests"_a, "travellers"_a, "margin"_a, "tries"_a, "seed"_a,
-      "Moves (seconds, traveller, lane) in order, and when each has held at its last stop, inf where it finds no path "
-      "[phillips2011].");
+      nb::kw_only(), "lanes"_a, "rests"_a, "travellers"_a, "order"_a, "margin"_a, "tries"_a, "seed"_a,
+      "Moves (seconds, traveller, lane) in order; when each has held at its last stop, inf where it finds no path; and "
+      "the order of travellers in which these were found, the best of several from the one given on [phillips2011].");
 }
 
 }  // namespace muster

@@ -15,7 +15,6 @@ constexpr double kCrumbs = 0.05;   // metres
 constexpr double kAskedFor = 3.0;  // seconds
 constexpr double kLooks = 0.5;     // seconds between two looks for room
 constexpr double kYields = 5.0;    // seconds for which one waits for another to make room
-constexpr double kAlmost = 4.0;    // radii from its way point within which one is almost there
 constexpr double kPi = 3.14159265358979323846;
 
 // Turned to the left about the vertical; what goes straight up or down leans towards x.
@@ -77,11 +76,12 @@ Vec<3> Trail::aim(const CrowdRobot& robot) const {
 }
 
 Manners::Manners(std::vector<CrowdRobot>& robots, const std::vector<WallSet>& walls, const AgentTree<3>& tree,
-                 double time, double dt, bool space)
+                 double time, double dt, bool space, double almost)
     : robots_(robots),
       tree_(tree),
       time_(time),
       dt_(dt),
+      almost_(almost),
       largest_radius_(largest_radius(robots)),
       room_(robots, walls, tree, largest_radius_, space) {}
 
@@ -122,7 +122,7 @@ Vec<3> Manners::wanted_under_way(int i, const Vec<3>& course, const std::vector<
   const bool yields = std::any_of(near.begin(), near.end(), [&](int k) {
     return on_way_point(k) && robots_[k].has_time() && !robots_[k].aside.empty();
   });
-  const bool almost_there = norm(goal - robot.position) < kAlmost * robot.body.radius &&
+  const bool almost_there = norm(goal - robot.position) < almost_ * robot.body.radius &&
                             std::none_of(near.begin(), near.end(), [&](int k) { return is_before(i, k); });
   const bool impatient = robot.patience.stuck > (almost_there ? kYields : kPatience);
   robot.arrives = almost_there && !impatient;

@@ -242,24 +242,15 @@ Paths SafeIntervals::in_order(std::span<const Traveller> travellers, std::span<c
   return paths;
 }
 
-Paths SafeIntervals::best_of(std::span<const Traveller> travellers, int tries, std::uint64_t seed) {
+Paths SafeIntervals::best_of(std::span<const Traveller> travellers, std::vector<int> order, int tries,
+                             std::uint64_t seed) {
   const int n = static_cast<int>(travellers.size());
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
-  const auto urgency = [&](int k) {
-    const Traveller& who = travellers[k];
-    if (who.stops.empty()) return -1.0;
-    const double metres = metres_to(who.stops.front().point, who.radius)[who.start];
-    return metres / who.speed;
-  };
-  std::vector<double> urgencies;
-  for (int k = 0; k < n; ++k) urgencies.push_back(urgency(k));
-  std::ranges::stable_sort(order, std::greater<>(), [&](int k) { return urgencies[k]; });
   Random random(seed);
   Paths best;
   std::pair<int, double> least{n + 1, kNever};
   for (int k = 0; k < tries || (least.first > 0 && k < kTriesWhereLost * tries); ++k) {
     Paths paths = in_order(travellers, order);
+    paths.order = order;
     int lost = 0;
     double sum = 0.0;
     for (int i = 0; i < n; ++i) paths.ends[i] < kNever ? void(sum += paths.ends[i]) : void(++lost);

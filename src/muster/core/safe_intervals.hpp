@@ -36,6 +36,7 @@ struct TimedMove {
 struct Paths {
   std::vector<TimedMove> moves;  // by start
   std::vector<double> ends;      // when each has held at its last stop; infinite where no path was found
+  std::vector<int> order;        // in which they were planned
 };
 
 class SafeIntervals {
@@ -46,8 +47,9 @@ class SafeIntervals {
   // Paths of all travellers, the first of the order first.
   Paths in_order(std::span<const Traveller> travellers, std::span<const int> order);
 
-  // The best paths of several orders: those without a path come first in the next, then orders are drawn.
-  Paths best_of(std::span<const Traveller> travellers, int tries, std::uint64_t seed);
+  // The best paths of several orders, the first of which is given: those without a path come first in the next, then
+  // orders are drawn.
+  Paths best_of(std::span<const Traveller> travellers, std::vector<int> order, int tries, std::uint64_t seed);
 
  private:
   struct Span {

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
-from muster.execution.robot_state import MOVING, Activity, RobotState
+from muster.execution.robot_state import Activity, RobotState
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.kinematics.registry import limits_of
@@ -29,8 +29,8 @@ class Limits:
     silent_after_s
         a robot that has said nothing new for longer counts as silent.
     stuck_after_s
-        a robot that gets on by less than a twentieth of its speed for so long, while nobody is in its way, is sent again,
-        and the next time out.
+        a robot that gets on by less than a twentieth of its speed for so long, while nobody is in its way, is sent
+        again, and the next time out.
     aside_after_s, aside_s
         of robots that hold each other up for so long one after the other stands aside for a while.
     jam_after_s
@@ -63,8 +63,6 @@ def is_stuck(state: RobotState, now: float, limits: Limits) -> bool:
         return now > state.nearest_s + 2 * state.work_s + limits.stuck_after_s
     if state.activity not in (Activity.DRIVING, Activity.RETURNING):
         return False
-    if state.telemetry is not None and state.telemetry.waits_for is not None:
-        state.nearest_s = now
     left = state.way_left_m
     if left < state.nearest_m - _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s:
         state.nearest_m, state.nearest_s = left, now

@@ -16,6 +16,7 @@ from muster.allocation.charges import Charge
 from muster.allocation.fixed import with_fixed_routes
 from muster.allocation.problem import Problem
 from muster.execution.relations import Binding
+from muster.execution.task_ledger import some_of
 from muster.execution.teams import units_of
 from muster.execution.travel import Spot, Travel
 from muster.mission.model import Mission, Robot, Task
@@ -251,7 +252,7 @@ def in_one_line(reasons: Iterable[tuple[str, str]]) -> str:
     robots: dict[str, list[str]] = {}
     for robot, why in reasons:
         robots.setdefault(why, []).append(robot)
-    return "; ".join(f"{why} ({', '.join(names)})" for why, names in robots.items())
+    return "; ".join(f"{why} ({some_of(names)})" for why, names in robots.items())
 
 
 def _delayed(rest: RemainingMission, problem: Problem) -> Problem:

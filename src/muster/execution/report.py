@@ -168,9 +168,9 @@ class Report:
     traffic
         who held up whom in traffic, the longest waiting first.
     waiting_by_cause_s
-        seconds that robots waited, by cause: `traffic`; and at tasks, done or not, where a task has a rule about time or
-        teams: `prerequisite`, `window`, `lag`, `team`, `start` (of a task that begins with it), `dependant` (so that another
-        task can begin soon enough after it).
+        seconds that robots waited, by cause: `traffic`; and at tasks, done or not, where a task has a rule about time
+        or teams: `prerequisite`, `window`, `lag`, `team`, `start` (of a task that begins with it), `dependant` (so that
+        another task can begin soon enough after it).
     lateness_s
         by how much tasks done ended after their due times, in all.
     missed

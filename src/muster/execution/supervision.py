@@ -10,10 +10,12 @@ from muster.execution.dispatch import Dispatch, Emit
 from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.execution.task_ledger import Ledger
-from muster.execution.traffic_waits import TrafficWaits
+from muster.execution.traffic_waits import Progress, TrafficWaits
 
 GIVES_UP_AFTER = 4
 """Times the limit of a jam after which one of its robots gives up its task."""
+LONGEST_ASIDE = 3
+"""Times the first time that a robot stands aside at most."""
 
 
 @dataclass
@@ -95,32 +97,60 @@ class Supervisor:
             yield from self._give_up_blocked(state, broken, now)
 
     def _break_jams(self, now: float) -> Iterator[Change]:
-        """In a jam one robot after the other stands aside; a long one is told, and at last a robot gives up its task."""
+        """In a jam one robot after the other stands aside; a long one is told; at last a robot gives up its task."""
         for jam in self.traffic.jams():
-            members = [self.crew[robot] for robot in sorted(jam) if robot in self.traffic.waits]
-            known = [self.traffic.progress[state.robot.id] for state in members]
-            lasted_s, asides = self.traffic.jammed_s(jam), sum(one.asides for one in known)
-            if lasted_s >= self.limits.jam_after_s and not all(one.told for one in known):
+            members = self.traffic.members(jam)
+            lasted_s, held_s = (min(getattr(one, key) for one in members) for key in ("jammed_s", "held_s"))
+            if lasted_s >= self.limits.jam_after_s and not all(one.told for one in members):
                 self._tell_jam(jam, members, now - lasted_s)
+            if self._steered(members):  # who steers them lets them pass
+                continue
             if lasted_s >= GIVES_UP_AFTER * self.limits.jam_after_s:
-                for one in known:
+                for one in members:
                     one.jammed_s = self.limits.jam_after_s
-                yield from self._give_up_in_jam(_first_to_yield(members, self.traffic), jam, now)
-            elif lasted_s >= (1 + asides) * self.limits.aside_after_s:
-                self._let_stand_aside(_first_to_yield(members, self.traffic), now)
+                yield from self._give_up_in_jam(self._first_to_yield(members), jam, now)
+            elif held_s >= self._turn(jam, members) * self.limits.aside_after_s:
+                for one in members:
+                    one.held_s = 0.0
+                self._let_stand_aside(self._first_to_yield(members), now)
 
-    def _tell_jam(self, jam: Collection[str], members: Sequence[RobotState], since_s: float) -> None:
-        for state in members:
-            self.traffic.progress[state.robot.id].told = True
-        place = [round(c, 3) for c in members[0].position]
+    def _steered(self, members: Sequence[Progress]) -> bool:
+        """Whether traffic decides who passes first of these robots."""
+        said = [self.crew[one.robot].telemetry for one in members]
+        return any(one is not None and one.waits_for is not None for one in said)
+
+    def _turn(self, jam: Collection[str], members: Sequence[Progress]) -> int:
+        """Which of a jam is the next to stand aside, from 1, as far as its robots do not know of each other.
+
+        Of robots of another crew nothing is known: those that see each other alone take turns by their ids.
+        """
+        strangers = [robot for robot in jam if robot not in self.crew]
+        return 1 + sum(robot < members[0].robot for robot in strangers)
+
+    def _first_to_yield(self, members: Sequence[Progress]) -> RobotState:
+        """Who stands aside next: by turns, first who has no task there, then by priority."""
+
+        def rank(one: Progress) -> tuple[int, bool, float, str]:
+            state = self.crew[one.robot]
+            return one.asides, state.activity is not Activity.RETURNING, state.robot.avoidance_priority, one.robot
+
+        return self.crew[min(members, key=rank).robot]
+
+    def _tell_jam(self, jam: frozenset[str], members: Sequence[Progress], since_s: float) -> None:
+        for robot in jam & self.traffic.progress.keys():
+            self.traffic.progress[robot].told = True
+        place = [round(c, 3) for c in self.crew[members[0].robot].position]
         self.emit("traffic_jam", {"robots": sorted(jam), "position": place, "since_s": since_s})
 
     def _let_stand_aside(self, state: RobotState, now: float) -> None:
+        """Longer each time; work is not broken off for that."""
         robot = state.robot.id
-        self.traffic.progress[robot].asides += 1
-        self.emit("robot_stands_aside", {"robot": robot, "waits_for": self.traffic.waits[robot].waits_for})
+        progress = self.traffic.progress[robot]
+        progress.asides += 1
         if state.activity is not Activity.WORKING:
-            self.dispatch.stand_aside(state, now + self.traffic.progress[robot].asides * self.limits.aside_s, now)
+            self.emit("robot_stands_aside", {"robot": robot, "waits_for": self.traffic.waits[robot].waits_for})
+            aside_s = min(progress.asides, LONGEST_ASIDE) * self.limits.aside_s
+            self.dispatch.stand_aside(state, now + aside_s, now)
 
     def _give_up_in_jam(self, state: RobotState, jam: Collection[str], now: float) -> Iterator[Change]:
         if state.activity is Activity.RETURNING:
@@ -156,14 +186,3 @@ class Supervisor:
         elif state.warned_of != task and exceeds(after + self.dispatch.ahead[state.robot.id].get(task, 0.0), capacity):
             state.warned_of = task
             yield Change("robot_runs_low", {"robot": state.robot.id, "capacity": capacity})
-
-
-def _first_to_yield(members: Sequence[RobotState], traffic: TrafficWaits) -> RobotState:
-    """Who stands aside next: by turns, first who has no task there, then by priority."""
-
-    def rank(state: RobotState) -> tuple[int, bool, float, str]:
-        robot = state.robot
-        asides = traffic.progress[robot.id].asides
-        return asides, state.activity is not Activity.RETURNING, robot.avoidance_priority, robot.id
-
-    return min(members, key=rank)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -12,6 +12,8 @@ from muster.mission.model import Point, Robot, Task
 
 TIME_ROUNDING_S = 1e-6
 """By which a time may be past a limit: clocks add up steps."""
+MOST_NAMED = 3
+"""Robots that a reason names, and one more."""
 
 
 @dataclass(frozen=True)
@@ -126,10 +128,8 @@ class Ledger:
         gone
             by robot that takes no part any more since when, and why.
         """
-        who = ", ".join(f"{robot} ({since})" for robot, since in gone.items())
-        out = f"; no longer taking part: {who}" if gone else ""
         lost = {name: f"cancelled at {round(at_s, 1):g} s" for name, at_s in self.cancelled.items()}
-        lost |= {task.id: why(task.id) + out for task in self.open if task.id not in under_way}
+        lost |= {task.id: why(task.id) + _out(task, gone) for task in self.open if task.id not in under_way}
         return {name: lost[name] for name in self.tasks if name in lost}
 
     @property
@@ -218,6 +218,18 @@ class Ledger:
     def withdraw(self, task: str, now: float) -> None:
         self.cancelled[task] = now
         self.give_up(task)
+
+
+def _out(task: Task, gone: Mapping[str, str]) -> str:
+    """Robots that take no part any more and might have done a task."""
+    who = [f"{robot} ({since})" for robot, since in gone.items() if not task.only_robots or robot in task.only_robots]
+    return f"; no longer taking part: {some_of(who)}" if who else ""
+
+
+def some_of(names: Sequence[str]) -> str:
+    """A few names, and how many more there are."""
+    left = len(names) - MOST_NAMED
+    return ", ".join(names) if left <= 1 else f"{', '.join(names[:MOST_NAMED])} and {left} more"
 
 
 def _over(time_s: float, limit_s: float | None) -> float:

@@ -84,6 +84,12 @@ class TrafficAccount:
         """Seconds that all robots waited in traffic."""
         return sum(pair.waiting_s for pair in self.pairs.values())
 
+    def take(self, kind: str, data: Mapping[str, Any]) -> None:
+        """An event of another's log: a wait that is over."""
+        if kind == "goes_on":
+            place = [*map(float, data.get("position", ())), 0.0, 0.0, 0.0]
+            self.add(str(data["robot"]), data["waited_s"], (place[0], place[1], place[2]))
+
     def with_waits(self, waits: Mapping[str, TrafficWait]) -> TrafficAccount:
         """The same with waits that are not over."""
         account = TrafficAccount()
@@ -98,20 +104,23 @@ class TrafficAccount:
 class Progress:
     """How a robot gets on to one target: the least way left to it, and when that was reached.
 
-    `jammed_s` is for how long it has been in a jam since then, `asides` how often it stood aside, `told` whether the jam
-    was told.
+    `jammed_s` is for how long it has been in a jam since then, `held_s` the same since one of the jam stood aside,
+    `asides` how often it did itself, `told` whether the jam was told.
     """
 
+    robot: str
     target: str
     least_m: float = math.inf
     since_s: float = 0.0
     jammed_s: float = 0.0
+    held_s: float = 0.0
     asides: int = 0
     told: bool = False
 
     def note(self, left_m: float, now: float) -> None:
         if left_m < self.least_m - _NEARER_M:
-            self.least_m, self.since_s, self.jammed_s, self.asides, self.told = left_m, now, 0.0, 0, False
+            self.least_m, self.since_s = left_m, now
+            self.jammed_s, self.held_s, self.asides, self.told = 0.0, 0.0, 0, False
 
 
 class TrafficWaits:
@@ -146,10 +155,13 @@ class TrafficWaits:
                     yield "waits_in_traffic", _begun(robot, wait)
             elif wait is not None and (now - wait.until_s >= WAITS_AFTER_S or not _under_way(state)):
                 yield from self._over(robot, wait)
+        since_s, self._looked_s = self._looked_s, now
+        for core in self._cores():
+            for one in self.members(core):
+                one.jammed_s += now - since_s
         for jam in self.jams():
-            for robot in jam & self.progress.keys():
-                self.progress[robot].jammed_s += now - self._looked_s
-        self._looked_s = now
+            for one in self.members(jam):
+                one.held_s += now - since_s
 
     def waits_for(self, robot: str) -> str:
         """For whom a robot waits in traffic; empty where it does not."""
@@ -161,6 +173,10 @@ class TrafficWaits:
 
         Who waits for one that drives, works or is out is in no jam: that one goes on, or is put out.
         """
+        return {core for core in self._cores() if not any(self._stands_aside(robot) for robot in core)}
+
+    def _cores(self) -> set[frozenset[str]]:
+        """The robots of all jams, of those too in which one stands aside for now."""
         found = set()
         for robot in self.waits:
             chain = [robot]
@@ -172,14 +188,14 @@ class TrafficWaits:
                 found.add(frozenset(chain[-2:]))
         return found
 
-    def jammed_s(self, jam: Collection[str]) -> float:
-        """For how long all robots of a jam have been in one without getting on."""
-        return min(self.progress[robot].jammed_s for robot in jam if robot in self.waits)
+    def members(self, jam: Collection[str]) -> list[Progress]:
+        """How those of a jam get on who wait, by their ids."""
+        return [self.progress[robot] for robot in sorted(jam) if robot in self.waits]
 
     def _note_progress(self, state: RobotState, now: float) -> None:
         robot, target = state.robot.id, state.route[0] if state.route else ""
         if robot not in self.progress or self.progress[robot].target != target:
-            self.progress[robot] = Progress(target, since_s=now)
+            self.progress[robot] = Progress(robot, target, since_s=now)
         if _under_way(state):
             self.progress[robot].note(state.way_left_m, now)
 
@@ -187,14 +203,21 @@ class TrafficWaits:
         del self.waits[robot]
         if wait.told:
             self.account.add(robot, wait.seconds, wait.place)
-            yield "goes_on", {"robot": robot, "until_s": wait.until_s, "waited_s": _plain(wait.seconds)}
+            yield "goes_on", _ended(robot, wait)
 
     def _stands(self, robot: str) -> bool:
         """Whether a robot stands and does nothing that ends by itself; one of which nothing is known may."""
         state = self._crew.get(robot)
-        return state is None or (not state.out and state.activity in (Activity.IDLE, Activity.WAITING))
+        if state is None or state.out:
+            return state is None
+        return state.activity is Activity.WAITING or (state.activity is Activity.IDLE and not state.route)
+
+    def _stands_aside(self, robot: str) -> bool:
+        return robot in self._crew and self._crew[robot].aside_until_s > self._looked_s
 
     def _held_up_by(self, state: RobotState, now: float) -> str:
+        if now < state.aside_until_s and not state.out and state.robot.id in self.waits:
+            return self.waits[state.robot.id].waits_for
         hardly = self._hardly_gets_on(state, now)
         said = state.telemetry
         if said is None or not _under_way(state):
@@ -233,7 +256,7 @@ def _under_way(state: RobotState) -> bool:
 
 
 def _has_way(state: RobotState) -> bool:
-    """Whether it is not where it is to be next: at work at a place it stands as near to that as its body lets others."""
+    """Whether it is not yet where it is to be next; at work a robot stands as near to that as its body lets others."""
     near_m = state.robot.radius_m if state.activity is Activity.WORKING else 0.0
     return bool(state.points_left) and math.dist(state.position, state.points_left[0]) > near_m
 
@@ -258,9 +281,13 @@ def _pieces(state: RobotState, reach_m: float) -> Iterator[tuple[Place, Place]]:
 
 
 def _begun(robot: str, wait: TrafficWait) -> dict[str, Any]:
-    place = [round(c, 3) for c in wait.place]
-    return {"robot": robot, "waits_for": wait.waits_for, "position": place, "since_s": wait.since_s}
+    return {"robot": robot, "waits_for": wait.waits_for, "position": _plain(wait.place), "since_s": wait.since_s}
 
 
-def _plain(seconds: Mapping[str, float]) -> dict[str, float]:
-    return {robot: round(waited_s, 6) for robot, waited_s in seconds.items() if waited_s > 0}
+def _ended(robot: str, wait: TrafficWait) -> dict[str, Any]:
+    waited_s = {other: round(seconds, 6) for other, seconds in wait.seconds.items() if seconds > 0}
+    return {"robot": robot, "until_s": wait.until_s, "waited_s": waited_s, "position": _plain(wait.place)}
+
+
+def _plain(place: Place) -> list[float]:
+    return [round(c, 3) for c in place]

@@ -23,6 +23,7 @@ from muster.execution import (
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.motion.avoidance_names import AUTO
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
@@ -60,7 +61,7 @@ class Simulation:
     dt_s
         step of the world in seconds.
     avoidance
-        how robots pass each other: orca, rvo, hrvo, avo or none.
+        how robots pass each other: auto (the method that jams least), orca, rvo, hrvo, avo or none.
     law
         how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise
@@ -100,7 +101,7 @@ class Simulation:
         world: str = "kinematic",
         seed: int = 0,
         dt_s: float = 0.1,
-        avoidance: str = "orca",
+        avoidance: str = AUTO,
         traffic: str = "free",
         law: str = "profile",
         noise: Noise = NO_NOISE,

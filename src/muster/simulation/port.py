@@ -22,8 +22,8 @@ from muster.simulation.noise import Noise
 class SimulatedPort:
     """The port of one robot of a world, a `RobotPort`; `body` is the robot.
 
-    `name_of` gives the id of the robot of a number. With `trajectories` orders become trajectories that the robot follows. A muted robot's telemetry stays as it last
-    was; the robot goes on, and still receives way points.
+    `name_of` gives the id of the robot of a number. With `trajectories` orders become trajectories that the robot
+    follows. A muted robot's telemetry stays as it last was; the robot goes on, and still receives way points.
     """
 
     def __init__(

@@ -206,6 +206,8 @@ class ReservedTraffic:
         grant = self._order.grant(part.number)
         part.port.waits_for = self._parts[grant.waits_for].robot.id if grant.waits_for >= 0 else ""
         part.to_go = grant.metres > _MOVED_M
+        if not part.port.waits_for and self._falls_short(part) and not grant.points:
+            part.port.waits_for = self._nearest(part)
         left_m = self._order.metres_left(part.number)
         goal = part.goal
         part.port.left_m = left_m + (0.0 if goal is None else math.dist(self._order.end(part.number), goal))
@@ -218,6 +220,11 @@ class ReservedTraffic:
         if part.port.go([(x, y, height) for x, y in grant.points], to_goal=at_goal):
             part.moves_passed = self._order.passed(part.number)
         part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
+
+    def _nearest(self, part: _Part) -> str:
+        """The robot next to one that has found no way."""
+        others = [other for other in self._parts if other is not part]
+        return min(others, key=lambda other: math.dist(other.near, part.near)).robot.id if others else ""
 
 
 def _planar(place: Sequence[float]) -> Point:

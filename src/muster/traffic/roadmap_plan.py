@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -43,6 +43,7 @@ class RoadmapPlan:
     clear: Callable[[Floats], bool]
     seed: int = 0
     inherited: int = 0
+    _priorities: list[str] = field(default_factory=list)
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
@@ -59,14 +60,19 @@ class RoadmapPlan:
     ) -> Sequence[tuple[int, int]] | None:
         """Moves as (traveller, edge); None where some find no path."""
         lanes = lanes_of(roadmap)
-        moves, ends = core.paths_by_safe_intervals(
+        ranks = {name: k for k, name in enumerate(self._priorities)}
+        metres = [_metres(who, lanes, number) for who in travellers]
+        first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
+        moves, ends, order = core.paths_by_safe_intervals(
             lanes=lanes,
             rests=roadmap.holding.tolist(),
             travellers=[_told(who, lanes, number) for who in travellers],
+            order=first,
             margin=roadmap.margin_m,
             tries=_TRIES,
             seed=self.seed,
         )
+        self._priorities = [travellers[k].robot.id for k in order]
         import os
         if os.environ.get("PIBT"): return None
         return None if math.inf in ends else [(traveller, edge) for _, traveller, edge in moves]
@@ -145,3 +151,10 @@ def _told(who: Traveller, lanes: core.SharedLanes, number: Mapping[Point, int]) 
         fixed=who.fixed,
         stays=who.stays,
     )
+
+
+def _metres(who: Traveller, lanes: core.SharedLanes, number: Mapping[Point, int]) -> float:
+    """The length of the shortest way to its goal; below 0 without one."""
+    if who.goal is None:
+        return -1.0
+    return float(lanes.metres_to(number[who.goal], who.robot.radius_m)[number[who.start]])

@@ -1,7 +1,7 @@
 """Scenes for teams in narrow places: doors, aisles, dead ends, corridors, circles and streams.
 
-Robots have a radius of 0.3 m and drive at 1 m/s. Places lie on grids, and with a seed above 0 they are shifted at random by
-up to `SHIFT_M`: a regular scene is the one with the most symmetries, and the most jams.
+Robots have a radius of 0.3 m and drive at 1 m/s. Places lie on grids. With a seed above 0 they are shifted at random by
+up to `SHIFT_M`: the regular scene has the most symmetries.
 """
 
 from __future__ import annotations
@@ -93,9 +93,7 @@ SCENES: Mapping[str, Scene] = MappingProxyType(
 )
 
 
-def _swap(
-    name: str, starts: list[Place], goals: list[Place], kinematics: str, seed: int, chart: Map | None
-) -> Mission:
+def _swap(name: str, starts: list[Place], goals: list[Place], kinematics: str, seed: int, chart: Map | None) -> Mission:
     """Every robot has one task, its own."""
     starts, goals = _shifted(starts, (seed, 0)), _shifted(goals, (seed, 1))
     robots = [
@@ -139,7 +137,7 @@ def _box(left: float, low: float, right: float, high: float) -> Zone:
 
 
 def _robot(number: int, place: Place, heading: float, kinematics: str) -> Robot:
-    drives = {"acceleration_mps2": ACCELERATION_MPS2, "yaw_rate_radps": YAW_RATE_RADPS}
+    drives = kinematics == DIFFERENTIAL
     return Robot(
         id=f"r_{number}",
         position=place,
@@ -147,7 +145,8 @@ def _robot(number: int, place: Place, heading: float, kinematics: str) -> Robot:
         radius_m=RADIUS_M,
         speed_mps=SPEED_MPS,
         kinematics=kinematics,
-        **(drives if kinematics == DIFFERENTIAL else {}),
+        acceleration_mps2=ACCELERATION_MPS2 if drives else None,
+        yaw_rate_radps=YAW_RATE_RADPS if drives else None,
     )
 
 

@@ -9,6 +9,9 @@ work of a robot has the words of the judge's schedule. An event of another kind 
 | `returns`, `robot_at_end` | `robot`, on the way to where its route ends |
 | `lost` | `task`, `reason` |
 | `robot_fails`, `robot_silent`, `robot_stuck`, `robot_returns` | `robot` |
+| `waits_in_traffic` | `robot`, `waits_for` (a robot), `position`, `since_s` |
+| `goes_on` | `robot`, `until_s`, `position`, `waited_s`: seconds by robot that it waited for |
+| `traffic_jam` | `robots`, `position`, `since_s` |
 | `robot_joins` | `robot`: a robot as in a mission file, or the id of one in the mission's `events` |
 | `new_task` | `task`: a task, likewise |
 | `cancel_task` | `task` |
@@ -30,7 +33,7 @@ from muster.mission.value_types import Fault
 OPEN, UNDER_WAY, DONE, LOST, CANCELLED = "open", "under way", "done", "lost", "cancelled"
 OUT = ("robot_fails", "robot_silent", "robot_stuck")
 """Kinds of event after which a robot takes no part."""
-ALARMING = ("lost", *OUT, "contact")
+ALARMING = ("lost", *OUT, "contact", "traffic_jam")
 """Kinds of event that somebody should look at."""
 _BECOMES = {"starts": UNDER_WAY, "ends": DONE, "lost": LOST, "cancel_task": CANCELLED, "work_broken_off": OPEN}
 

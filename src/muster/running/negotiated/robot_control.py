@@ -40,6 +40,10 @@ _ITS_OWN = {
     "robot_sent_again",
     "robot_runs_low",
     "robot_stuck",
+    "robot_stands_aside",
+    "waits_in_traffic",
+    "goes_on",
+    "traffic_jam",
     "task_refused",
     "waits",
     "work_broken_off",
@@ -124,8 +128,10 @@ class RobotControl:
         for event in self._executor.tick(now):
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
+            elif _is_back(event):
+                self._negotiator.come_back()
         self._negotiator.joint.leave_all_but(self._at)
-        return [event for event in self._executor.events[first:] if event.kind in _ITS_OWN]
+        return [event for event in self._executor.events[first:] if event.kind in _ITS_OWN or _is_back(event)]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
@@ -286,6 +292,11 @@ class RobotControl:
         if move.task not in ledger.tasks:
             raise ParameterError(f"move_task: {shown(move.task)}; expected the id of a task that there is by then")
         return moved(ledger.tasks[move.task], move.position)
+
+
+def _is_back(event: ExecutionEvent) -> bool:
+    """Whether a robot that was stuck takes part again because it moves: no operator has told that."""
+    return event.kind == "robot_returns" and "reason" in event.data
 
 
 def _revision(routes: Mapping[str, tuple[str, ...]], ahead: Mapping[str, Mapping[str, float]]) -> Revision:

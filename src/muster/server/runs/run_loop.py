@@ -264,4 +264,5 @@ def _robot(robot: RobotStatus) -> dict[str, Any]:
         "usage_left": None if left is None else round(left, 3),
         "charge": None if robot.charge is None else round(robot.charge, 3),
         "available": robot.available,
+        "held_up_by": robot.held_up_by,
     }

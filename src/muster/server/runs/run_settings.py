@@ -11,6 +11,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.motion.avoidance_names import AVOIDANCE
 from muster.motion.laws import LAWS
 from muster.planning.options import options_from
 from muster.running.worlds import WORLDS
@@ -47,7 +48,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 }
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
-    "avoidance": ("orca", "rvo", "hrvo", "avo", "none"),
+    "avoidance": AVOIDANCE,
     "pose": ("true", "estimate"),
     "law": LAWS,
     "odometry": ("map", "start"),
