@@ -21,7 +21,7 @@ def pytest_configure():
 
 
 def pytest_make_parametrize_id(val, argname):
-    """A long text is named by its length: names go between all processes of xdist, and some had millions of characters."""
+    """A long text is named by its length: names go between all processes of xdist, and some had millions of letters."""
     if isinstance(val, str | bytes) and len(val) > 300:
         return f"{argname} of {len(val)}"
     return None
