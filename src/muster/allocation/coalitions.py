@@ -4,6 +4,9 @@ Sequential single-item auction with bids of coalitions, as coalitions are formed
 [vig2006]: in each round every coalition that is worth a look bids for every unit, and one unit is sold. A bid is what
 the schedule allows: the unit is put where its windows, deadlines, lags and what waits for it leave a place. Of a team's
 task the coalition that costs least bids, and beside it, for each of its members, the one that costs least without it.
+
+An auction never takes a task back. So bids that leave time for what is not sold yet come first: those by which a unit,
+or one that was sold before, ends too late for the tasks that wait for it (`latest_ends`) win only where no others are.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ import numpy as np
 from muster import core
 from muster.allocation.auction_terms import Terms
 from muster.allocation.bids import lack_penalty
+from muster.allocation.latest_ends import LatestEnds
 from muster.allocation.problem import Problem
 from muster.allocation.skill_quality import skill_quality
 from muster.allocation.stop import Stop
@@ -28,10 +32,16 @@ from muster.mission.plan import tie_order
 
 @dataclass(frozen=True)
 class CoalitionBid:
-    """What a coalition would take a unit for."""
+    """What a coalition would take a unit for; whether by that something not sold yet could not be in time any more."""
 
     insertion: core.UnitInsertion
     price: float
+    leaves_no_time: bool = False
+
+    @property
+    def key(self) -> tuple[bool, float]:
+        """By this bids are ordered, the best first."""
+        return self.leaves_no_time, self.price
 
     @property
     def unit(self) -> int:
@@ -78,7 +88,8 @@ class CoalitionAuction:
         bid = bid_of(problem, terms)
         self._problem = problem if bid == problem.objective else replace(problem, objective=bid)
         self._terms = terms
-        self._roster = WorkingRoster(self._problem, start)
+        self._latest_ends = LatestEnds(self._problem)
+        self._go_on_from(start)
         self._quality = skill_quality(problem) if terms.quality_weight else np.empty((0, 0))
         self.sales: list[CoalitionSale] = []
 
@@ -103,19 +114,24 @@ class CoalitionAuction:
 
     def _sold(self, offers: list[CoalitionSale]) -> CoalitionSale | None:
         """Assign the first unit that can be, the winner rule's choice first."""
-        ranked = sorted(offers, key=lambda sale: rank([bid.price for bid in sale.bids], self._terms))
+        ranked = sorted(offers, key=lambda sale: rank([bid.key for bid in sale.bids], self._terms))
         return next((sale for sale in ranked if self.assign(sale.won)), None)
 
     def bids(self, unit: int, robots: Sequence[int] | None = None) -> list[CoalitionBid]:
         """All bids of these robots (of all by default) for a unit, the best first."""
         robots = range(len(self._problem.robots)) if robots is None else robots
-        insertions = self._of_robots(unit, robots) if self.is_alone(unit) else self._of_coalitions(unit, robots)
-        return sorted((CoalitionBid(found, self._price(found)) for found in insertions), key=lambda bid: bid.price)
+        return sorted(
+            self._of_robots(unit, robots) if self.is_alone(unit) else self._of_coalitions(unit, robots),
+            key=lambda bid: bid.key,
+        )
 
     def best_bid(self, unit: int, robots: Sequence[int]) -> CoalitionBid | None:
         """The best bid for a unit that these robots can make; None: none."""
-        found = self._best(unit, robots)
-        return None if found is None else CoalitionBid(found, self._price(found))
+        for roster in self._rosters:
+            found = roster.best(unit, robots, append_only=self._terms.placement == "append")
+            if found is not None:
+                return CoalitionBid(found, self._price(found), roster is not self._rosters[0])
+        return None
 
     def usage(self, robot: int) -> float:
         """What a robot's route uses so far."""
@@ -132,34 +148,37 @@ class CoalitionAuction:
         """
         holds = self._roster.put(bid.insertion)
         if holds:
-            self._roster = WorkingRoster(self._problem, self._roster.routes)
+            self._go_on_from(self.routes)
         return holds
+
+    def _go_on_from(self, routes: Routes | None) -> None:
+        self._roster = WorkingRoster(self._problem, routes)
+        self._rosters = [self._roster]
+        if self._latest_ends.any:
+            self._rosters.insert(0, WorkingRoster(self._latest_ends.binding(self.routes), self.routes))
 
     def is_alone(self, unit: int) -> bool:
         """Whether a unit is one task for one robot."""
         rules = self._problem.timed_rules
         return len(rules.units[unit]) == 1 and not rules.is_for_team(rules.units[unit][0])
 
-    def _of_robots(self, unit: int, robots: Sequence[int]) -> Iterator[core.UnitInsertion]:
+    def _of_robots(self, unit: int, robots: Sequence[int]) -> Iterator[CoalitionBid]:
         (task,) = self._problem.timed_rules.units[unit]
         for robot in robots:
-            if self._problem.may(robot, task) and (found := self._best(unit, [robot])) is not None:
+            if self._problem.may(robot, task) and (found := self.best_bid(unit, [robot])) is not None:
                 yield found
 
-    def _of_coalitions(self, unit: int, others: Sequence[int]) -> Iterator[core.UnitInsertion]:
-        best = self._best(unit, others)
+    def _of_coalitions(self, unit: int, others: Sequence[int]) -> Iterator[CoalitionBid]:
+        best = self.best_bid(unit, others)
         if best is None:
             return
         yield best
         known = {_team(best)}
-        for without in sorted({robot for _, robot, _ in best.members}):
-            found = self._best(unit, [robot for robot in others if robot != without])
+        for without in sorted({robot for _, robot, _ in best.insertion.members}):
+            found = self.best_bid(unit, [robot for robot in others if robot != without])
             if found is not None and _team(found) not in known:
                 known.add(_team(found))
                 yield found
-
-    def _best(self, unit: int, robots: Sequence[int]) -> core.UnitInsertion | None:
-        return self._roster.best(unit, robots, append_only=self._terms.placement == "append")
 
     def _price(self, insertion: core.UnitInsertion) -> float:
         """What the objective grows by, made worse by the mean penalty of the members."""
@@ -178,18 +197,21 @@ class CoalitionAuction:
         return penalty
 
 
-def _team(insertion: core.UnitInsertion) -> frozenset[tuple[int, int]]:
-    return frozenset((task, robot) for task, robot, _ in insertion.members)
+def _team(bid: CoalitionBid) -> frozenset[tuple[int, int]]:
+    return frozenset((task, robot) for task, robot, _ in bid.insertion.members)
 
 
-def rank(prices: Sequence[float], terms: Terms) -> float:
-    """By what a winner rule ranks a unit with these bids, the best first; the least wins.
+def rank(keys: Sequence[tuple[bool, float]], terms: Terms) -> tuple[bool, float]:
+    """By what a winner rule ranks a unit with bids of these keys, the best first; the least wins.
 
-    It is the best bid, or the gap to the second one, the widest first; nobody contests a single one.
+    It is the best bid, or the gap to the second one, the widest first; nobody contests a single one. Units without
+    a bid that leaves time for what is not sold yet come last.
     """
+    leaves_no_time, best = keys[0]
     if terms.winner_rule != "least-contested":
-        return prices[0]
-    return prices[0] - prices[1] if len(prices) > 1 else -math.inf
+        return leaves_no_time, best
+    contesting = [price for late, price in keys[1:2] if late == leaves_no_time]
+    return leaves_no_time, best - contesting[0] if contesting else -math.inf
 
 
 def coalition_book(problem: Problem, sales: list[CoalitionSale], hold: Callable[[OnBids], None]) -> Book:
