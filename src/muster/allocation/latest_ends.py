@@ -64,6 +64,7 @@ def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
     """(n,) seconds; inf: nothing binds a task."""
     work = np.array([problem.work_seconds(i) for i in range(len(problem.robots))])
     shortest = np.where(problem.allowed, work, math.inf).min(axis=0)
+    longest = np.where(problem.allowed, work, 0.0).max(axis=0)
     before = {u: {rules.unit[k] for j in unit for k in problem.prerequisites[j]} for u, unit in enumerate(rules.units)}
     ends = rules.deadline.copy()
     for u in reversed(list(TopologicalSorter(before).static_order())):
@@ -72,7 +73,7 @@ def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
         if not begin >= 0.0:
             continue  # nobody may do one of them, or it is too late from the first
         for j in unit:
-            ends[j] = min(ends[j], begin + shortest[j])
+            ends[j] = min(ends[j], begin + longest[j])
             for k, after, _ in rules.lags(j):
                 ends[k] = min(ends[k], begin - after)
     return ends
