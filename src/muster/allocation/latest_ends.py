@@ -63,15 +63,17 @@ class LatestEnds:
 def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
     """(n,) seconds; inf: nothing binds a task."""
     work = np.array([problem.work_seconds(i) for i in range(len(problem.robots))])
-    shortest = np.where(problem.allowed, work, math.inf).min(axis=0)
-    longest = np.where(problem.allowed, work, 0.0).max(axis=0)
+    shortest = np.where(problem.allowed, work, math.inf).min(axis=0, initial=math.inf)
+    longest = np.where(problem.allowed, work, 0.0).max(axis=0, initial=0.0)
     before = {u: {rules.unit[k] for j in unit for k in problem.prerequisites[j]} for u, unit in enumerate(rules.units)}
     ends = rules.deadline.copy()
     for u in reversed(list(TopologicalSorter(before).static_order())):
         unit = rules.units[u]
+        if np.isinf(shortest[unit]).any():
+            continue  # nobody may do one of them
         begin = min(_last_begin(rules, j, float(ends[j] - shortest[j])) for j in unit)
-        if not begin >= 0.0:
-            continue  # nobody may do one of them, or it is too late from the first
+        if begin < 0.0:
+            continue  # it is too late from the first
         for j in unit:
             ends[j] = min(ends[j], begin + longest[j])
             for k, after, _ in rules.lags(j):
