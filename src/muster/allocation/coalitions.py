@@ -109,13 +109,30 @@ class CoalitionAuction:
             if sale is None:
                 break
             if on_bids is not None:
-                on_bids(len(self.sales), offers)
+                on_bids(len(self.sales), [sale if offer.won.unit == sale.won.unit else offer for offer in offers])
             self.sales.append(sale)
 
-    def _sold(self, offers: list[CoalitionSale]) -> CoalitionSale | None:
-        """Assign the first unit that can be, the winner rule's choice first."""
-        ranked = sorted(offers, key=lambda sale: rank([bid.key for bid in sale.bids], self._terms))
-        return next((sale for sale in ranked if self.assign(sale.won)), None)
+    def _sold(self, offers: Sequence[CoalitionSale]) -> CoalitionSale | None:
+        """Assign the first unit that can be, the winner rule's choice first.
+
+        A robot does not bid for what does not hold, so that its next bid counts; a coalition that does not hold ends
+        the offer.
+        """
+        contested = self._terms.winner_rule == "least-contested"
+        left = {offer.won.unit: self._held(offer.bids) if contested else offer.bids for offer in offers}
+        while any(left.values()):
+            ranks = {unit: (rank([bid.key for bid in bids], self._terms), unit) for unit, bids in left.items() if bids}
+            unit = min(ranks, key=ranks.__getitem__)
+            won, *others = left[unit]
+            if self.assign(won):
+                (bids,) = (offer.bids for offer in offers if offer.won.unit == unit)
+                return CoalitionSale(len(self.sales) + 1, [won, *(bid for bid in bids if bid is not won)])
+            left[unit] = others if self.is_alone(unit) else []
+        return None
+
+    def _held(self, bids: list[CoalitionBid]) -> list[CoalitionBid]:
+        """The bids for one unit of which its gap to the second one follows: of single robots those that hold."""
+        return [bid for bid in bids if self.holds(bid)] if self.is_alone(bids[0].unit) else bids
 
     def bids(self, unit: int, robots: Sequence[int] | None = None) -> list[CoalitionBid]:
         """All bids of these robots (of all by default) for a unit, the best first."""
@@ -136,6 +153,11 @@ class CoalitionAuction:
     def usage(self, robot: int) -> float:
         """What a robot's route uses so far."""
         return self._roster.core.usage(robot)
+
+    def spans(self) -> dict[int, tuple[float, float]]:
+        """For each task sold when it begins and ends in the earliest schedule, seconds."""
+        stops = core.Inspection(self._problem.core, self.routes).stops or []
+        return {task: (begin, end) for route in stops for task, _, begin, end in route}
 
     def holds(self, bid: CoalitionBid) -> bool:
         """Whether the routes with what is bid for are admissible."""

@@ -39,6 +39,10 @@ class UnitSales:
     def routes(self) -> Routes:
         return self._auction.routes
 
+    def spans(self) -> dict[str, tuple[float, float]]:
+        """For each task sold when it begins and ends in the earliest schedule of all routes, seconds."""
+        return {self._problem.tasks[task].id: span for task, span in self._auction.spans().items()}
+
     def bids(self, robot: int, refused: Collection[str]) -> tuple[Bid, ...]:
         """What a robot bids, as the winner rule needs it; none for units with tasks that it has refused."""
         units = [unit for unit in self._for_sale() if not any(task in refused for task in self._names(unit))]

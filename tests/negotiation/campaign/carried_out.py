@@ -23,7 +23,7 @@ def carried_out(seed):
     """Let the team of a seed carry out its mission, and check what it did."""
     report = Report(seed)
     with report.trying():
-        run = Run(seed)
+        run = Run(team_scene(seed), seed)
         report.check(run.play(), "the robots do not come to rest")
         report.story += run.story()
         for wrong in (*run.wrong_deeds(), *run.left_open()):
@@ -35,8 +35,8 @@ def carried_out(seed):
 class Run:
     """A team, its scene, and what came of it."""
 
-    def __init__(self, seed):
-        self.scene = team_scene(seed)
+    def __init__(self, scene, seed):
+        self.scene = scene
         self.team = SimulatedTeam(self.scene.mission, seed=seed, **self.scene.conditions)
         self.cancelled, self.reasons = set(), Counter()
 

@@ -1,6 +1,6 @@
 """Random missions of teams, and what goes wrong while robots carry them out by themselves."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from random import Random
 
 from muster.mission.model import Event, Lag, Mission, MovedTask, Robot, Task, TeamPart
@@ -41,6 +41,15 @@ def team_scene(seed):
         "duplication": random.choice((0.0, 0.2)),
     }
     return TeamScene(mission, conditions, tuple(sorted(_faults(mission, random), key=lambda fault: fault.at_s)))
+
+
+def calm_scene(seed):
+    """A scene in which nothing goes wrong, of robots of which some are slow at work."""
+    random = Random(f"calm {seed}")
+    mission = _mission(random)
+    robots = tuple(replace(robot, efficiency=random.choice((1.0, 1.0, 0.5))) for robot in mission.robots)
+    conditions = {"delay_s": random.uniform(0.001, 0.05), "jitter_s": random.choice((0.0, 0.05))}
+    return TeamScene(replace(mission, robots=robots), conditions)
 
 
 def _mission(random):
