@@ -12,7 +12,11 @@ LAST_FAULT_S = 60.0
 
 @dataclass(frozen=True)
 class Fault:
-    """What happens at a time, in seconds: "crash", "restart", "forget", "cut", "block", "heal" or "told" (an event)."""
+    """What happens at a time, in seconds.
+
+    "strike" (the first robot to be at work with others crashes), "crash", "restart", "forget", "cut", "block", "heal"
+    or "told" (an event).
+    """
 
     at_s: float
     kind: str
@@ -86,7 +90,7 @@ def _task(name, others, random, *, timed):
     return Task(
         id=name,
         position=_place(random),
-        duration_s=random.choice((0.0, 3.0, random.uniform(4, 12))),
+        duration_s=random.choice((0.0, 3.0, random.uniform(4, 12), random.uniform(15, 40))),
         **sort,
         **_ties(others, random, timed=timed),
         **(_times(random) if timed else {}),
@@ -118,6 +122,8 @@ def _times(random):
 
 def _faults(mission, random):
     names = [robot.id for robot in mission.robots]
+    if random.random() < 0.3:
+        yield Fault(0.0, "strike")
     for robot in random.sample(names, random.choice((0, 0, 1, random.randint(0, len(names) - 1)))):
         yield from _crashes(robot, random)
     for _ in range(random.choice((0, 0, 1, 2))):
