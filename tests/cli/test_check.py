@@ -77,6 +77,7 @@ def test_in_json(muster):
         },
         "unknown": False,
         "unseen": [],
+        "blocked": [],
     }
 
 
@@ -96,7 +97,8 @@ def test_when_all_can_be_done(muster):
         "",
     )
     answer = json.loads(muster("check", "m.yaml", "--format", "json")[1])
-    assert answer == {"errors": [], "impossible": [], "conflict": None, "unknown": False, "unseen": []}
+    nothing = {"errors": [], "impossible": [], "conflict": None, "unknown": False, "unseen": [], "blocked": []}
+    assert answer == nothing
 
 
 @pytest.mark.parametrize(("capacity", "code"), [(60, 3), (120, 0)])
@@ -122,7 +124,7 @@ def test_no_time(muster):
 def test_errors_in_json_have_all_keys(muster):
     code, out, err = muster("check", write("schema: muster/1\n"), "--format", "json")
     assert (code, err) == (2, "")
-    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown", "unseen"]
+    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown", "unseen", "blocked"]
 
 
 SEARCH = """\

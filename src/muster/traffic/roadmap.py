@@ -82,6 +82,13 @@ class Roadmap:
         return np.asarray(np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1))
 
     @cached_property
+    def one_way(self) -> Bools:
+        """(m,): whether no edge leads back."""
+        n = len(self.points)
+        start, end = self.edges.T
+        return ~np.isin(start * n + end, end * n + start)
+
+    @cached_property
     def holding(self) -> Bools:
         """(n,): whether others get past a robot that rests at a point: no passage for one leads through it."""
         from muster.traffic.holding_places import holding_places
