@@ -190,3 +190,15 @@ def test_the_nearest_point_of_a_place_is_its_own():
 def test_what_no_roadmap_is_made_of_is_refused(space, radius, places, message):
     with pytest.raises(ParameterError, match=message):
         Roadmap.of(space, radius, places)
+
+
+def test_a_robot_rests_neither_in_a_passage_nor_before_another_ones_place():
+    """A robot at the place itself keeps nobody from it."""
+    place = (8, 3.21)  # off the lattice
+    roadmap = Roadmap.of(hall_with(0.9), RADIUS, [place, (2.4, 2.4)])
+    hall = np.linalg.norm(roadmap.points - (2.4, 2.4), axis=1) < roadmap.reach
+    assert hall.sum() > 1
+    assert np.flatnonzero(roadmap.holding & hall).tolist() == [roadmap.places[1]]
+    assert roadmap.passable[hall].all()
+    assert roadmap.places[0] == -1
+    assert not roadmap.holding[in_corridor(roadmap)].any()

@@ -52,17 +52,18 @@ def plot_roadmap(
     inch_per_m = width / (high - low)[0]
     entries = [
         *_draw_lanes(ax, roadmap, passages, inch_per_m),
-        *_draw_arrows(ax, roadmap, inch_per_m),
+        *_draw_arrows(ax, roadmap),
         *_draw_points(ax, roadmap, inch_per_m),
         *_draw_places(ax, made),
         *entries,
     ]
     add_legend(ax, entries)
-    dead = sum(one.is_dead_end for one in passages)
-    facts = (
-        f"{len(roadmap.points)} points, {len(roadmap.edges)} edges, {len(passages)} passages for one, {dead} dead ends"
-    )
-    add_title(ax, mission.name, [f"roadmap for radius {roadmap.radius_m:g} m: {facts}"])
+    dead_ends = sum(one.is_dead_end for one in passages)
+    facts = [
+        f"roadmap for radius {roadmap.radius_m:g} m: {len(roadmap.points)} points, {len(roadmap.edges)} edges",
+        f"passages for one: {len(passages)}, of them dead ends: {dead_ends}",
+    ]
+    add_title(ax, mission.name, facts)
     return ax  # type: ignore[no-any-return]
 
 
@@ -83,13 +84,13 @@ def _draw_lanes(ax: Any, roadmap: Roadmap, passages: Sequence[Passage], inch_per
     for number, label, color, line_width in looks:
         pieces = roadmap.points[edges[of_edge == number]]
         if len(pieces):
-            look = {"linewidths": line_width, "colors": color, "zorder": 1.5 + 0.1 * number}
+            look: dict[str, Any] = {"linewidths": line_width, "colors": color, "zorder": 1.5 + 0.1 * number}
             ax.add_collection(LineCollection(list(pieces), gid=label.replace(" ", "-"), **look))
             entries.append((Line2D([], [], color=color, linewidth=max(line_width, 0.9)), label))
     return entries
 
 
-def _draw_arrows(ax: Any, roadmap: Roadmap, inch_per_m: float) -> list[tuple[Any, str]]:
+def _draw_arrows(ax: Any, roadmap: Roadmap) -> list[tuple[Any, str]]:
     """Draw an arrow head on the middle of each one-way edge."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import FancyArrowPatch
@@ -97,10 +98,10 @@ def _draw_arrows(ax: Any, roadmap: Roadmap, inch_per_m: float) -> list[tuple[Any
     edges = roadmap.edges[roadmap.one_way]
     if not len(edges):
         return []
-    for k, (start, end) in enumerate(roadmap.points[edges]):
-        look = {"arrowstyle": "-|>", "mutation_scale": 9, "linewidth": 0.0, "color": TEXT, "zorder": 2.2}
-        head = start + 0.6 * (end - start)
-        ax.add_patch(FancyArrowPatch(start, head, shrinkA=0, shrinkB=0, gid=f"one-way-{k}", **look))
+    look: dict[str, Any] = {"arrowstyle": "-|>", "mutation_scale": 12, "linewidth": 0.0, "color": TEXT, "zorder": 2.2}
+    for k, (start, end) in enumerate(roadmap.points[edges].tolist()):
+        head = (start[0] + 0.6 * (end[0] - start[0]), start[1] + 0.6 * (end[1] - start[1]))
+        ax.add_patch(FancyArrowPatch(tuple(start), head, shrinkA=0, shrinkB=0, gid=f"one-way-{k}", **look))
     return [(Line2D([], [], color=TEXT, linestyle="none", marker=">", markersize=5), "one-way")]
 
 

@@ -157,4 +157,4 @@ def _has_passing_place(roadmap: Roadmap, points: Indices) -> bool:
     n = len(roadmap.points)
     both_ways = np.isin(inside[:, 0] * n + inside[:, 1], inside[:, 1] * n + inside[:, 0]).all()
     ways_out = np.bincount(inside[:, 0], minlength=n)[points]
-    return bool(both_ways and (roadmap.holding[points] & (ways_out > 1)).any())
+    return bool(both_ways and (roadmap.passable[points] & (ways_out > 1)).any())

@@ -16,14 +16,17 @@ Indices = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """A stretch for one robot: its points, by number, and how many ways lead out of it: 1 of a dead end."""
+    """A stretch for one robot: its points, by number, and how many ways lead out of it.
+
+    One leads out of a dead end, and none where a whole part of the roadmap has room for one alone.
+    """
 
     points: Indices
     exits: int
 
     @property
     def is_dead_end(self) -> bool:
-        return self.exits < 2
+        return self.exits == 1
 
 
 def passages(roadmap: Roadmap) -> tuple[Passage, ...]:
@@ -31,7 +34,7 @@ def passages(roadmap: Roadmap) -> tuple[Passage, ...]:
 
     What lies beyond a passage and has no room for two robots belongs to it, as the end of a dead end does.
     """
-    narrow = ~roadmap.holding & ~_is_open(roadmap)
+    narrow = ~roadmap.passable & ~_is_open(roadmap)
     found = (_passage(roadmap, group) for group in _groups(roadmap, narrow))
     return tuple(one for one in found if one is not None)
 
@@ -66,7 +69,7 @@ def _links(roadmap: Roadmap, chosen: Bools) -> Any:
 def _passage(roadmap: Roadmap, points: Indices) -> Passage | None:
     """A passage from its points, with what has no room for two beyond it; exits are told apart close by.
 
-    None for a nook: nothing is at its end, so that nobody has to get past.
+    None for a nook that has no room for a second robot at its end, so that nobody has to get past.
     """
     inside = np.zeros(len(roadmap.points), dtype=np.bool_)
     inside[points] = True
@@ -80,7 +83,7 @@ def _passage(roadmap: Roadmap, points: Indices) -> Passage | None:
         else:
             inside[beyond] = True
     found = np.flatnonzero(inside)
-    return None if exits == 1 and len(found) == len(points) else Passage(found, exits)
+    return None if exits == 1 and not _has_room_for_two(roadmap, found) else Passage(found, exits)
 
 
 def _near(roadmap: Roadmap, points: Indices) -> Bools:

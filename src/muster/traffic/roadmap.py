@@ -29,6 +29,7 @@ Indices = npt.NDArray[np.int64]
 
 MARGIN_M = 0.02
 """What two robots keep between them beyond touching."""
+_SAME = 1e-9
 _MOST_POINTS = 40_000
 """About as many points has a roadmap of open space at most: there the lattice is made coarser."""
 
@@ -89,11 +90,24 @@ class Roadmap:
         return ~np.isin(start * n + end, end * n + start)
 
     @cached_property
-    def holding(self) -> Bools:
+    def passable(self) -> Bools:
         """(n,): whether others get past a robot that rests at a point: no passage for one leads through it."""
-        from muster.traffic.holding_places import holding_places
+        from muster.traffic.holding_places import passable
 
-        return holding_places(self.points, self.edges, self.reach_start, self.reach_point, self.reach)
+        return passable(self.points, self.edges, self.reach_start, self.reach_point, self.reach)
+
+    @cached_property
+    def holding(self) -> Bools:
+        """(n,): whether a robot may rest at a point: others get past it, and it keeps nobody from another place."""
+        from scipy.spatial import cKDTree
+
+        places = np.unique(self.places[self.places >= 0])
+        if not len(places):
+            return self.passable
+        near = cKDTree(self.points[places]).query_ball_point(self.points, self.reach * (1 - _SAME), return_length=True)
+        own = np.zeros(len(self.points), dtype=np.int64)
+        own[places] = 1
+        return np.asarray(self.passable & (near <= own))
 
     @cached_property
     def out_start(self) -> Indices:

@@ -36,9 +36,9 @@ def blocked_ways(problem: Problem) -> tuple[BlockedWay, ...]:
     """The robots and tasks between which traffic is impossible.
 
     Looked at are robots that drive and have a radius, on lanes or a map. A task is named where each robot that may do
-    it is blocked, alone or by another one; two robots are, where each has a task that nobody else may do and they cannot
-    be at the ends of their routes both. All joint positions of the two are searched; nothing is said of a roadmap that
-    is too large for that, nor of three robots or more.
+    it is blocked, alone or by another one. Two robots are named where each has a task that nobody else may do and they
+    cannot be at the ends of their routes both. All joint positions of the two are searched; nothing is said of a
+    roadmap that is too large for that, nor of three robots or more.
     """
     mission = problem.mission
     drives = any(robot.radius_m > 0 and robot.kind == "ground" for robot in mission.robots)
