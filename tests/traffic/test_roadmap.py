@@ -168,7 +168,7 @@ def test_resting_points_of_open_space_are_out_of_each_others_way():
     straight = out[roadmap.lengths_m[out] < 1.2 * roadmap.reach]
     assert len(straight) == 4
     assert all(roadmap.reached(k).tolist() == [roadmap.edges[k, 1]] for k in straight)
-    assert roadmap.holding.all()
+    assert roadmap.passable.all()
 
 
 def test_the_nearest_point_of_a_place_is_its_own():

@@ -21,8 +21,10 @@ Bools = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
 T = TypeVar("T")
 
-_MOST_MOVES = 8_000_000
+_MOST_MOVES = 4_000_000
 """Joint moves that are searched at most; where there may be more, nothing is said."""
+_FEW_MOVES = 1_000_000
+"""Joint moves that are searched wherever they are."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +90,10 @@ class Crossings:
         return _Reached(joint.points, joint.reached(self.starts[one], self.starts[other]))
 
     def _joint(self, part: int, gap_m: float) -> JointPositions | None:
-        """The joint positions on a part of the roadmap, unless robots pass each other there, or there are too many."""
+        """The joint positions on a part of the roadmap, unless it is large and open, or there are too many."""
         points = np.flatnonzero(self._part == part)
-        if most_moves(self.roadmap, points) > _MOST_MOVES or _has_passing_place(self.roadmap, points):
+        moves = most_moves(self.roadmap, points)
+        if moves > _MOST_MOVES or (moves > _FEW_MOVES and _is_open(self.roadmap, points)):
             return None
         return JointPositions.of(self.roadmap, points, gap_m)
 
@@ -148,13 +151,12 @@ def _reached_alone(roadmap: Roadmap, start: int) -> Bools:
     return found
 
 
-def _has_passing_place(roadmap: Roadmap, points: Indices) -> bool:
-    """Whether all edges of a part lead both ways, and one robot can rest in it while another passes from side to side.
+def _is_open(roadmap: Roadmap, points: Indices) -> bool:
+    """Whether all edges of a part lead both ways, and robots get past each other at most of its points.
 
-    There any two robots can change places, so that nothing has to be searched.
+    Any two robots change places there, and a search would take long to say so.
     """
     inside = roadmap.edges[np.isin(roadmap.edges[:, 0], points)]
     n = len(roadmap.points)
     both_ways = np.isin(inside[:, 0] * n + inside[:, 1], inside[:, 1] * n + inside[:, 0]).all()
-    ways_out = np.bincount(inside[:, 0], minlength=n)[points]
-    return bool(both_ways and (roadmap.passable[points] & (ways_out > 1)).any())
+    return bool(both_ways and roadmap.passable[points].mean() > 0.5)

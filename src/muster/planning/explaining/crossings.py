@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, takewhile
 
 from muster.allocation.problem import Problem
 from muster.mission.model import Robot, Task
@@ -60,9 +60,9 @@ class _Search:
         busy: dict[int, None] = {}
         for task in self.problem.tasks:
             allowed = self._allowed(task)
-            blocked = [way for way in (self._blocked(robot, task) for robot in allowed) if way is not None]
+            blocked = list(takewhile(lambda way: way is not None, (self._blocked(robot, task) for robot in allowed)))
             if len(blocked) == len(allowed):
-                yield from blocked
+                yield from filter(None, blocked)
             if len(allowed) == 1:
                 busy[allowed[0]] = None
         for one, other in combinations(busy, 2):
