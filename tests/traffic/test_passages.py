@@ -36,7 +36,8 @@ def test_aisles_are_dead_ends_until_they_open_into_another_hall():
     dead = roadmap_of(shapely.union_all([HALL, *aisles(2, 5, 8, top=9)]))
     assert exits(dead) == [1, 1, 1]
     assert all(one.is_dead_end for one in passages(dead))
-    through = roadmap_of(shapely.union_all([HALL, *aisles(2, 5, 8, top=9), shapely.box(0, 9, 12, 12)]))
+    racks = [shapely.box(left, 4, right, 9) for left, right in ((0, 2), (2.8, 5), (5.8, 8), (8.8, 12))]
+    through = Roadmap.of(PolygonSpace(free_region(shapely.box(0, 0, 12, 12), racks, RADIUS)), RADIUS)
     assert exits(through) == [2, 2, 2]
     assert not any(one.is_dead_end for one in passages(through))
 
@@ -75,6 +76,13 @@ def test_where_two_get_past_each_other_is_no_passage_for_one(width):
     shape = shapely.union_all([shapely.box(0, 0, 5, 5), shapely.box(11, 0, 16, 5), shapely.box(4, 2, 12, 2 + width)])
     roadmap = roadmap_of(shape)
     assert passages(roadmap) == ()
+
+
+def test_the_ends_of_a_corridor_have_points():
+    """A place near an end is no reason to leave it out: two robots stand left of the third."""
+    roadmap = roadmap_of(shapely.box(0, 0, 10, 0.9), [(1, 0.45), (9, 0.45)])
+    assert roadmap.points[:, 0].min() < 0.38
+    assert roadmap.points[:, 0].max() > 9.62
 
 
 def test_a_ring_of_lanes_is_a_passage_and_a_siding_is_not():

@@ -141,10 +141,21 @@ def in_corridor(roadmap):
 def test_a_corridor_for_one_has_one_lane_down_its_middle_and_nowhere_to_rest():
     roadmap = Roadmap.of(hall_with(0.9), RADIUS)
     inside = in_corridor(roadmap)
-    np.testing.assert_allclose(roadmap.points[inside, 1], 2.5, atol=0.06)
+    np.testing.assert_allclose(roadmap.points[inside, 1], 2.5, atol=1e-6)
     assert np.diff(np.sort(roadmap.points[inside, 0])).min() >= roadmap.reach
     assert not roadmap.holding[inside].any()
     assert roadmap.holding[roadmap.points[:, 0] < 4].all()
+
+
+@pytest.mark.parametrize("wide", [5, 6])
+def test_a_passage_between_cells_has_its_lane_down_the_middle(wide):
+    """Of a width of 5 or 6 cells, 0.1 m each: in the midst of a cell, or between two."""
+    blocked = np.ones((60, 40), dtype=bool)
+    blocked[:20] = blocked[40:] = blocked[:, 10 : 10 + wide] = False
+    roadmap = Roadmap.of(GridSpace(Grid(blocked, 0.1)), RADIUS)
+    inside = (roadmap.points[:, 1] > 2.5) & (roadmap.points[:, 1] < 3.5)
+    assert inside.sum() > 0
+    np.testing.assert_allclose(roadmap.points[inside, 0], 1 + 0.1 * wide / 2, atol=1e-9)
 
 
 def test_a_corridor_for_two_has_two_lanes_on_which_robots_pass_each_other():

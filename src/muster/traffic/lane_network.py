@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +15,7 @@ from muster.motion.grid import Grid
 from muster.motion.maps.distance_field import distance_field
 from muster.motion.maps.raster import grid_of
 from muster.traffic.exact_ways import Network, joined_exactly
+from muster.traffic.lane_middles import to_middle
 from muster.traffic.lane_points import Room, lane_points
 from muster.traffic.roadmap_edges import Regions, detours, pruned, visible_pairs, ways_to_lanes
 
@@ -52,7 +55,10 @@ def network(space: GridSpace | PolygonSpace, apart_m: float, places: Floats, mos
     inside = grid.to_grid(places)
     is_free = np.array([_is_inside(free, place) for place in inside], dtype=np.bool_)
 
-    lanes = _with_all_parts(free, depth, lane_points(Room.of(free, depth, apart), apart, pitch, inside[is_free]))
+    middle = partial(to_middle, space=space, grid=grid, depth=depth)
+    room = Room.of(free, depth, apart)
+    lanes = lane_points(room, apart, pitch, inside[is_free], middle)
+    lanes = _with_all_parts(free, depth, lanes)
     reach = _NEIGHBOURS * pitch
     regions = Regions.of(free, lanes)
     bends, around = detours(regions, lanes, visible_pairs(sight, depth, lanes, reach), sight)
@@ -66,13 +72,14 @@ def network(space: GridSpace | PolygonSpace, apart_m: float, places: Floats, mos
     pairs = np.unique(np.sort(np.concatenate([pairs, around, ways]), axis=1), axis=0)
     metres = grid.to_map(points)
     metres[numbers[is_free]] = places[is_free]
-    made = Network(metres, pairs, _clearance(depth, points, pairs) * cell, numbers)
+    column, row = points.astype(np.int64).T
+    made = Network(metres, room.narrow[row, column], pairs, _clearance(depth, points, pairs) * cell, numbers)
     return _both_ways(joined_exactly(made, space, places))
 
 
 def _both_ways(made: Network) -> Network:
     edges = np.concatenate([made.edges, made.edges[:, ::-1]])
-    return Network(made.points, edges, np.tile(made.clearance_m, 2), made.places)
+    return replace(made, edges=edges, clearance_m=np.tile(made.clearance_m, 2))
 
 
 def _cells(space: GridSpace | PolygonSpace, apart_m: float) -> Grid:

@@ -34,17 +34,8 @@ def passages(roadmap: Roadmap) -> tuple[Passage, ...]:
 
     What lies beyond a passage and has no room for two robots belongs to it, as the end of a dead end does.
     """
-    narrow = ~roadmap.passable & ~_is_open(roadmap)
-    found = (_passage(roadmap, group) for group in _groups(roadmap, narrow))
+    found = (_passage(roadmap, group) for group in _groups(roadmap, roadmap.narrow & ~roadmap.passable))
     return tuple(one for one in found if one is not None)
-
-
-def _is_open(roadmap: Roadmap) -> Bools:
-    """(n,): whether some edge at a point is farther from obstacles than two robots side by side need."""
-    most = np.full(len(roadmap.points), -1.0)
-    known = np.where(np.isfinite(roadmap.clearance_m), roadmap.clearance_m, 0.0)
-    np.maximum.at(most, roadmap.edges.ravel(), known.repeat(2))
-    return np.asarray(most >= roadmap.reach / 2)
 
 
 def _groups(roadmap: Roadmap, chosen: Bools) -> list[Indices]:

@@ -42,6 +42,8 @@ class Roadmap:
     ----------
     points
         (n, 2) metres.
+    narrow
+        (n,): whether the room is for one there; everywhere on given lanes.
     edges
         (m, 2): from, to; numbers of points.
     clearance_m
@@ -61,6 +63,7 @@ class Roadmap:
     """
 
     points: Floats
+    narrow: Bools
     edges: Indices
     clearance_m: Floats
     radius_m: float
@@ -207,6 +210,7 @@ class Roadmap:
         start, point, metres = conflicts(made.points, edges, 2 * radius_m + margin_m)
         return cls(
             points=made.points,
+            narrow=made.narrow,
             edges=edges,
             clearance_m=made.clearance_m[order],
             radius_m=radius_m,
