@@ -68,7 +68,7 @@ def plot_roadmap(
 
 
 def _draw_lanes(ax: Any, roadmap: Roadmap, passages: Sequence[Passage], inch_per_m: float) -> list[tuple[Any, str]]:
-    """Draw every edge once: those of passages stronger, of dead ends in another colour."""
+    """Draw every edge once: those that lead into passages stronger, into dead ends in another colour."""
     from matplotlib.collections import LineCollection
     from matplotlib.lines import Line2D
 
@@ -77,7 +77,7 @@ def _draw_lanes(ax: Any, roadmap: Roadmap, passages: Sequence[Passage], inch_per
         kind[one.points] = 2 if one.is_dead_end else 1
     first = roadmap.one_way | (roadmap.edges[:, 0] < roadmap.edges[:, 1])
     edges = roadmap.edges[first]
-    of_edge = np.where((kind[edges] > 0).all(axis=1), kind[edges].min(axis=1), 0)
+    of_edge = kind[edges].max(axis=1)
     thin = float(np.clip(3.0 * roadmap.reach * inch_per_m, 0.25, 0.9))
     entries = []
     looks = ((0, "lane", _LANE, thin), (1, "passage for one", _PASSAGE, 1.8), (2, "dead end", _DEAD_END, 1.8))
