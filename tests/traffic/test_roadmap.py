@@ -141,10 +141,21 @@ def in_corridor(roadmap):
 def test_a_corridor_for_one_has_one_lane_down_its_middle_and_nowhere_to_rest():
     roadmap = Roadmap.of(hall_with(0.9), RADIUS)
     inside = in_corridor(roadmap)
-    np.testing.assert_allclose(roadmap.points[inside, 1], 2.5, atol=0.06)
+    np.testing.assert_allclose(roadmap.points[inside, 1], 2.5, atol=1e-6)
     assert np.diff(np.sort(roadmap.points[inside, 0])).min() >= roadmap.reach
     assert not roadmap.holding[inside].any()
     assert roadmap.holding[roadmap.points[:, 0] < 4].all()
+
+
+@pytest.mark.parametrize("wide", [5, 6])
+def test_a_passage_between_cells_has_its_lane_down_the_middle(wide):
+    """Of a width of 5 or 6 cells, 0.1 m each: in the midst of a cell, or between two."""
+    blocked = np.ones((60, 40), dtype=bool)
+    blocked[:20] = blocked[40:] = blocked[:, 10 : 10 + wide] = False
+    roadmap = Roadmap.of(GridSpace(Grid(blocked, 0.1)), RADIUS)
+    inside = (roadmap.points[:, 1] > 2.5) & (roadmap.points[:, 1] < 3.5)
+    assert inside.sum() > 0
+    np.testing.assert_allclose(roadmap.points[inside, 0], 1 + 0.1 * wide / 2, atol=1e-9)
 
 
 def test_a_corridor_for_two_has_two_lanes_on_which_robots_pass_each_other():
@@ -168,7 +179,7 @@ def test_resting_points_of_open_space_are_out_of_each_others_way():
     straight = out[roadmap.lengths_m[out] < 1.2 * roadmap.reach]
     assert len(straight) == 4
     assert all(roadmap.reached(k).tolist() == [roadmap.edges[k, 1]] for k in straight)
-    assert roadmap.holding.all()
+    assert roadmap.passable.all()
 
 
 def test_the_nearest_point_of_a_place_is_its_own():
@@ -190,3 +201,15 @@ def test_the_nearest_point_of_a_place_is_its_own():
 def test_what_no_roadmap_is_made_of_is_refused(space, radius, places, message):
     with pytest.raises(ParameterError, match=message):
         Roadmap.of(space, radius, places)
+
+
+def test_a_robot_rests_neither_in_a_passage_nor_before_another_ones_place():
+    """A robot at the place itself keeps nobody from it."""
+    place = (8, 3.21)  # off the lattice
+    roadmap = Roadmap.of(hall_with(0.9), RADIUS, [place, (2.4, 2.4)])
+    hall = np.linalg.norm(roadmap.points - (2.4, 2.4), axis=1) < roadmap.reach
+    assert hall.sum() > 1
+    assert np.flatnonzero(roadmap.holding & hall).tolist() == [roadmap.places[1]]
+    assert roadmap.passable[hall].all()
+    assert roadmap.places[0] == -1
+    assert not roadmap.holding[in_corridor(roadmap)].any()

@@ -19,6 +19,9 @@ from muster.motion.paths import PathFinder
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from scipy.spatial import cKDTree
+
+Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
@@ -29,9 +32,20 @@ _SAME_M = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """Points (n, 2) in metres, edges (m, 2), their clearance (m,) in metres, and the point of each place (-1: none)."""
+    """Points and edges that are made step by step.
+
+    Parameters
+    ----------
+    points, narrow
+        (n, 2) metres, and whether the room is for one there (n,).
+    edges, clearance_m
+        (m, 2) numbers of points, and (m,).
+    places
+        the point of each place; -1: none.
+    """
 
     points: Floats
+    narrow: Bools
     edges: Indices
     clearance_m: Floats
     places: Indices
@@ -42,7 +56,9 @@ class Network:
         numbers = [start, *range(first, first + len(way)), end]
         edges = np.concatenate([self.edges, np.array(list(pairwise(numbers)), dtype=np.int64)])
         clearance = np.concatenate([self.clearance_m, np.zeros(len(way) + 1)])
-        return Network(np.concatenate([self.points, way]), edges, clearance, self.places)
+        points = np.concatenate([self.points, way])
+        narrow = np.append(self.narrow, np.ones(len(way), dtype=np.bool_))
+        return Network(points, narrow, edges, clearance, self.places)
 
     def with_way_back(self, count: int) -> Network:
         """With the last so many edges in the other direction as well."""
@@ -51,7 +67,7 @@ class Network:
         return replace(self, edges=edges, clearance_m=clearance)
 
     def with_point(self, at: Floats) -> Network:
-        return replace(self, points=np.concatenate([self.points, at[np.newaxis]]))
+        return replace(self, points=np.concatenate([self.points, at[np.newaxis]]), narrow=np.append(self.narrow, True))
 
     def with_place(self, place: int, point: int) -> Network:
         """With a point, by number, as that of a place."""
@@ -62,7 +78,9 @@ class Network:
 
 def joined_exactly(made: Network, space: GridSpace | PolygonSpace, places: Floats) -> Network:
     """A network whose points are joined where the free space joins them, with every place (k, 2) that is free."""
-    lanes = len(made.points)
+    from scipy.spatial import cKDTree
+
+    lanes = cKDTree(made.points)
     finder: PathFinder | None = None
     if isinstance(space, PolygonSpace):
         for part, groups in _torn(made, space):
@@ -113,7 +131,7 @@ def _mended(made: Network, groups: list[Indices], finder: PathFinder, part: Any)
 
 
 def with_place(
-    made: Network, place: int, at: Floats, finder: PathFinder | None, lanes: int, *, both_ways: bool = False
+    made: Network, place: int, at: Floats, finder: PathFinder | None, lanes: cKDTree, *, both_ways: bool = False
 ) -> Network:
     """With a point for a place, joined straight to a near one, else by the shortest path to the nearest there is.
 
@@ -122,15 +140,13 @@ def with_place(
     finder
         of the free space; None where all is free.
     lanes
-        the place is joined to one of the first so many points; one of them is its own where it is there.
+        the first points of the network: the place is joined to one of them; one is its own where it is there.
     both_ways
         for a directed network: whether edges lead there and back.
     """
-    from scipy.spatial import cKDTree
-
-    if not lanes:
+    if not lanes.n:
         return made
-    away, near = cKDTree(made.points[:lanes]).query(at, k=min(_CANDIDATES, lanes))
+    away, near = lanes.query(at, k=min(_CANDIDATES, lanes.n))
     candidates = [int(k) for k in np.atleast_1d(near)]
     if np.atleast_1d(away)[0] < _SAME_M:
         return made.with_place(place, candidates[0])

@@ -57,6 +57,8 @@ def lane_network(
     space
         what is free for these robots; None where there is no map.
     """
+    from scipy.spatial import cKDTree
+
     finder = None if space is None else PathFinder(space)
     closed = {lane.number for lane in closed_lanes(lanes, radius_m, finder)}
     numbers = {name: k for k, name in enumerate(lanes.nodes)}
@@ -75,9 +77,11 @@ def lane_network(
         clearance += [_clearance(lane, radius_m, known=space is None)] * len(ways)
         speeds += [lane.speed_mps or math.inf] * len(ways)
     none = np.full(len(places), -1, dtype=np.int64)
-    made = Network(np.array(points), np.reshape(np.array(edges, dtype=np.int64), (-1, 2)), np.array(clearance), none)
+    pairs = np.reshape(np.array(edges, dtype=np.int64), (-1, 2))
+    made = Network(np.array(points), np.ones(len(points), dtype=np.bool_), pairs, np.array(clearance), none)
+    nodes = cKDTree(made.points)
     for place, at in enumerate(places):
-        made = with_place(made, place, at, finder, len(points), both_ways=True)
+        made = with_place(made, place, at, finder, nodes, both_ways=True)
     speeds += [math.inf] * (len(made.edges) - len(speeds))
     return made, np.array(speeds)
 

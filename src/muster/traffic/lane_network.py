@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -13,8 +15,9 @@ from muster.motion.grid import Grid
 from muster.motion.maps.distance_field import distance_field
 from muster.motion.maps.raster import grid_of
 from muster.traffic.exact_ways import Network, joined_exactly
+from muster.traffic.lane_middles import to_middle
 from muster.traffic.lane_points import Room, lane_points
-from muster.traffic.roadmap_edges import Regions, detours, pruned, visible_pairs, ways_to_lanes
+from muster.traffic.roadmap_edges import Regions, Sight, detours, pruned, visible_pairs, ways_to_lanes
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -48,17 +51,20 @@ def network(space: GridSpace | PolygonSpace, apart_m: float, places: Floats, mos
     free, depth = ~grid.blocked, distance_field(grid) / cell
     apart = apart_m * _APART / cell
     pitch = max(apart, math.sqrt(free.sum() / most_points))
-    sight = core.GridMap(grid.blocked)
+    sight = Sight(core.GridMap(grid.blocked), depth, partial(_inside, space, grid))
     inside = grid.to_grid(places)
     is_free = np.array([_is_inside(free, place) for place in inside], dtype=np.bool_)
 
-    lanes = _with_all_parts(free, depth, lane_points(Room.of(free, depth, apart), apart, pitch, inside[is_free]))
+    middle = partial(to_middle, space=space, grid=grid, depth=depth)
+    room = Room.of(free, depth, apart)
+    lanes = lane_points(room, apart, pitch, inside[is_free], middle)
+    lanes = _with_all_parts(free, depth, lanes)
     reach = _NEIGHBOURS * pitch
     regions = Regions.of(free, lanes)
-    bends, around = detours(regions, lanes, visible_pairs(sight, depth, lanes, reach), sight)
+    bends, around = detours(regions, lanes, visible_pairs(sight, lanes, reach), sight)
     lanes = np.concatenate([lanes, bends])
     points, numbers = _with_places(lanes, inside, is_free, pitch)
-    seen = visible_pairs(sight, depth, points, reach)
+    seen = visible_pairs(sight, points, reach)
     pairs = pruned(seen[(seen < len(lanes)).any(axis=1)], points, len(lanes))
     hidden = np.setdiff1d(np.arange(len(lanes), len(points)), pairs)
     corners, ways = ways_to_lanes(regions, points, hidden, sight)
@@ -66,13 +72,14 @@ def network(space: GridSpace | PolygonSpace, apart_m: float, places: Floats, mos
     pairs = np.unique(np.sort(np.concatenate([pairs, around, ways]), axis=1), axis=0)
     metres = grid.to_map(points)
     metres[numbers[is_free]] = places[is_free]
-    made = Network(metres, pairs, _clearance(depth, points, pairs) * cell, numbers)
+    column, row = points.astype(np.int64).T
+    made = Network(metres, room.narrow[row, column], pairs, _clearance(depth, points, pairs) * cell, numbers)
     return _both_ways(joined_exactly(made, space, places))
 
 
 def _both_ways(made: Network) -> Network:
     edges = np.concatenate([made.edges, made.edges[:, ::-1]])
-    return Network(made.points, edges, np.tile(made.clearance_m, 2), made.places)
+    return replace(made, edges=edges, clearance_m=np.tile(made.clearance_m, 2))
 
 
 def _cells(space: GridSpace | PolygonSpace, apart_m: float) -> Grid:
@@ -85,6 +92,17 @@ def _cells(space: GridSpace | PolygonSpace, apart_m: float) -> Grid:
     finer = max(1, min(finer, math.isqrt(_MOST_CELLS // max(1, grid.blocked.size))))
     blocked = grid.blocked.repeat(finer, axis=0).repeat(finer, axis=1)
     return Grid(blocked, grid.resolution_m / finer, grid.origin)
+
+
+def _inside(space: GridSpace | PolygonSpace, grid: Grid, pieces: Floats) -> Bools:
+    """Whether pieces (k, 2, 2), in cells, are inside a region, which cells say too strictly; a grid is its cells."""
+    if not isinstance(space, PolygonSpace):
+        return np.zeros(len(pieces), dtype=np.bool_)
+    import shapely
+
+    shapely.prepare(space.region)
+    metres = grid.to_map(pieces.reshape(-1, 2)).reshape(-1, 2, 2)
+    return np.asarray(shapely.contains_properly(space.region, shapely.linestrings(metres)))
 
 
 def _is_inside(free: Bools, place: Floats) -> bool:

@@ -13,7 +13,8 @@ What is left and at least `apart` from all of them, as corners of rooms, is fill
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,8 @@ _SHIFTS = 8
 _ON_LANE = 0.75
 """Cells by which a point may be off the middle of a passage."""
 _SLACK = 1e-6
+_HALF_CELL = math.sqrt(0.5)
+"""From the middle of a cell to its corner."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +58,9 @@ class Room:
         return cls(free, depth, free & ~for_two & ~wide, for_two & ~wide)
 
 
-def lane_points(room: Room, apart: float, pitch: float, places: Floats) -> Floats:
+def lane_points(
+    room: Room, apart: float, pitch: float, places: Floats, to_middle: Callable[[Floats], Floats]
+) -> Floats:
     """Points (n, 2), as (column, row) in cells, each `apart` from the others and at the middle of a cell or a lattice.
 
     Parameters
@@ -64,13 +69,16 @@ def lane_points(room: Room, apart: float, pitch: float, places: Floats) -> Float
         cells between points in narrow places, and of the lattice.
     places
         (k, 2) in cells: points are put there where they are on a lane or near to a point of the lattice.
+    to_middle
+        moves points of passages for one from the middle of their cells to the middle between the walls.
     """
     taken = Taken(room.free.shape, apart)
     on_lanes = [taken.take(place) for place in places if _is_on_lane(room, place) and not taken.at(place)]
-    lanes = taken.pack(_in_order(_ridge(room), _away_from(room.free & ~room.narrow)))
+    ridge = taken.pack(_in_order(_ridge(room), _away_from(room.free & ~room.narrow)))
+    lanes = to_middle(np.reshape(ridge, (-1, 2)))
     pairs = taken.pack(_in_order(_two_lanes(room, apart), _away_from(room.free & ~room.narrow & ~room.double)))
     lattice = _lattice(room, taken, pitch, places)
-    taken.take_near(lattice)
+    taken.take_all(lattice)
     corners = taken.pack(_in_order(room.free & ~taken.cells, room.depth))
     return np.concatenate([np.reshape(some, (-1, 2)) for some in (on_lanes, lanes, pairs, lattice, corners)])
 
@@ -102,10 +110,12 @@ class Taken:
         self._padded[row : row + len(up), column : column + len(across)] |= near
         return point
 
-    def take_near(self, points: Floats) -> None:
-        """Choose many points."""
-        for point in points:
-            self.take(point)
+    def take_all(self, points: Floats) -> None:
+        """Choose many points; with the cells that may be too near, as points may be anywhere in theirs."""
+        there = np.zeros(self.cells.shape, dtype=np.bool_)
+        column, row = points.astype(np.int64).T
+        there[row, column] = True
+        self.cells[_away_from(there) < self._apart + _HALF_CELL] = True
 
     def pack(self, cells: Iterable[int]) -> list[Floats]:
         """Choose the middle of each cell (row * columns + column), in order, that is not taken yet."""
@@ -154,9 +164,11 @@ def _in_order(cells: Bools, key: Floats) -> list[int]:
 
 
 def _away_from(cells: Bools) -> Floats:
-    """How far each cell is from the nearest of these, in cells."""
+    """How far each cell is from the nearest of these, in cells; inf where there are none."""
     from scipy.ndimage import distance_transform_edt
 
+    if not cells.any():
+        return np.full(cells.shape, np.inf)
     return np.asarray(distance_transform_edt(~cells))
 
 

@@ -29,6 +29,7 @@ Indices = npt.NDArray[np.int64]
 
 MARGIN_M = 0.02
 """What two robots keep between them beyond touching."""
+_SAME = 1e-9
 _MOST_POINTS = 40_000
 """About as many points has a roadmap of open space at most: there the lattice is made coarser."""
 
@@ -41,6 +42,8 @@ class Roadmap:
     ----------
     points
         (n, 2) metres.
+    narrow
+        (n,): whether the room is for one there; everywhere on given lanes.
     edges
         (m, 2): from, to; numbers of points.
     clearance_m
@@ -60,6 +63,7 @@ class Roadmap:
     """
 
     points: Floats
+    narrow: Bools
     edges: Indices
     clearance_m: Floats
     radius_m: float
@@ -82,11 +86,31 @@ class Roadmap:
         return np.asarray(np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1))
 
     @cached_property
-    def holding(self) -> Bools:
-        """(n,): whether others get past a robot that rests at a point: no passage for one leads through it."""
-        from muster.traffic.holding_places import holding_places
+    def one_way(self) -> Bools:
+        """(m,): whether no edge leads back."""
+        n = len(self.points)
+        start, end = self.edges.T
+        return ~np.isin(start * n + end, end * n + start)
 
-        return holding_places(self.points, self.edges, self.reach_start, self.reach_point, self.reach)
+    @cached_property
+    def passable(self) -> Bools:
+        """(n,): whether others get past a robot that rests at a point: no passage for one leads through it."""
+        from muster.traffic.holding_places import passable
+
+        return passable(self.points, self.edges, self.reach_start, self.reach_point, self.reach)
+
+    @cached_property
+    def holding(self) -> Bools:
+        """(n,): whether a robot may rest at a point: others get past it, and it keeps nobody from another place."""
+        from scipy.spatial import cKDTree
+
+        places = np.unique(self.places[self.places >= 0])
+        if not len(places):
+            return self.passable
+        near = cKDTree(self.points[places]).query_ball_point(self.points, self.reach * (1 - _SAME), return_length=True)
+        own = np.zeros(len(self.points), dtype=np.int64)
+        own[places] = 1
+        return np.asarray(self.passable & (near <= own))
 
     @cached_property
     def out_start(self) -> Indices:
@@ -186,6 +210,7 @@ class Roadmap:
         start, point, metres = conflicts(made.points, edges, 2 * radius_m + margin_m)
         return cls(
             points=made.points,
+            narrow=made.narrow,
             edges=edges,
             clearance_m=made.clearance_m[order],
             radius_m=radius_m,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -18,21 +19,48 @@ _SAME = 1e-6
 """Relative: pieces of a square count as what they are, whatever float64 says."""
 
 
-def visible_pairs(sight: core.GridMap, depth: Floats, points: Floats, reach: float) -> Indices:
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """Which straight pieces are free, from quick to exact.
+
+    Parameters
+    ----------
+    cells
+        the free cells.
+    depth
+        (rows, columns): from a cell's centre to the nearest blocked square, in cells.
+    exact
+        of pieces (k, 2 ends, 2), in cells, that leave the free cells, whether they are free nevertheless (k,).
+    """
+
+    cells: core.GridMap
+    depth: Floats
+    exact: Callable[[Floats], Bools]
+
+    def sees(self, a: Floats, b: Floats) -> bool:
+        """Whether a piece is in free cells."""
+        return self.cells.sees((float(a[0]), float(a[1])), (float(b[0]), float(b[1])))
+
+    def free(self, pieces: Floats) -> Bools:
+        """Whether pieces (k, 2, 2) are free."""
+        # A disc as large as the depth is free around a cell's centre: two that cover a piece make looking needless.
+        middles = np.floor(pieces)
+        column, row = middles.astype(np.int64).transpose(2, 0, 1)
+        radii = self.depth[row, column] - np.linalg.norm(pieces - middles - 0.5, axis=2)
+        found = radii.clip(min=0).sum(axis=1) > np.linalg.norm(pieces[:, 0] - pieces[:, 1], axis=1)
+        for k in np.flatnonzero(~found):
+            found[k] = self.sees(*pieces[k])
+        found[~found] = self.exact(pieces[~found])
+        return np.asarray(found)
+
+
+def visible_pairs(sight: Sight, points: Floats, reach: float) -> Indices:
     """Pairs (m, 2) of points (n, 2), in cells, that see each other and are within `reach` cells; by number."""
     from scipy.spatial import cKDTree
 
     pairs = cKDTree(points).query_pairs(reach, output_type="ndarray").astype(np.int64)
     pairs = pairs[np.lexsort(pairs.T[::-1])]
-    ends = points[pairs]
-    # A disc as large as the depth is free around a cell's centre; two that cover the piece make looking needless.
-    cells = ends.astype(np.int64)
-    radii = depth[cells[..., 1], cells[..., 0]] - np.linalg.norm(ends - cells - 0.5, axis=2)
-    seen = radii.clip(min=0).sum(axis=1) > np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
-    for k in np.flatnonzero(~seen):
-        a, b = ends[k].tolist()
-        seen[k] = sight.sees(tuple(a), tuple(b))
-    return np.asarray(pairs[seen])
+    return np.asarray(pairs[sight.free(points[pairs])])
 
 
 def pruned(pairs: Indices, points: Floats, lanes: int) -> Indices:
@@ -132,7 +160,7 @@ class Regions:
         return np.asarray(touching[first])
 
 
-def detours(regions: Regions, points: Floats, pairs: Indices, sight: core.GridMap) -> tuple[Floats, Indices]:
+def detours(regions: Regions, points: Floats, pairs: Indices, sight: Sight) -> tuple[Floats, Indices]:
     """Further points (k, 2) and pairs (l, 2) where neighbours in free space have no short way: around bends.
 
     Where the regions of two points touch and no three pairs join them, the corners of a path through both regions are
@@ -146,7 +174,7 @@ def detours(regions: Regions, points: Floats, pairs: Indices, sight: core.GridMa
     return _cornered(ways, len(points), sight)
 
 
-def ways_to_lanes(regions: Regions, points: Floats, hidden: Indices, sight: core.GridMap) -> tuple[Floats, Indices]:
+def ways_to_lanes(regions: Regions, points: Floats, hidden: Indices, sight: Sight) -> tuple[Floats, Indices]:
     """Further points (k, 2) and pairs (l, 2) that join points which see no lane, by number, to that of their region."""
     ways = []
     for a in hidden.tolist():
@@ -156,7 +184,7 @@ def ways_to_lanes(regions: Regions, points: Floats, hidden: Indices, sight: core
     return _cornered(ways, len(points), sight)
 
 
-def _cornered(ways: list[tuple[int, list[Floats], int]], count: int, sight: core.GridMap) -> tuple[Floats, Indices]:
+def _cornered(ways: list[tuple[int, list[Floats], int]], count: int, sight: Sight) -> tuple[Floats, Indices]:
     """The corners (k, 2), numbered from `count`, of ways from one point to another, and the pairs (l, 2) along them."""
     found: list[Floats] = []
     pairs: list[tuple[int, int]] = []
@@ -179,10 +207,10 @@ def _joined(touching: Indices, pairs: Indices, n: int) -> Bools:
     return np.asarray((two[touching[:, 0]] * one[touching[:, 1]]).sum(axis=1)).ravel() > 0
 
 
-def _taut(way: list[Floats], sight: core.GridMap) -> list[Floats]:
+def _taut(way: list[Floats], sight: Sight) -> list[Floats]:
     """A way by as few of its points as see each other one after the other."""
     taut, k = [way[0]], 0
     while k < len(way) - 1:
-        k = next(j for j in range(len(way) - 1, k, -1) if j == k + 1 or sight.sees(tuple(way[k]), tuple(way[j])))
+        k = next(j for j in range(len(way) - 1, k, -1) if j == k + 1 or sight.sees(way[k], way[j]))
         taut.append(way[k])
     return taut
