@@ -77,12 +77,14 @@ void bind_move_planner(nb::module_& m) {
           [](MovePlanner& self, Configuration starts, std::vector<int> goals, std::vector<double> radii,
              std::vector<double> priorities, const std::vector<bool>& pinned, double margin, double turn_cost,
              int horizon, bool settle, int expansions, std::uint64_t seed) {
+            std::vector<char> arrived(starts.size());
             return planned(self,
                            {std::move(starts),
                             std::move(goals),
                             std::move(radii),
                             std::move(priorities),
                             {pinned.begin(), pinned.end()},
+                            std::move(arrived),
                             margin,
                             turn_cost},
                            {horizon, expansions, settle}, seed);

@@ -1,5 +1,6 @@
 #include "move_planner.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -39,21 +40,57 @@ MovePlan::Outcome outcome(const Search& search, int last) {
 
 MovePlan MovePlanner::plan(Team team, const Limits& limits, std::uint64_t seed) {
   if (tables_.size() > kMostTables) tables_.clear();
-  Search search(SingleMoves(roadmap_, std::move(team), &tables_, limits.horizon, limits.settle), seed, false);
-  const SingleMoves& generator = search.generator();
-  const bool cut_off = generator.cut_off();
+  MovePlan plan{MovePlan::Outcome::kUnfinished, {}, {}, {}};
+  do {
+    go_on(team, limits, seed, plan);
+  } while (plan.outcome == MovePlan::Outcome::kUnfinished && !limits.settle && lead(team, limits, seed, plan));
+  plan.places = team.starts;
+  plan.arrived = team.arrived;
+  plan.moves = without_detours(*roadmap_, team, std::move(plan.moves));
+  return plan;
+}
+
+// As far as all come together.
+void MovePlanner::go_on(Team& team, const Limits& limits, std::uint64_t seed, MovePlan& plan) {
+  const int left = limits.horizon - static_cast<int>(plan.moves.size());
+  Search search(SingleMoves(roadmap_, team, &tables_, left, limits.settle), seed, false);
+  const bool cut_off = search.generator().cut_off();
   const int last = cut_off ? 0 : searched(search, limits.expansions);
-  MovePlan plan{cut_off ? MovePlan::Outcome::kImpossible : outcome(search, last), {}, {}, {}};
+  // What all cannot do from here may be what they could from the start.
+  plan.outcome = cut_off              ? MovePlan::Outcome::kImpossible
+                 : plan.moves.empty() ? outcome(search, last)
+                 : search.goal() >= 0 ? outcome(search, last)
+                                      : MovePlan::Outcome::kUnfinished;
   for (const int k : search.way_to(last)) {
     const auto& moves = search.node(k).memo.moves;
     plan.moves.insert(plan.moves.end(), moves.begin(), moves.end());
   }
-  for (const int where : search.node(last).configuration) {
-    plan.places.push_back(SingleMoves::point(where));
-    plan.arrived.push_back(SingleMoves::visited(where));
+  const Configuration& end = search.node(last).configuration;
+  for (int i = 0; i < team.robots(); ++i) {
+    team.starts[i] = SingleMoves::point(end[i]);
+    team.arrived[i] = SingleMoves::visited(end[i]);
   }
-  plan.moves = without_detours(*roadmap_, generator.team(), std::move(plan.moves));
-  return plan;
+}
+
+// The first robot that comes to its goal if nobody else has one.
+bool MovePlanner::lead(Team& team, const Limits& limits, std::uint64_t seed, MovePlan& plan) {
+  for (int leader = 0; leader < team.robots(); ++leader) {
+    if (team.arrived[leader]) continue;
+    Team alone = team;
+    std::fill(alone.goals.begin(), alone.goals.end(), Team::kNoGoal);
+    alone.goals[leader] = team.goals[leader];
+    MovePlan led{MovePlan::Outcome::kUnfinished, plan.moves, {}, {}};
+    go_on(alone, limits, seed, led);
+    if (!alone.arrived[leader]) continue;
+    for (std::size_t k = plan.moves.size(); k < led.moves.size(); ++k) {
+      const auto [robot, edge] = led.moves[k];
+      if (roadmap_->graph().head(edge) == team.goals[robot]) team.arrived[robot] = true;
+    }
+    team.starts = alone.starts;
+    plan.moves = std::move(led.moves);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace muster

@@ -18,7 +18,8 @@ struct MovePlan {
   std::vector<char> arrived;  // who has been at its goal
 };
 
-// Keeps the ways to goals from one plan to the next.
+// All robots go at once. Where they come no further, one of them goes on alone while the others only make way, and then
+// all again. Keeps the ways to goals from one plan to the next.
 class MovePlanner {
  public:
   struct Limits {
@@ -35,6 +36,9 @@ class MovePlanner {
 
  private:
   static constexpr std::size_t kMostTables = 2000;
+
+  void go_on(Team& team, const Limits& limits, std::uint64_t seed, MovePlan& plan);
+  bool lead(Team& team, const Limits& limits, std::uint64_t seed, MovePlan& plan);
 
   std::shared_ptr<const AnnotatedRoadmap> roadmap_;
   SingleMoves::Tables tables_;
