@@ -1,6 +1,7 @@
 """Sequences of single moves: clearance by geometry, a plan wherever there is one, a proof where there is none."""
 
 from collections import deque
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -46,7 +47,7 @@ def test_no_more_turns_than_needed():
     found = planned(roadmap, [numbers[0, 0]], [numbers[4, 4]])
     along = [tuple(roadmap.points[roadmap.edges[e, 1]] - roadmap.points[roadmap.edges[e, 0]]) for _, e in found.moves]
     assert len(found.moves) == 8
-    assert sum(a != b for a, b in zip(along[:-1], along[1:], strict=True)) == 1
+    assert sum(a != b for a, b in pairwise(along)) == 1
 
 
 def test_two_swap_at_a_bay():

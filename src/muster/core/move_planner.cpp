@@ -5,12 +5,15 @@
 #include <utility>
 
 #include "lacam.hpp"
+#include "random.hpp"
 
 namespace muster {
 
 namespace {
 
 using Search = Lacam<SingleMoves>;
+
+constexpr double kMostAhead = 10;  // rounds that a try puts a robot ahead
 
 // Until it ends, or has come no nearer to the goals for so many expansions; the nearest node.
 int searched(Search& search, int expansions) {
@@ -29,6 +32,25 @@ int searched(Search& search, int expansions) {
   return search.goal() >= 0 ? search.goal() : best;
 }
 
+// The ends of the last moves near a point: of the robot that is last, and of the last other one.
+class LastMoves {
+ public:
+  double but_of(int robot) const { return robot == robot_ ? other_ : last_; }
+  void add(int robot, double end) {
+    if (robot != robot_) other_ = std::exchange(last_, end);
+    robot_ = robot;
+    last_ = end;
+  }
+
+ private:
+  int robot_ = -1;
+  double last_ = 0, other_ = 0;
+};
+
+bool better(MovePlan::Outcome outcome, double time, MovePlan::Outcome than, double than_time) {
+  return outcome != than ? outcome < than : time < than_time;
+}
+
 MovePlan::Outcome outcome(const Search& search, int last) {
   if (search.state() == SearchState::kUnsolvable) return MovePlan::Outcome::kImpossible;
   if (search.goal() < 0) return MovePlan::Outcome::kUnfinished;
@@ -38,8 +60,52 @@ MovePlan::Outcome outcome(const Search& search, int last) {
 
 }  // namespace
 
-MovePlan MovePlanner::plan(Team team, const Limits& limits, std::uint64_t seed) {
+MovePlan MovePlanner::plan(const Team& team, const Limits& limits, std::uint64_t seed) {
   if (tables_.size() > kMostTables) tables_.clear();
+  MovePlan best = tried(team, limits, seed);
+  if (best.outcome == MovePlan::Outcome::kImpossible || limits.tries == 1) return best;
+  double least = duration(team, best);
+  Random random(seed);
+  for (int k = 1; k < limits.tries; ++k) {
+    Team other = team;
+    for (double& priority : other.priorities) priority += kMostAhead * random.uniform();
+    MovePlan plan = tried(std::move(other), limits, seed + k);
+    const double time = duration(team, plan);
+    if (better(plan.outcome, time, best.outcome, least)) {
+      least = time;
+      best = std::move(plan);
+    }
+  }
+  return best;
+}
+
+// How long the plan takes at a metre a second, and on average until a robot has been at its goal: each move begins as
+// soon as all earlier moves of others near the same points have ended. Where a plan ends before, the rest of the way
+// counts.
+double MovePlanner::duration(const Team& team, const MovePlan& plan) {
+  const DirectedGraph& graph = roadmap_->graph();
+  std::vector<double> ready(team.robots()), arrived(team.robots(), -1);
+  std::vector<LastMoves> last(graph.size());
+  for (const auto [robot, edge] : plan.moves) {
+    double begin = std::max(ready[robot], last[graph.tail(edge)].but_of(robot));
+    for (const auto& near : roadmap_->near(edge)) begin = std::max(begin, last[near.point].but_of(robot));
+    ready[robot] = begin + graph.cost(edge);
+    last[graph.tail(edge)].add(robot, ready[robot]);
+    for (const auto& near : roadmap_->near(edge)) last[near.point].add(robot, ready[robot]);
+    if (graph.head(edge) == team.goals[robot] && arrived[robot] < 0) arrived[robot] = ready[robot];
+  }
+  double most = 0, sum = 0;
+  for (int i = 0; i < team.robots(); ++i) {
+    if (team.goals[i] == Team::kNoGoal || team.pinned[i] || team.starts[i] == team.goals[i]) continue;
+    const auto& left = tables_.to(team.goals[i], [&](int goal) { return graph.costs_to(goal); });
+    const double time = arrived[i] >= 0 ? arrived[i] : ready[i] + left[plan.places[i]];
+    most = std::max(most, time);
+    sum += time;
+  }
+  return most + sum / std::max(1, team.robots());
+}
+
+MovePlan MovePlanner::tried(Team team, const Limits& limits, std::uint64_t seed) {
   MovePlan plan{MovePlan::Outcome::kUnfinished, {}, {}, {}};
   do {
     go_on(team, limits, seed, plan);

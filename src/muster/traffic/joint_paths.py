@@ -1,9 +1,9 @@
 """Multi-agent path finding: paths on a graph for all robots at once, step by step ([stern2019]).
 
 Priority inheritance with backtracking, PIBT ([okumura2022]), makes the steps, with the swap of [okumura2023b]. The
-search over configurations with lazily added constraints, LaCAM ([okumura2023]), makes it complete: where there are paths
-it finds them, given time, and where there are none it proves that in the end. With `anytime` it goes on to better ones,
-as LaCAM* does ([okumura2023b]). Both are in the core.
+search over configurations with lazily added constraints, LaCAM ([okumura2023]), makes it complete: where there are
+paths it finds them, given time, and where there are none it proves that in the end. With `anytime` it goes on to better
+ones, as LaCAM* does ([okumura2023b]). Both are in the core.
 """
 
 from __future__ import annotations
@@ -155,8 +155,8 @@ Cost = Literal["sum of costs", "sum of loss", "makespan"]
 def costs(vertices: Indices, goals: Sequence[int]) -> dict[Cost, int]:
     """What paths cost, as the benchmarks count it.
 
-    `sum of costs`: the step after which a robot rests at its goal for good, over all robots; `sum of loss`: the steps in
-    which it does not rest there; `makespan`: the step after which all rest.
+    `sum of costs`: the step after which a robot rests at its goal for good, over all robots; `sum of loss`: the steps
+    in which it does not rest there; `makespan`: the step after which all rest.
     """
     away = np.asarray(vertices) != np.asarray(goals)
     steps = np.arange(len(vertices))[:, None]
