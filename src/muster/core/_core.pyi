@@ -842,7 +842,7 @@ class MovePlanner:
         `points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not fit.
         """
 
-    def planned(self, starts: Sequence[int], goals: Sequence[int], radii: Sequence[float], priorities: Sequence[float], pinned: Sequence[bool], *, margin: float, turn_cost: float, horizon: int, settle: bool, expansions: int, seed: int) -> tuple[str, list[tuple[int, int]], list[int], list[bool]]:
+    def planned(self, starts: Sequence[int], goals: Sequence[int], radii: Sequence[float], priorities: Sequence[float], pinned: Sequence[bool], *, margin: float, turn_cost: float, horizon: int, settle: bool, expansions: int, tries: int, seed: int) -> tuple[str, list[tuple[int, int]], list[int], list[bool]]:
         """
         The outcome (arrived, horizon, unfinished, impossible), the moves (robot, edge), where all stand in the end, and who has been at its goal.
         """

@@ -14,6 +14,7 @@ namespace {
 using Search = Lacam<SingleMoves>;
 
 constexpr double kMostAhead = 10;  // rounds that a try puts a robot ahead
+constexpr double kChanged = 0.3;   // the share of robots whose priorities a try changes
 
 // Until it ends, or has come no nearer to the goals for so many expansions; the nearest node.
 int searched(Search& search, int expansions) {
@@ -66,14 +67,20 @@ MovePlan MovePlanner::plan(const Team& team, const Limits& limits, std::uint64_t
   if (best.outcome == MovePlan::Outcome::kImpossible || limits.tries == 1) return best;
   double least = duration(team, best);
   Random random(seed);
+  std::vector<double> ahead(team.robots());
   for (int k = 1; k < limits.tries; ++k) {
     Team other = team;
-    for (double& priority : other.priorities) priority += kMostAhead * random.uniform();
+    auto changed = ahead;
+    for (double& rounds : changed) {
+      if (random.uniform() < kChanged) rounds = kMostAhead * random.uniform();
+    }
+    for (int i = 0; i < team.robots(); ++i) other.priorities[i] += changed[i];
     MovePlan plan = tried(std::move(other), limits, seed + k);
     const double time = duration(team, plan);
     if (better(plan.outcome, time, best.outcome, least)) {
       least = time;
       best = std::move(plan);
+      ahead = std::move(changed);
     }
   }
   return best;

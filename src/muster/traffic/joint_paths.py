@@ -1,9 +1,9 @@
 """Multi-agent path finding: paths on a graph for all robots at once, step by step ([stern2019]).
 
-Priority inheritance with backtracking, PIBT ([okumura2022]), makes the steps, with the swap of [okumura2023b]. The
+Priority inheritance with backtracking, PIBT ([okumura2022]), makes the steps, with the swap of [okumura-star2023]. The
 search over configurations with lazily added constraints, LaCAM ([okumura2023]), makes it complete: where there are
 paths it finds them, given time, and where there are none it proves that in the end. With `anytime` it goes on to better
-ones, as LaCAM* does ([okumura2023b]). Both are in the core.
+ones, as LaCAM* does ([okumura-star2023]). Both are in the core.
 """
 
 from __future__ import annotations

@@ -70,7 +70,7 @@ class Parameters:
     horizon: int | None = None
     settle: bool = False
     expansions: int = 2000
-    tries: int = 1
+    tries: int = 8
 
     def __post_init__(self) -> None:
         if not self.turn_m_per_rad >= 0:
