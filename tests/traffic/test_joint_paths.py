@@ -85,15 +85,31 @@ def test_anytime_ends_with_the_least_loss(seed):
         assert costs(found.vertices, goals)["sum of loss"] == least
 
 
-@pytest.mark.parametrize("samples", [1, 5])
-def test_the_same_for_the_same_seed(samples):
+@pytest.mark.parametrize("options", [{}, {"samples": 5}, {"refine": True}], ids=["first", "samples", "refine"])
+def test_the_same_for_the_same_seed(options):
     graph, starts, goals = crowd()
-    plans = [
-        joint_paths(graph, starts, goals, seed=seed, time_limit=None, params=Parameters(samples=samples)).vertices
-        for seed in (1, 1, 2)
-    ]
+    limits = {"time_limit": None, "expansions": 500, "params": Parameters(**options)}
+    plans = [joint_paths(graph, starts, goals, seed=seed, **limits).vertices for seed in (1, 1, 2)]
     assert np.array_equal(plans[0], plans[1])
     assert not np.array_equal(plans[0], plans[2])
+
+
+def test_refined_paths_are_paths_and_cost_less():
+    free = np.zeros((12, 12), dtype=bool)
+    _, starts, goals = crowd()
+    ends = [(divmod(start, 12), divmod(goal, 12)) for start, goal in zip(starts, goals, strict=True)]
+    first = solved(free, ends, seed=1, time_limit=None)
+    refined = solved(
+        free, ends, seed=1, time_limit=None, expansions=2000, params=Parameters(refine=True)
+    )  # judged as all that `solved` returns
+    before, after = (costs(paths.vertices, goals)["sum of costs"] for paths in (first, refined))
+    assert sum(abs(a - b) + abs(c - d) for (a, c), (b, d) in ends) <= after < 0.8 * before
+
+
+def test_refining_needs_an_end():
+    graph, starts, goals = crowd()
+    with pytest.raises(ParameterError, match="refine: without a limit"):
+        joint_paths(graph, starts, goals, time_limit=None, params=Parameters(refine=True))
 
 
 def test_time_limit_is_of_the_clock_given():

@@ -832,6 +832,21 @@ class Lacam:
     def solution(self) -> list[list[int]]:
         """The vertex of each robot, step by step. Only after it is solved."""
 
+class JointRefinement:
+    """Large neighbourhood search over the paths of robots."""
+
+    def __init__(self, graph: DirectedGraph, steps: Sequence[Sequence[int]], seed: int) -> None:
+        """Raises ValueError where `steps` are no paths."""
+
+    def advance(self, neighbourhoods: int) -> None: ...
+
+    @property
+    def cost(self) -> int:
+        """Steps until each robot rests at its goal for good, summed up."""
+
+    def solution(self) -> list[list[int]]:
+        """The vertex of each robot, step by step."""
+
 class MovePlanner:
     """
     Sequences of single moves of a team on a roadmap with annotated conflicts.

@@ -76,8 +76,7 @@ void bind_move_planner(nb::module_& m) {
           "planned",
           [](MovePlanner& self, Configuration starts, std::vector<int> goals, std::vector<double> radii,
              std::vector<double> priorities, const std::vector<bool>& pinned, double margin, double turn_cost,
-             int horizon, bool settle, int expansions, int tries,
-             std::uint64_t seed) {
+             int horizon, bool settle, int expansions, int tries, std::uint64_t seed) {
             std::vector<char> arrived(starts.size());
             return planned(self,
                            {std::move(starts),

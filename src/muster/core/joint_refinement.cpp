@@ -125,7 +125,8 @@ bool JointRefinement::replan(int robot) {
       open_[arrival].pop_back();
       if (vertex == goals_[robot] && step >= rests_from) {
         Path path(step + 1);
-        for (int k = step, v = vertex; k >= 0; v = before_[static_cast<std::size_t>(k--) * graph_->size() + v]) path[k] = v;
+        for (int k = step, v = vertex; k >= 0; v = before_[static_cast<std::size_t>(k--) * graph_->size() + v])
+          path[k] = v;
         paths_[robot] = std::move(path);
         return true;
       }

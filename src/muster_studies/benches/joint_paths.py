@@ -66,11 +66,11 @@ def prefixes_bench(runs: int) -> list[Measurement]:
         published = PUBLISHED.get(count, "") if folder else ""
         solved = [solve(blocked, ends[:count], seed) for seed in range(runs)]
         found.append(_row(f"{count} robots, random-32-32-10", solved, "", published))
-    params = Parameters(samples=10, anytime=True)
+    params = Parameters(samples=10, refine=True)
     for count in PREFIXES:
         published = PUBLISHED.get(count, "") if folder else ""
         found.append(
-            _row(f"{count} robots, random-32-32-10, anytime", [solve(blocked, ends[:count], 0, params)], "", published)
+            _row(f"{count} robots, random-32-32-10, refined", [solve(blocked, ends[:count], 0, params)], "", published)
         )
     return found
 
