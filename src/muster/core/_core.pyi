@@ -851,6 +851,21 @@ class Lacam:
     def solution(self) -> list[list[int]]:
         """The vertex of each robot, step by step. Only after it is solved."""
 
+class JointRefinement:
+    """Large neighbourhood search over the paths of robots."""
+
+    def __init__(self, graph: DirectedGraph, steps: Sequence[Sequence[int]], seed: int) -> None:
+        """Raises ValueError where `steps` are no paths."""
+
+    def advance(self, neighbourhoods: int) -> None: ...
+
+    @property
+    def cost(self) -> int:
+        """Steps until each robot rests at its goal for good, summed up."""
+
+    def solution(self) -> list[list[int]]:
+        """The vertex of each robot, step by step."""
+
 class MovePlanner:
     """
     Sequences of single moves of a team on a roadmap with annotated conflicts.
@@ -861,7 +876,7 @@ class MovePlanner:
         `points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not fit.
         """
 
-    def planned(self, starts: Sequence[int], goals: Sequence[int], radii: Sequence[float], priorities: Sequence[float], pinned: Sequence[bool], *, margin: float, turn_cost: float, horizon: int, settle: bool, expansions: int, seed: int) -> tuple[str, list[tuple[int, int]], list[int], list[bool]]:
+    def planned(self, starts: Sequence[int], goals: Sequence[int], radii: Sequence[float], priorities: Sequence[float], pinned: Sequence[bool], *, margin: float, turn_cost: float, horizon: int, settle: bool, expansions: int, tries: int, seed: int) -> tuple[str, list[tuple[int, int]], list[int], list[bool]]:
         """
         The outcome (arrived, horizon, unfinished, impossible), the moves (robot, edge), where all stand in the end, and who has been at its goal.
         """

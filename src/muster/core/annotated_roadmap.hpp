@@ -1,4 +1,4 @@
-// A roadmap that says for each edge which points a robot on it comes near to [hoenig2018].
+// A roadmap that says for each edge which points a robot on it comes near to.
 #pragma once
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 
 #include "bindings.hpp"
 #include "directed_graph.hpp"
+#include "joint_refinement.hpp"
 #include "joint_steps.hpp"
 #include "lacam.hpp"
 
@@ -71,6 +72,12 @@ void bind_lacam(nb::module_& m) {
       .def_prop_ro("nodes", &Search::size, "The number of configurations that it knows.")
       .def_prop_ro("cost", &Search::cost, "Steps in which robots do not rest at their goals, of the best solution.")
       .def("solution", &solution, "The vertex of each robot, step by step. Only after it is solved.");
+  nb::class_<JointRefinement>(m, "JointRefinement", "Large neighbourhood search over the paths of robots.")
+      .def(nb::init<std::shared_ptr<const DirectedGraph>, const std::vector<Configuration>&, std::uint64_t>(),
+           "graph"_a, "steps"_a, "seed"_a, "Raises ValueError where `steps` are no paths.")
+      .def("advance", &JointRefinement::advance, "neighbourhoods"_a, Unlocked())
+      .def_prop_ro("cost", &JointRefinement::cost, "Steps until each robot rests at its goal for good, summed up.")
+      .def("solution", &JointRefinement::solution, "The vertex of each robot, step by step.");
 }
 
 }  // namespace muster

@@ -76,19 +76,21 @@ void bind_move_planner(nb::module_& m) {
           "planned",
           [](MovePlanner& self, Configuration starts, std::vector<int> goals, std::vector<double> radii,
              std::vector<double> priorities, const std::vector<bool>& pinned, double margin, double turn_cost,
-             int horizon, bool settle, int expansions, std::uint64_t seed) {
+             int horizon, bool settle, int expansions, int tries, std::uint64_t seed) {
+            std::vector<char> arrived(starts.size());
             return planned(self,
                            {std::move(starts),
                             std::move(goals),
                             std::move(radii),
                             std::move(priorities),
                             {pinned.begin(), pinned.end()},
+                            std::move(arrived),
                             margin,
                             turn_cost},
-                           {horizon, expansions, settle}, seed);
+                           {horizon, expansions, settle, tries}, seed);
           },
           "starts"_a, "goals"_a, "radii"_a, "priorities"_a, "pinned"_a, nb::kw_only(), "margin"_a, "turn_cost"_a,
-          "horizon"_a, "settle"_a, "expansions"_a, "seed"_a,
+          "horizon"_a, "settle"_a, "expansions"_a, "tries"_a, "seed"_a,
           "The outcome (arrived, horizon, unfinished, impossible), the moves (robot, edge), where all stand in the "
           "end, "
           "and who has been at its goal.")

@@ -62,8 +62,8 @@ std::vector<double> DirectedGraph::costs_to(int goal) const {
   while (!open.empty()) {
     const auto [cost, at] = open.pop();
     if (cost > found[at]) continue;
-    for (int k = backward_first_[at]; k < backward_first_[at + 1]; ++k) {
-      const int e = backward_edges_[k], from = tail(e);
+    for (const int e : entering(at)) {
+      const int from = tail(e);
       const double here = cost + this->cost(e);
       if (here >= found[from]) continue;
       found[from] = here;
@@ -77,9 +77,9 @@ std::vector<int> DirectedGraph::steps_to(int goal) const {
   std::vector<int> found(size(), kNoWay), queue{goal};
   found[goal] = 0;
   for (std::size_t k = 0; k < queue.size(); ++k) {
-    const auto at = queue[k];
-    for (int b = backward_first_[at]; b < backward_first_[at + 1]; ++b) {
-      const int from = tail(backward_edges_[b]);
+    const int at = queue[k];
+    for (const int e : entering(at)) {
+      const int from = tail(e);
       if (found[from] != kNoWay) continue;
       found[from] = found[at] + 1;
       queue.push_back(from);

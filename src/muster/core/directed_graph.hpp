@@ -23,6 +23,10 @@ class DirectedGraph {
   std::span<const int> neighbours(int vertex) const {
     return {heads_.data() + begin(vertex), static_cast<std::size_t>(end(vertex) - begin(vertex))};
   }
+  // The edges that lead to a vertex.
+  std::span<const int> entering(int vertex) const {
+    return {backward_edges_.data() + backward_first_[vertex], backward_edges_.data() + backward_first_[vertex + 1]};
+  }
   // -1 if there is none.
   int edge(int tail, int head) const;
   int most_neighbours() const;

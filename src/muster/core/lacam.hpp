@@ -1,4 +1,4 @@
-// Lazy constraints addition search [okumura2023], anytime by rewiring as LaCAM* [okumura2023b].
+// Lazy constraints addition search [okumura2023], anytime by rewiring as LaCAM* [okumura-star2023].
 //
 // High level: a depth-first search over configurations, which say where all robots are. Low level: each configuration
 // has a tree of constraints, searched in breadth, of which one node is taken each time the configuration is on top; it

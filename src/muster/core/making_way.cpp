@@ -111,34 +111,78 @@ void SingleMoves::mark(int robot, const Edges& edges, double apart) {
   }
 }
 
-// Two meet where nobody can step aside: the one ahead is sent off the other's way, past it, and goes first until it is
-// there, as in the swap of [luna2011].
+// Two meet where nobody can step aside: the one ahead is sent past the other, to where that one can get past it in
+// turn, and goes first until it is there, as in the swap of [luna2011].
 void SingleMoves::exchange(int robot, int edge) {
   std::vector<int> others;
   who_stands_near(robot, {&edge, 1}, others);
   for (const int other : others) {
-    auto& errand = memo_->errands[other];
+    Errand& errand = memo_->errands[other];
     if (team_.pinned[other] || errand.whose >= 0 || memo_->errands[robot].whose == other) continue;
     if (memo_->stalled[robot] < kPatience && gets_out(other, edge, robot)) continue;
-    const Edges ahead = route(robot, graph_.size());
-    mark(robot, ahead, team_.apart(robot, other));
+    const auto side = this_side(robot, places_[other], team_.apart(robot, other));
     int place = Team::kNoGoal;
-    const auto past_pinned = [&](int e) {
-      for (const auto [point, metres] : roadmap_->near(e)) {
-        const int who = standing_[point];
-        if (who >= 0 && team_.pinned[who] && metres < team_.apart(other, who)) return false;
-      }
-      return true;
-    };
-    search(places_[other], past_pinned, [&](int there, double) {
-      if (marked_[there] != mark_) place = there;
-      return place == Team::kNoGoal;
-    });
+    std::size_t steps = 0;
+    search(
+        places_[other], [&](int e) { return !meets_pinned(other, e); },
+        [&](int there, double) {
+          const Edges way = found_way(there);
+          if (there != places_[other] && lets_past(robot, other, there, way, side)) {
+            place = there;
+            steps = way.size();
+          }
+          return place == Team::kNoGoal;
+        });
     if (place == Team::kNoGoal) continue;
-    errand = {place, robot, 30 + 4 * static_cast<int>(ahead.size())};
+    errand = {place, robot, 30 + 4 * static_cast<int>(steps)};
     memo_->priorities[other] = memo_->priorities[robot] + 1;
     return;
   }
+}
+
+bool SingleMoves::meets_pinned(int robot, int edge) const {
+  for (const auto [point, metres] : roadmap_->near(edge)) {
+    const int other = standing_[point];
+    if (other >= 0 && team_.pinned[other] && metres < team_.apart(robot, other)) return true;
+  }
+  return false;
+}
+
+// The points that a robot can come to without getting past somebody at a place.
+std::vector<char> SingleMoves::this_side(int robot, int place, double apart) const {
+  std::vector<char> seen(graph_.size());
+  std::vector<int> queue{places_[robot]};
+  seen[places_[robot]] = 1;
+  for (std::size_t k = 0; k < queue.size(); ++k) {
+    for (int e = graph_.begin(queue[k]); e < graph_.end(queue[k]); ++e) {
+      if (seen[graph_.head(e)] || roadmap_->meets(e, place, apart)) continue;
+      seen[graph_.head(e)] = 1;
+      queue.push_back(graph_.head(e));
+    }
+  }
+  return seen;
+}
+
+// Whether a robot can wait on its side, off the other's way, and from there come to where it wants to be, past the
+// other at its new place.
+bool SingleMoves::lets_past(int robot, int other, int place, const Edges& way, const std::vector<char>& side) const {
+  const double apart = team_.apart(robot, other);
+  const auto is_met = [&](std::span<const int> edges, int point) {
+    return std::any_of(edges.begin(), edges.end(), [&](int e) { return roadmap_->meets(e, point, apart); });
+  };
+  std::vector<char> seen(graph_.size());
+  std::vector<int> queue{wish(robot)};
+  seen[wish(robot)] = 1;
+  for (std::size_t k = 0; k < queue.size(); ++k) {
+    const int at = queue[k];
+    if (side[at] && at != place && !is_met(way, at) && !is_met(graph_.entering(places_[other]), at)) return true;
+    for (const int e : graph_.entering(at)) {
+      if (seen[graph_.tail(e)] || roadmap_->meets(e, place, apart)) continue;
+      seen[graph_.tail(e)] = 1;
+      queue.push_back(graph_.tail(e));
+    }
+  }
+  return false;
 }
 
 // Whether a robot could leave an edge to another without getting past it, if all others let it.

@@ -1,4 +1,4 @@
-// Priority inheritance with backtracking [okumura2022], with the swap of [okumura2023b]: one step of all robots at
+// Priority inheritance with backtracking [okumura2022], with the swap of [okumura-star2023]: one step of all robots at
 // once.
 #pragma once
 

@@ -16,7 +16,7 @@ constexpr int kMostIdle = 10;  // rounds in which nobody moves
 void check(const Team& team, int points) {
   const auto robots = team.starts.size();
   if (team.goals.size() != robots || team.radii.size() != robots || team.priorities.size() != robots ||
-      team.pinned.size() != robots) {
+      team.pinned.size() != robots || team.arrived.size() != robots) {
     throw std::invalid_argument("goals, radii, priorities and pinned must be as many as starts");
   }
   std::vector<char> taken(points);
@@ -59,7 +59,8 @@ SingleMoves::SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, Team t
 Configuration SingleMoves::start() const {
   Configuration start;
   for (int i = 0; i < team_.robots(); ++i) {
-    const bool there = team_.pinned[i] || team_.goals[i] == Team::kNoGoal || team_.goals[i] == team_.starts[i];
+    const bool there =
+        team_.arrived[i] || team_.pinned[i] || team_.goals[i] == Team::kNoGoal || team_.goals[i] == team_.starts[i];
     start.push_back(2 * team_.starts[i] + there);
   }
   return start;

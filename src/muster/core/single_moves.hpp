@@ -28,6 +28,7 @@ struct Team {
   std::vector<double> radii;
   std::vector<double> priorities;  // how many rounds each is ahead of one that has 0
   std::vector<char> pinned;        // those who cannot move
+  std::vector<char> arrived;       // those who have been at their goals
   double margin;
   double turn_cost;  // metres for a radian
 
@@ -110,8 +111,11 @@ class SingleMoves {
 
   std::vector<Edges> ways_out(int robot);
   bool passable(int robot, int edge) const;
+  bool meets_pinned(int robot, int edge) const;
   void exchange(int robot, int edge);
   bool gets_out(int robot, int edge, int other);
+  std::vector<char> this_side(int robot, int place, double apart) const;
+  bool lets_past(int robot, int other, int place, const Edges& way, const std::vector<char>& side) const;
   Edges route(int robot, std::size_t most);
   void mark(int robot, const Edges& edges, double apart);
   template <class Passable, class Visit>

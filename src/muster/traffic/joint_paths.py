@@ -1,9 +1,10 @@
 """Multi-agent path finding: paths on a graph for all robots at once, step by step ([stern2019]).
 
-Priority inheritance with backtracking ([okumura2022]) makes the steps, with the swap of [okumura2023b]; the search over
-configurations with lazily added constraints, LaCAM ([okumura2023]), makes it complete: where there are paths it finds
-them, given time, and where there are none it proves that in the end. With `anytime` it goes on to better ones, as LaCAM*
-does ([okumura2023b]). Both are in the core.
+Priority inheritance with backtracking, PIBT ([okumura2022]), makes the steps, with the swap of [okumura-star2023]. The
+search over configurations with lazily added constraints, LaCAM ([okumura2023]), makes it complete: where there are
+paths it finds them, given time, and where there are none it proves that in the end. With `anytime` it goes on to better
+ones, as LaCAM* does ([okumura-star2023]); with `refine` a large neighbourhood search does that ([li2021]), which is
+better where robots are many, and proves nothing. All are in the core.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from muster.mission.errors import ParameterError
 
 Bools = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
-_AT_ONCE = 200
+_AT_ONCE = 100
 """Expansions between two looks at the clock."""
 _MOST_ENTRIES = 40_000_000
 """Robots times configurations that are kept at most: a few hundred bytes each configuration and some for each robot."""
@@ -31,15 +32,19 @@ _MOST_ENTRIES = 40_000_000
 class Parameters:
     """`samples`: next configurations that are tried in each step, of which the best one counts ([okumura2024] has 10).
 
-    `anytime`: go on to better paths until time or expansions are used up.
+    `anytime`: go on to a smaller sum of loss until time or expansions are used up, or it is proven to be the least.
+    `refine`: plan a few robots anew again and again, for a smaller sum of costs, until time or expansions are used up.
     """
 
     samples: int = 1
     anytime: bool = False
+    refine: bool = False
 
     def __post_init__(self) -> None:
         if self.samples < 1:
             raise ParameterError(f"samples: {self.samples}; expected at least 1")
+        if self.anytime and self.refine:
+            raise ParameterError("refine: with anytime; expected one of them")
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +58,7 @@ class JointPaths:
     optimal
         whether no paths have a smaller sum of loss: proven.
     expansions
-        of the search.
+        of the search, with the neighbourhoods of `refine`.
     """
 
     vertices: Indices
@@ -90,34 +95,55 @@ def joint_paths(
         the vertex of each robot.
     time_limit, expansions
         the search ends after so many seconds or expansions; None: no limit of this kind. With `expansions` alone the
-        same seed gives the same paths; `time_limit` alone does so where it is not reached and `params.anytime` is off.
+        same seed gives the same paths. With `refine` or `anytime` there must be one of them.
 
     Raises
     ------
     ParameterError
-        if two robots have one start, if starts and goals are not as many, or are no vertices.
+        if two robots have one start, if starts and goals are not as many, or are no vertices, or nothing ends `refine`.
     """
     params, clock = params or Parameters(), clock or SystemClock()
     _check(graph, starts, goals)
-    begin = clock.now()
+    if params.refine and time_limit is None and expansions is None:
+        raise ParameterError("refine: without a limit; expected time_limit or expansions")
+    effort = _Effort(clock, time_limit, expansions)
     if len(set(goals)) < len(goals):
         return NoJointPaths(True, "two robots have one goal")
     search = core.Lacam(graph, list(starts), list(goals), samples=params.samples, seed=seed, anytime=params.anytime)
     if not search.connected:
         return NoJointPaths(True, "a goal cannot be reached from its start")
-    done = 0
     while search.state == "searching" or (params.anytime and search.state == "solved"):
-        left = _AT_ONCE if expansions is None else min(_AT_ONCE, expansions - done)
-        late = time_limit is not None and clock.now() - begin >= time_limit
-        if left <= 0 or late or search.nodes * len(goals) > _MOST_ENTRIES:
+        if search.nodes * len(goals) > _MOST_ENTRIES or not (more := effort.next()):
             break
-        search.advance(left)
-        done += left
+        search.advance(more)
     if search.state == "unsolvable":
         return NoJointPaths(True, f"all {search.nodes} configurations that can be reached were seen")
     if search.state == "searching":
-        return NoJointPaths(False, f"not found with {done} expansions, {search.nodes} configurations seen")
-    return JointPaths(np.array(search.solution(), dtype=np.int64), search.state == "optimal", done)
+        return NoJointPaths(False, f"not found with {effort.done} expansions, {search.nodes} configurations seen")
+    steps = search.solution()
+    if params.refine:
+        refinement = core.JointRefinement(graph, steps, seed)
+        while more := effort.next():
+            refinement.advance(more)
+        steps = refinement.solution()
+    return JointPaths(np.array(steps, dtype=np.int64), search.state == "optimal", effort.done)
+
+
+class _Effort:
+    """What may still be done."""
+
+    def __init__(self, clock: Clock, time_limit: float | None, expansions: int | None) -> None:
+        self._clock, self._begin = clock, clock.now()
+        self._time_limit, self._expansions = time_limit, expansions
+        self.done = 0
+
+    def next(self) -> int:
+        """How many expansions to do now; 0 at the end."""
+        if self._time_limit is not None and self._clock.now() - self._begin >= self._time_limit:
+            return 0
+        more = _AT_ONCE if self._expansions is None else min(_AT_ONCE, self._expansions - self.done)
+        self.done += more
+        return more
 
 
 def _check(graph: core.DirectedGraph, starts: Sequence[int], goals: Sequence[int]) -> None:
@@ -155,8 +181,8 @@ Cost = Literal["sum of costs", "sum of loss", "makespan"]
 def costs(vertices: Indices, goals: Sequence[int]) -> dict[Cost, int]:
     """What paths cost, as the benchmarks count it.
 
-    `sum of costs`: over the robots the step after which it rests at its goal for good; `sum of loss`: the steps in which
-    it does not rest there; `makespan`: the step after which all rest.
+    `sum of costs`: the step after which a robot rests at its goal for good, over all robots; `sum of loss`: the steps
+    in which it does not rest there; `makespan`: the step after which all rest.
     """
     away = np.asarray(vertices) != np.asarray(goals)
     steps = np.arange(len(vertices))[:, None]

@@ -22,8 +22,8 @@ def faults(
 ) -> list[str]:
     """What is wrong with a sequence of moves; empty if nothing is.
 
-    Each move is replayed while all others stand. On its edge the robot keeps both radii and the margin from each of them,
-    or comes no nearer than where it begins.
+    Each move is replayed while all others stand. On its edge the robot keeps both radii and the margin from each of
+    them, or comes no nearer than where it begins.
 
     Parameters
     ----------
@@ -45,8 +45,10 @@ def faults(
         moves_away = distance > np.linalg.norm(standing - points[tail], axis=1) - _ROUNDING_M
         near = (distance < radii + radii[robot] + margin_m - _ROUNDING_M) & ~moves_away
         near[robot] = False
-        for other in np.flatnonzero(near):
-            found.append(f"move {k}: robot {robot} comes within {distance[other]:.3f} m of robot {other}")
+        found += [
+            f"move {k}: robot {robot} comes within {distance[other]:.3f} m of robot {other}"
+            for other in np.flatnonzero(near)
+        ]
         places[robot] = int(head)
     return found
 
@@ -54,5 +56,5 @@ def faults(
 def distances(points: Floats, begin: Floats, end: Floats) -> Floats:
     """Metres from each point (n, 2) to the straight piece between two others."""
     along = end - begin
-    share = np.clip((points - begin) @ along / max(along @ along, 1e-300), 0.0, 1.0)
+    share = np.clip((points - begin) @ along / max(float(along @ along), 1e-300), 0.0, 1.0)
     return np.asarray(np.linalg.norm(points - begin - share[:, None] * along, axis=1))

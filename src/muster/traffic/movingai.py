@@ -38,9 +38,9 @@ def read_map(path: Path) -> Bools:
         where it cannot be read.
     """
     lines = path.read_text().splitlines()
-    head: dict[str, str] = dict([*line.split(maxsplit=1), ""][:2] for line in lines[:3] if line.strip())  # type: ignore[misc]
+    head = {line.split()[0]: line.split()[-1] for line in lines[:3] if line.strip()}
     for line, key in enumerate(("type", "height", "width"), 1):
-        if key not in head or (key != "type" and not head[key].strip().isdigit()):
+        if key not in head or (key != "type" and not head[key].isdigit()):
             raise _wrong(path, line, key, head.get(key, "missing"), f"a line `{key}` with its value")
     rows, columns = int(head["height"]), int(head["width"])
     if len(lines) < 4 + rows or lines[3].strip() != "map":

@@ -62,17 +62,20 @@ class Parameters:
         whether all robots with a goal must be there at once in the end; else each must have been there.
     expansions
         the search gives up after so many steps in which no robot came nearer to its goal for good.
+    tries
+        so many plans are made, with random priorities from the second on; the one counts that is carried out soonest.
     """
 
     turn_m_per_rad: float = 0.3
     horizon: int | None = None
     settle: bool = False
     expansions: int = 2000
+    tries: int = 8
 
     def __post_init__(self) -> None:
         if not self.turn_m_per_rad >= 0:
             raise ParameterError(f"turn_m_per_rad: {self.turn_m_per_rad}; expected at least 0")
-        for name, value in (("horizon", self.horizon), ("expansions", self.expansions)):
+        for name, value in (("horizon", self.horizon), ("expansions", self.expansions), ("tries", self.tries)):
             if value is not None and value < 1:
                 raise ParameterError(f"{name}: {value}; expected at least 1")
 
@@ -179,6 +182,7 @@ class MovePlanner:
                 horizon=2**30 if params.horizon is None else params.horizon,
                 settle=params.settle,
                 expansions=params.expansions,
+                tries=params.tries,
                 seed=seed,
             )
         except ValueError as error:

@@ -29,6 +29,7 @@ BENCHES: Mapping[str, str] = MappingProxyType(
         "reallocation": "execution:reallocation",
         "auction": "auction:auction",
         "ros1": "ros1:ros1",
+        "traffic": "joint_paths:traffic",
         "server-start": "server:start",
         "server-watched": "server:watched",
         "server-queue": "server:queued",
