@@ -15,6 +15,7 @@ from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
+from muster.motion.avoidance_names import AUTO, AVOIDANCE
 
 if TYPE_CHECKING:
     from muster.verification import Verdict
@@ -179,19 +180,15 @@ def objective_option(verb: Verb) -> Verb:
     return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
 
 
-def avoidance_option(*names: str) -> Callable[[Verb], Verb]:
-    """--avoidance, one of these; the first is the default."""
-
-    def add(verb: Verb) -> Verb:
-        return click.option(
-            "--avoidance",
-            type=click.Choice(names),
-            default=names[0],
-            show_default=True,
-            help="How robots pass each other.",
-        )(verb)
-
-    return add
+def avoidance_option(verb: Verb) -> Verb:
+    """--avoidance."""
+    return click.option(
+        "--avoidance",
+        type=click.Choice(AVOIDANCE),
+        default=AUTO,
+        show_default=True,
+        help="How robots pass each other; auto: simulated in the plane by rvo, else by orca.",
+    )(verb)
 
 
 def require_complete_option(verb: Verb) -> Verb:

@@ -37,7 +37,6 @@ from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, json_text
 from muster.mission.plan_reader import read_plan
-from muster.motion.avoidance_names import AVOIDANCE
 from muster.motion.laws import LAWS
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
@@ -90,7 +89,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="WORLD",
     help="kinematic, physics, or a world of an installed package.",
 )
-@avoidance_option(*AVOIDANCE)
+@avoidance_option
 @click.option("--law", type=click.Choice(LAWS), default="profile", show_default=True, help="How robots move.")
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(

@@ -10,7 +10,7 @@ from muster.execution.dispatch import Dispatch, Emit
 from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.execution.task_ledger import Ledger
-from muster.execution.traffic_waits import Progress, TrafficWaits
+from muster.execution.traffic_waits import Progress, TrafficWaits, plain_place
 
 GIVES_UP_AFTER = 4
 """Times the limit of a jam after which one of its robots gives up its task."""
@@ -139,7 +139,7 @@ class Supervisor:
     def _tell_jam(self, jam: frozenset[str], members: Sequence[Progress], since_s: float) -> None:
         for robot in jam & self.traffic.progress.keys():
             self.traffic.progress[robot].told = True
-        place = [round(c, 3) for c in self.crew[members[0].robot].position]
+        place = plain_place(self.crew[members[0].robot].position)
         self.emit("traffic_jam", {"robots": sorted(jam), "position": place, "since_s": since_s})
 
     def _let_stand_aside(self, state: RobotState, now: float) -> None:

@@ -281,13 +281,14 @@ def _pieces(state: RobotState, reach_m: float) -> Iterator[tuple[Place, Place]]:
 
 
 def _begun(robot: str, wait: TrafficWait) -> dict[str, Any]:
-    return {"robot": robot, "waits_for": wait.waits_for, "position": _plain(wait.place), "since_s": wait.since_s}
+    return {"robot": robot, "waits_for": wait.waits_for, "position": plain_place(wait.place), "since_s": wait.since_s}
 
 
 def _ended(robot: str, wait: TrafficWait) -> dict[str, Any]:
     waited_s = {other: round(seconds, 6) for other, seconds in wait.seconds.items() if seconds > 0}
-    return {"robot": robot, "until_s": wait.until_s, "waited_s": waited_s, "position": _plain(wait.place)}
+    return {"robot": robot, "until_s": wait.until_s, "waited_s": waited_s, "position": plain_place(wait.place)}
 
 
-def _plain(place: Place) -> list[float]:
-    return [round(c, 3) for c in place]
+def plain_place(place: Place) -> list[float]:
+    """A place to the millimetre, as events have it: two coordinates on the ground."""
+    return [round(c, 3) for c in (place if place[2] else place[:2])]

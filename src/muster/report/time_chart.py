@@ -126,7 +126,7 @@ class TimeChart:
         if any(row.waiting for row in self.rows):
             entries.append((Patch(**_waiting(grey)), "waiting"))
         if any(row.traffic for row in self.rows):
-            entries.append((Patch(facecolor=TRAFFIC), "in traffic"))
+            entries.append((Patch(facecolor=TRAFFIC, edgecolor=QUIET_TEXT, linewidth=0.5), "in traffic"))
         if has_arrows:
             entries.append((Line2D([], [], color=PREREQUISITE, linewidth=1.0, marker=9, markersize=5), "prerequisite"))
         for (_, name), style in zip(self.lines, _LINES, strict=False):
@@ -161,7 +161,7 @@ def _draw_row(ax: Any, number: int, row: Row) -> None:
     thin = {"facecolor": style.color, "linewidth": 0, "snap": False, "zorder": 2}  # snapped to pixels it may vanish
     _bars(ax, number, row.travel, TRAVEL_HEIGHT, gid=f"travel-{name}", **thin)
     _bars(ax, number, row.waiting, WAIT_HEIGHT, gid=f"waiting-{name}", zorder=2, **_waiting(style))
-    in_traffic = {"facecolor": TRAFFIC, "linewidth": 0, "zorder": 3.1}
+    in_traffic = {"facecolor": TRAFFIC, "edgecolor": QUIET_TEXT, "linewidth": 0.5, "zorder": 3.1}
     _bars(ax, number, row.traffic, TRAFFIC_HEIGHT, gid=f"traffic-{name}", **in_traffic)
     look = {"facecolor": style.color, "edgecolor": style.color, "linewidth": 1.2, "zorder": 3}
     _bars(ax, number, work, WORK_HEIGHT, gid=f"work-{name}", **look)

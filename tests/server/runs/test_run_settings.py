@@ -31,7 +31,7 @@ BRIDGES = ("ros1", "mavlink")
         (
             "physics",
             {"avoidance": "orcas"},
-            "avoidance: orcas; expected orca, rvo, hrvo, avo, none; did you mean 'orca'?",
+            "avoidance: orcas; expected auto, orca, rvo, hrvo, avo, none; did you mean 'orca'?",
         ),
         ("physics", {"law": "thesiss"}, "law: thesiss; expected profile, thesis, trajectory; did you mean 'thesis'?"),
         ("kinematic", {"planning": {"alocator": "greedy"}}, '"alocator": unknown; expected allocator'),

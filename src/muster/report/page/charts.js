@@ -72,7 +72,8 @@ function drawGantt() {
   });
   const x = timeScale(width);
   ganttPicture.append(...markShapes(["window"], x, row));
-  for (const span of spans) ganttPicture.append(bar(span, x, row));
+  const traffic = ({ kind }) => Number(kind === "traffic"); // lies upon work
+  for (const span of [...spans].sort((a, b) => traffic(a) - traffic(b))) ganttPicture.append(bar(span, x, row));
   ganttPicture.append(...markShapes(["late", "deadline", "due", "team"], x, row));
   fillLegend();
   addCursor(ganttPicture, width, height);
