@@ -100,6 +100,17 @@ class RemainingMission:
     expired: Mapping[str, str] = field(default_factory=dict)
 
 
+def frozen(rest: RemainingMission) -> RemainingMission:
+    """The same, without anything that changes while the mission goes on: for another thread."""
+    return replace(
+        rest,
+        ended=frozenset(rest.ended),
+        delays_s=dict(rest.delays_s),
+        refusals={task: dict(why) for task, why in rest.refusals.items()},
+        expired=dict(rest.expired),
+    )
+
+
 @dataclass(frozen=True)
 class RemainingProblem:
     """The rest as a problem, and why it does not have some tasks."""

@@ -116,7 +116,7 @@ class RobotControl:
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
-        first = len(self._executor.events)
+        first = self._executor.events.total
         self._break_off()
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
@@ -125,7 +125,7 @@ class RobotControl:
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
         self._negotiator.joint.leave_all_but(self._at)
-        return [event for event in self._executor.events[first:] if event.kind in _ITS_OWN]
+        return [event for event in self._executor.events.since(first) if event.kind in _ITS_OWN]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
