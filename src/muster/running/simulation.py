@@ -228,6 +228,10 @@ class Simulation:
         if replan:
             self.replan()
 
+    def note_lag(self, seconds: float) -> None:
+        """Note, for the report, by how much the mission's clock is behind the wall clock that it goes by."""
+        self._executor.orders.clock_lag.add(seconds)
+
     def replan(self) -> None:
         """Plan the rest again at once if events that were reported ask for that, and send robots on."""
         self._tick()
@@ -336,7 +340,9 @@ def carry_out(
         while not simulation.done and not halt.is_set():
             simulation.advance(simulation.time_s + LOOK_S)
             if speed is not None:
-                halt.wait(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
+                ahead_s = begin + simulation.time_s / speed - time.monotonic()
+                simulation.note_lag(max(0.0, -ahead_s))
+                halt.wait(max(0.0, ahead_s))
             if on_event is not None:
                 for event in simulation.events.since(told):
                     on_event(event)
