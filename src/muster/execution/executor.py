@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from muster.execution.beginning import Beginning
@@ -175,11 +176,18 @@ class Executor:
         ParameterError
             if the event does not fit (see `Changes.apply`).
         """
-        changes = list(self._changes.apply(event, self.now_s, reason))
+        changes = list(self._changes.apply(self._due_at_once(event), self.now_s, reason))
         self._ask(changes)
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
             self.emit("without_effect", plain(event))
+
+    def _due_at_once(self, event: Event) -> Event:
+        """An order to a standing fleet that says not when it is due is due when it comes, where lateness counts."""
+        task = event.new_task
+        if task is None or task.due_s is not None or not self._standing.forgets or self._objective != "lateness":
+            return event
+        return replace(event, new_task=replace(task, due_s=self.now_s))
 
     def pause(self) -> None:
         """Let robots stop where they are; nothing is to be asked of this until `resume`."""
@@ -263,7 +271,7 @@ class Executor:
                     self._ask(self._changes.readmit(state, self.now_s))
 
     def _follow_script(self) -> None:
-        """Let those events of the mission file happen that are due."""
+        """Let those events of the mission file, and orders, happen that are due."""
         for event in self._script.due(self.now_s):
             if event.new_task is not None:
                 self.orders.comes(event.new_task.id, event.at_s)
@@ -273,6 +281,10 @@ class Executor:
         """What is to happen after a time: events of the mission file, and orders."""
         standing = self._standing
         return Script(self.mission.events, standing.orders, batch_s=standing.batch_s, after_s=time_s)
+
+    @property
+    def _objective(self) -> str:
+        return self.planned.objective or self.mission.rules.objective
 
     def _capacity(self, state: RobotState) -> float | None:
         return None if "capacity" in self.planned.ignored else state.capacity
@@ -405,7 +417,7 @@ class Executor:
     def account(self) -> Account:
         """What it took, so far or in all."""
         return Account(
-            objective=self.planned.objective or self.mission.rules.objective,
+            objective=self._objective,
             objective_planned=self.planned.objective_value,
             ledger=self.ledger,
             lost=self.lost(),

@@ -84,6 +84,8 @@ class RemainingMission:
         for a task the robots that relations to tasks that have begun leave to it.
     expired
         tasks that can never begin any more, and why.
+    objective
+        of the plan; None: the mission's.
     """
 
     mission: Mission
@@ -98,6 +100,7 @@ class RemainingMission:
     former: Mapping[str, str]
     bindings: Mapping[str, Binding] = field(default_factory=dict)
     expired: Mapping[str, str] = field(default_factory=dict)
+    objective: str | None = None
 
 
 def frozen(rest: RemainingMission) -> RemainingMission:
@@ -134,7 +137,7 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     past = _past(rest)
     mission = _mission(rest, [*past.values(), *tasks])
     others = tuple(rule for rule in rest.ignored if rule != "lock")  # the tasks are without it already
-    problem = Problem.compile(mission, ignored=others)
+    problem = Problem.compile(mission, rest.objective, ignored=others)
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))

@@ -63,6 +63,7 @@ def remaining_mission_of(
         former={name: ", ".join(robots) for name, robots in _former(crew, under_way).items()},
         bindings=bindings,
         expired=ledger.expired,
+        objective=plan.objective,
     )
 
 

@@ -51,7 +51,9 @@ class Standing:
     until_s
         until when it stays on duty, by the mission's clock; then it does what is open, and ends.
     orders
-        events in order of time, read as time goes on: new tasks, and tasks cancelled, moved or delayed.
+        events in order of time, read as time goes on: new tasks, and tasks cancelled, moved or delayed. With the
+        objective `lateness` an order that says nothing else is due when it comes, so that what counts is how long
+        each takes.
     improver
         searches in the background; None: what carries the mission out brings its own.
     searches
