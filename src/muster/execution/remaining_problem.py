@@ -199,7 +199,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
         elif robots is not None and not robots:
             hopeless[task.id] = why
         else:
-            hopeful[task.id] = replace(task.waiting_for(_open_prerequisites(rest, task)), only_robots=robots)
+            hopeful[task.id] = _for_robots(task.waiting_for(_open_prerequisites(rest, task)), robots)
     _drop_units_without_hope(rest, hopeful, hopeless)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
     waiting = dict(hopeful)
@@ -213,6 +213,10 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     hopeful = {name: task for name, task in hopeful.items() if name in sure}
     _drop_units_without_hope(rest, hopeful, hopeless)
     return [_related_to(task, hopeful) for task in hopeful.values()], hopeless
+
+
+def _for_robots(task: Task, robots: tuple[str, ...] | None) -> Task:
+    return task if task.only_robots == robots else replace(task, only_robots=robots)
 
 
 def _open_prerequisites(rest: RemainingMission, task: Task) -> tuple[str, ...]:

@@ -83,6 +83,7 @@ def _naming_unknown_fields(init: Callable[..., None], cls: type[Any]) -> Callabl
     return checked
 
 
+@functools.cache
 def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
     """The fields of a model class that a file may hold, in order."""
     return tuple(f for f in fields(cls) if "kind" in f.metadata)
