@@ -1,4 +1,4 @@
-"""Fleets on duty: orders are put in at once, better routes taken over, commitments held, and what is long done forgotten."""
+"""Fleets on duty: orders are put in at once, better routes taken over, commitments held, old tasks forgotten."""
 
 import math
 from dataclasses import replace

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 _OPTIONS = (
     click.option("--stay", is_flag=True, help="Stay on duty when all tasks are done, until --until or Ctrl-C."),
-    click.option("--until", type=Finite(0.0, 1e9), metavar="S", help="With --stay: stay so many seconds, then end what is open."),
+    click.option(
+        "--until", type=Finite(0.0, 1e9), metavar="S", help="With --stay: stay so many seconds, then end what is open."
+    ),
     click.option(
         "--orders",
         type=click.Path(path_type=Path),

@@ -13,8 +13,8 @@ from click.core import ParameterSource
 from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
 from muster.cli.drone_options import IN_THIS_PROCESS, conditions_of, drone_options
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.duty_options import duty_options, standing_of
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
 from muster.cli.localisation_options import localise_of, pose_options
@@ -171,7 +171,7 @@ def command(
 
     Robots keep their speeds and avoid each other. The mission's events happen, and the tasks left are planned again.
 
-    With --stay a fleet stays on duty when its tasks are done, and does the orders that come: see docs/standing-fleets.md.
+    With --stay a fleet stays on duty when its tasks are done, for orders that come: see docs/standing-fleets.md.
 
     With --negotiate there is no plan and no centre: robots agree as in `muster auction`, over the same network, and
     each decides for itself what to do next. They exchange messages in real time.

@@ -1,4 +1,4 @@
-"""Standing fleets: how long one stays on duty, which orders it gets, and what is forgotten so that memory is bounded."""
+"""Standing fleets: how long one stays on duty, which orders it gets, and what it forgets so that memory is bounded."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 
 KEEP_S, KEPT, LOOK_S = 300.0, 10_000, 30.0
-"""How long a task that is done is remembered; how many events are; seconds between two looks at what can be forgotten."""
+"""How long tasks that are done are remembered; how many events are; seconds between two looks at what to forget."""
 BATCH_S = 0.2
 """Seconds in which orders are collected and planned for together."""
 

@@ -1,7 +1,7 @@
 """Files of orders for a fleet on duty: events in order of time, a line each, read as time goes on.
 
-JSON lines hold an event of a mission file each: `{"at_s": 12.5, "new_task": {"id": "o1", "position": [3, 4]}}`. CSV holds
-new tasks, with the columns `at_s,id,x,y` and those of `OPTIONAL`.
+JSON lines hold an event of a mission file each: `{"at_s": 12.5, "new_task": {"id": "o1", "position": [3, 4]}}`. CSV
+holds new tasks, with the columns `at_s,id,x,y` and those of `OPTIONAL`.
 """
 
 from __future__ import annotations

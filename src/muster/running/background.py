@@ -1,4 +1,4 @@
-"""Search beside a mission that is being carried out: a thread improves the routes while the executor's clock goes on."""
+"""Search beside a mission that is being carried out: a thread improves routes while the executor's clock goes on."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
@@ -82,9 +82,7 @@ def carry_out_live(
     ParameterError
         if the plan names robots or tasks that the mission does not have, or a robot has no port.
     """
-    live = Live(
-        mission, plan, fleet, seed=seed, planning=planning, ignore=ignore, standing=standing, recorder=recorder
-    )
+    live = Live(mission, plan, fleet, seed=seed, planning=planning, ignore=ignore, standing=standing, recorder=recorder)
     halt, told = halt or threading.Event(), 0
     try:
         while not halt.is_set():

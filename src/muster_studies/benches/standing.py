@@ -40,20 +40,15 @@ def fleet(seed: int) -> Mission:
     return Mission(name="standing-fleet", robots=robots, tasks=(), rules=Rules(objective="lateness"))
 
 
-def orders(seed: int, until_s: float) -> Iterator[Event]:
-    """Orders until a time, in order of time."""
+def orders(seed: int, until_s: float, burst_at_s: float = BURST_AT_S) -> Iterator[Event]:
+    """Orders until a time, in order of time, with the first burst from a time on."""
     random, now, number = Random(seed + 1), 0.0, 0
     while True:
-        now += random.expovariate(BURST_RATE if in_burst(now) else RATE)
+        now += random.expovariate(BURST_RATE if 0 <= now % BURST_EVERY_S - burst_at_s < BURST_S else RATE)
         if now >= until_s:
             return
         number += 1
         yield Event(at_s=now, new_task=Task(id=f"o{number}", position=_place(random), duration_s=WORK_S))
-
-
-def in_burst(now: float) -> bool:
-    """Whether a time is in one of the bursts."""
-    return BURST_AT_S <= now % BURST_EVERY_S < BURST_AT_S + BURST_S
 
 
 def most_per_hour(orders_in_all: float) -> float:
@@ -85,10 +80,10 @@ class Shift:
     end_mb: float
 
 
-def on_duty(seed: int, until_s: float, speed: float | None) -> Shift:
+def on_duty(seed: int, until_s: float, speed: float | None, burst_at_s: float = BURST_AT_S) -> Shift:
     """Let the fleet take orders until a time, and do what is open then; `speed` times real time, None: at once."""
     mission, cpu_s, half_way_mb = fleet(seed), time.process_time(), 0.0
-    standing = Standing(until_s=until_s, orders=orders(seed, until_s))
+    standing = Standing(until_s=until_s, orders=orders(seed, until_s, burst_at_s))
     with closing(Simulation(mission, solve(mission, "greedy"), seed=seed, standing=standing)) as simulation:
         begin = time.monotonic()
         while not simulation.done:

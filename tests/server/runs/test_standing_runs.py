@@ -31,7 +31,7 @@ def test_a_fleet_on_duty_takes_orders_and_ends_when_all_are_done():
     log = performed(MISSION, PLAN, asked(), settings=ON_DUTY).log
     outcomes = [entry["data"]["outcome"] for entry in log if entry["kind"] == "command"]
     assert (outcomes[0], outcomes[2]) == ("done", "done")
-    assert outcomes[1].startswith("2 refused, the first: new_task: \"o_3\"")
+    assert outcomes[1].startswith('2 refused, the first: new_task: "o_3"')
     report = log[-1]["data"]
     assert set(report["tasks_done"]) == {*(f"o_{k}" for k in range(7)), "o_9"}
     assert {key: report["orders"][key] for key in ("taken", "done", "cancelled", "open")} == {
@@ -51,7 +51,7 @@ def test_a_run_on_duty_that_is_killed_goes_on_as_if_nothing_had_been():
 
 def test_settings_of_duty_are_checked():
     require_world("kinematic", (), ON_DUTY)
-    with pytest.raises(ParameterError, match="until_s: 40.0; expected it together with stay"):
+    with pytest.raises(ParameterError, match=r"until_s: 40.0; expected it together with stay"):
         require_world("kinematic", (), {"until_s": 40.0})
     with pytest.raises(ParameterError, match="stay: 1; expected true or false"):
         require_world("kinematic", (), {"stay": 1})

@@ -63,7 +63,8 @@ def deed_of(verb: str, data: Mapping[str, Any]) -> str:
         speed = data.get("speed")
         return "lets it go as fast as it goes" if speed is None else f"sets the speed to {speed:g} times"
     if verb == "orders":
-        return f"gives {counted(len(data.get('orders', ())), 'order')}"
+        count = len(data.get("orders", ()))
+        return f"gives {count} order{'' if count == 1 else 's'}"
     if verb != "event" or not data:
         return _DOES.get(verb, verb)
     kind, what = next(iter(data.items()))

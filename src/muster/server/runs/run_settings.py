@@ -11,8 +11,8 @@ from muster.execution import Standing
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
-from muster.mission.value_types import shown
 from muster.mission.order_files import OF_TASKS
+from muster.mission.value_types import shown
 from muster.motion.laws import LAWS
 from muster.planning.options import options_from
 from muster.running.worlds import WORLDS

@@ -142,7 +142,7 @@ class Runs:
         return session.run if session is not None else await asyncio.to_thread(self._store.runs.get, run)
 
     async def act(self, who: User, run: int, verb: str, data: Mapping[str, Any] | None = None) -> Action:
-        """Command a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {an event without at_s}, `orders` {orders}.
+        """Command a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {one without at_s}, `orders` {orders}.
 
         Subscribers receive the outcome, and the action has it later. The action is written before the command takes
         effect. If the database fails or is slow, the command takes effect anyway: robots may have to be stopped.
