@@ -31,6 +31,7 @@ from muster.mission.value_types import (
 )
 
 C = TypeVar("C")
+_SPECIFIED: dict[type[Any], tuple[Field[Any], ...]] = {}
 
 
 def spec(
@@ -83,10 +84,11 @@ def _naming_unknown_fields(init: Callable[..., None], cls: type[Any]) -> Callabl
     return checked
 
 
-@functools.cache
 def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
     """The fields of a model class that a file may hold, in order."""
-    return tuple(f for f in fields(cls) if "kind" in f.metadata)
+    if cls not in _SPECIFIED:  # looked up for each record that is made
+        _SPECIFIED[cls] = tuple(f for f in fields(cls) if "kind" in f.metadata)
+    return _SPECIFIED[cls]
 
 
 def shown_if_used(cls: type[Any]) -> tuple[str, ...]:
