@@ -30,7 +30,7 @@ from muster.execution.report import Account
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.script import Script
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
-from muster.execution.standing import KEPT, UNTIL_DONE, EventLog, Forgetting, Standing
+from muster.execution.standing import KEPT_EVENTS, KEPT_REVISIONS, UNTIL_DONE, EventLog, Forgetting, Standing
 from muster.execution.supervision import Supervisor
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
@@ -105,8 +105,8 @@ class Executor:
         self.ended_s: float | None = None
         self._standing = UNTIL_DONE if standing is None else standing
         self.orders = Orders()
-        self.events = EventLog(KEPT if self._standing.forgets else None)
-        self.revisions: deque[Revision] = deque(maxlen=KEPT if self._standing.forgets else None)
+        self.events = EventLog(KEPT_EVENTS if self._standing.forgets else None)
+        self.revisions: deque[Revision] = deque(maxlen=KEPT_REVISIONS if self._standing.forgets else None)
         self._plans = self._plans_searched = 0
         self.planned = plan
         self._travel = travel_of(mission) if travel is None else travel

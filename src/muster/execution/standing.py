@@ -15,8 +15,8 @@ from muster.execution.task_ledger import Ledger
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 
-KEEP_S, KEPT, LOOK_S = 300.0, 10_000, 30.0
-"""How long tasks that are done are remembered; how many events are; seconds between two looks at what to forget."""
+KEEP_S, KEPT_EVENTS, KEPT_REVISIONS, LOOK_S = 300.0, 2_000, 10, 30.0
+"""How long tasks that are done are remembered; how many events and plans are; seconds between two looks at them."""
 BATCH_S = 0.2
 """Seconds in which orders are collected and planned for together."""
 
