@@ -31,6 +31,7 @@ from muster.mission.value_types import (
 )
 
 C = TypeVar("C")
+_SPECIFIED: dict[type[Any], tuple[Field[Any], ...]] = {}
 
 
 def spec(
@@ -89,7 +90,9 @@ def _naming_unknown_fields(init: Callable[..., None], cls: type[Any]) -> Callabl
 
 def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
     """The fields of a model class that a file may hold, in order."""
-    return tuple(f for f in fields(cls) if "kind" in f.metadata)
+    if cls not in _SPECIFIED:  # looked up for each record that is made
+        _SPECIFIED[cls] = tuple(f for f in fields(cls) if "kind" in f.metadata)
+    return _SPECIFIED[cls]
 
 
 def key_of(f: Field[Any]) -> str:

@@ -27,6 +27,8 @@ BENCHES: Mapping[str, str] = MappingProxyType(
         "lasers": "lasers:lasers",
         "perception": "perception:perception",
         "reallocation": "execution:reallocation",
+        "standing": "standing:hour",
+        "standing-live": "standing:live",
         "auction": "auction:auction",
         "ros1": "ros1:ros1",
         "traffic": "joint_paths:traffic",

@@ -124,7 +124,7 @@ class RobotControl:
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
-        first = len(self._executor.events)
+        first = self._executor.events.total
         self._break_off()
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
@@ -136,6 +136,7 @@ class RobotControl:
                 self._negotiator.come_back()
         self._negotiator.joint.leave_all_but(self._at)
         return [event for event in self._executor.events[first:] if event.kind in _ITS_OWN or _is_back(event)]
+        return [event for event in self._executor.events.since(first) if event.kind in _ITS_OWN]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
