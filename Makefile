@@ -9,7 +9,6 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances disturbances-timed help check format stub sanitize study bench clean prerequisites test-packages
 .PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances disturbances-timed help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed

@@ -215,7 +215,7 @@ void SafeIntervals::reserve(const Traveller& who, std::span<const TimedMove> mov
 
 Paths SafeIntervals::in_order(std::span<const Traveller> travellers, std::span<const int> order) {
   clear();
-  Paths paths{{}, std::vector<double>(travellers.size(), kNever)};
+  Paths paths{{}, std::vector<double>(travellers.size(), kNever), {order.begin(), order.end()}};
   for (const int k : order)
     if (travellers[k].fixed) reserve(travellers[k], {}, paths.ends[k] = 0.0);
   // Those that come later in the order get some time to leave where they start.
@@ -250,7 +250,6 @@ Paths SafeIntervals::best_of(std::span<const Traveller> travellers, std::vector<
   std::pair<int, double> least{n + 1, kNever};
   for (int k = 0; k < tries || (least.first > 0 && k < kTriesWhereLost * tries); ++k) {
     Paths paths = in_order(travellers, order);
-    paths.order = order;
     int lost = 0;
     double sum = 0.0;
     for (int i = 0; i < n; ++i) paths.ends[i] < kNever ? void(sum += paths.ends[i]) : void(++lost);

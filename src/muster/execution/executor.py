@@ -14,17 +14,12 @@ from dataclasses import replace
 from typing import Any
 
 from muster.execution.beginning import Beginning
-from muster.execution.changes import OUT, SILENT, STUCK, Change, Changes, may_bring_work, new_robot_state
-from muster.execution.completed_work import CompletedWork
-from muster.execution.dispatch import Dispatch
-from muster.execution.forecast import Forecast
-from muster.execution.monitor import Limits, moves_again
-from muster.execution.changes import OUT, SILENT, Change, Changes, new_robot_state
+from muster.execution.changes import OUT, SILENT, STUCK, Change, Changes, new_robot_state
 from muster.execution.completed_work import CompletedWork
 from muster.execution.dispatch import Dispatch
 from muster.execution.forecast import Forecast
 from muster.execution.insertion import Insertion
-from muster.execution.monitor import Limits
+from muster.execution.monitor import Limits, moves_again
 from muster.execution.orders import IMPROVED, Orders
 from muster.execution.peers import Peers
 from muster.execution.punctuality import Punctuality

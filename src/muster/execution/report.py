@@ -293,8 +293,6 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         tasks=tuple(_task(ledger, task) for task in done),
         waiting_by_cause_s=_waiting_by_cause(account),
         traffic=_traffic(account.traffic),
-        lateness_s=sum(ledger.late_s(task) for task in done),
-        waiting_by_cause_s=_waiting_by_cause(ledger),
         lateness_s=ledger.retired.lateness_s + sum(ledger.late_s(task) for task in done),
         missed=tuple(MissedReport(one.task, one.at_s, one.reason, one.next_s) for one in ledger.missed),
         deadlines_missed_s={task: ledger.overdue_s(task) for task in done if ledger.overdue_s(task) > 0},
@@ -333,10 +331,10 @@ def _traffic(account: TrafficAccount) -> tuple[TrafficReport, ...]:
 
 
 def _waiting_by_cause(account: Account) -> dict[str, float]:
-    causes = {"traffic": account.traffic.waiting_s} if account.traffic.pairs else {}
-    for by_cause in account.ledger.waits_s.values():
-def _waiting_by_cause(ledger: Ledger) -> dict[str, float]:
+    ledger = account.ledger
     causes = dict(ledger.retired.waits_s)
+    if account.traffic.pairs:
+        causes["traffic"] = account.traffic.waiting_s
     for by_cause in ledger.waits_s.values():
         for cause, seconds in by_cause.items():
             causes[cause] = causes.get(cause, 0.0) + seconds

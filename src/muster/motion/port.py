@@ -78,8 +78,8 @@ class Telemetry:
     waits_for
         the robot that it waits for in traffic; empty while it waits for nobody, None where it does not tell.
     left_m
-        metres that it has still to go to the next way point that is no `via`, by its own navigation; None where that does
-        not say.
+        metres that it has still to go to the next way point that is no `via`, by its own navigation; None where that
+        does not say.
     """
 
     time_s: float

@@ -29,13 +29,13 @@ from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.localisation import Localise
-from muster.running.robots_in_traffic import RobotsInTraffic
-from muster.traffic.managers import reserved
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.replanning import planning_of
+from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
+from muster.traffic.managers import reserved
 from muster.verification import verify
 
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ robots have come to the end of it, and when one stands that should go.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from muster import core
 from muster.mission.model import Robot
-from muster.motion.port import Place, RobotPort, Telemetry
+from muster.motion.port import RobotPort
 from muster.traffic.managed_port import ManagedPort
 
 MARGIN_M = 0.02

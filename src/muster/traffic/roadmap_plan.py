@@ -73,8 +73,6 @@ class RoadmapPlan:
             seed=self.seed,
         )
         self._priorities = [travellers[k].robot.id for k in order]
-        import os
-        if os.environ.get("PIBT"): return None
         return None if math.inf in ends else [(traveller, edge) for _, traveller, edge in moves]
 
     def _by_inheritance(
@@ -107,7 +105,7 @@ def lanes_of(roadmap: Roadmap) -> core.SharedLanes:
 
 
 def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Sequence[Point]) -> Roadmap:
-    """The roadmap with a point for each place that is none of its points, joined to the nearest from which it is seen."""
+    """The roadmap with a point for each place that is none yet, joined to the nearest points from which it is seen."""
     known = {tuple(point) for point in roadmap.points.tolist()}
     fresh = np.array([place for place in dict.fromkeys(places) if place not in known], dtype=np.float64).reshape(-1, 2)
     if not len(fresh):

@@ -135,8 +135,7 @@ class RobotControl:
             elif _is_back(event):
                 self._negotiator.come_back()
         self._negotiator.joint.leave_all_but(self._at)
-        return [event for event in self._executor.events[first:] if event.kind in _ITS_OWN or _is_back(event)]
-        return [event for event in self._executor.events.since(first) if event.kind in _ITS_OWN]
+        return [event for event in self._executor.events.since(first) if event.kind in _ITS_OWN or _is_back(event)]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
