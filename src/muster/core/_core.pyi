@@ -797,6 +797,102 @@ class CrowdWorld:
 
     def travelled(self) -> NDArray[numpy.float64]: ...
 
+class Grant:
+    """How far a robot may go along its moves."""
+
+    @property
+    def points(self) -> list[tuple[float, float]]:
+        """Ends of moves, in metres; the last may lie within a move."""
+
+    @property
+    def ended(self) -> int:
+        """How many of these are ends of moves."""
+
+    @property
+    def metres(self) -> float:
+        """From where the robot is."""
+
+    @property
+    def waits_for(self) -> int:
+        """The robot that passes first; -1: none."""
+
+    @property
+    def last(self) -> bool:
+        """Whether all moves of the robot are granted."""
+
+class PassingOrder:
+    """
+    The order in which robots pass: one sequence of straight moves, by order and not by clock [hoenig2019]. Places are in metres.
+    """
+
+    def __init__(self, *, margin: float, ahead: float) -> None:
+        """
+        Metres that are left between robots, and for which a robot may have begun moves.
+        """
+
+    def add(self, place: tuple[float, float], radius: float) -> int:
+        """A robot that stands; returns its number."""
+
+    def put(self, robot: int, place: tuple[float, float]) -> None:
+        """A robot without moves is elsewhere."""
+
+    def append(self, robot: int, to: tuple[float, float]) -> bool:
+        """
+        A move from where the robot's moves end; False where another would stand in the way.
+        """
+
+    def drop_ahead(self) -> None:
+        """Drop all moves that have not begun."""
+
+    def cut(self) -> None:
+        """Let all moves end where robots have been let go to."""
+
+    def progress(self, robot: int, passed: int, near: tuple[float, float]) -> None:
+        """
+        A robot has passed the ends of so many of its moves in all, and is near a place.
+        """
+
+    def grant(self, robot: int) -> Grant:
+        """How far a robot may go now; what it is told it keeps."""
+
+    def end(self, robot: int) -> tuple[float, float]:
+        """Where a robot is after all its moves."""
+
+    def begun_end(self, robot: int) -> tuple[float, float]:
+        """Where a robot is after the moves that it has begun."""
+
+    def passed(self, robot: int) -> int:
+        """Moves that a robot has finished since it was added."""
+
+    def left(self, robot: int) -> int:
+        """Moves that a robot has not finished."""
+
+    def metres_left(self, robot: int) -> float:
+        """Metres that a robot has still to go."""
+
+    def places_left(self, robot: int) -> list[tuple[float, float]]:
+        """The ends of the moves that are not finished."""
+
+class SharedLanes:
+    """Straight lanes between points, with the points that each comes near."""
+
+    def __init__(self, *, places: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], ends: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], lengths: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], clearances: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reach_first: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], reach_points: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], reach_gaps: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    def metres_to(self, goal: int, radius: float) -> list[float]:
+        """
+        Metres to a point from each, for robots of a radius; inf where there is no way.
+        """
+
+class Traveller:
+    """A robot for which a path over lanes is sought."""
+
+    def __init__(self, *, lanes: SharedLanes, start: int, stops: Sequence[tuple[int, float]], radius: float, speed: float, heading: float, yaw_rate: float, acceleration: float, ready: float, fixed: bool, stays: bool) -> None: ...
+
+def paths_by_safe_intervals(*, lanes: SharedLanes, rests: Sequence[bool], travellers: Sequence[Traveller], order: Sequence[int], margin: float, tries: int, seed: int) -> tuple[list[tuple[float, int, int]], list[float], list[int]]:
+    """
+    Moves (seconds, traveller, lane) in order; when each has held at its last stop, inf where it finds no path; and the order of travellers in which these were found, the best of several from the one given on [phillips2011].
+    """
+
 class DirectedGraph:
     """A directed graph in compressed rows."""
 
