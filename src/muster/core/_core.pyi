@@ -507,11 +507,20 @@ class Ways:
 
     def build(self, most: int, threads: int) -> None:
         """
-        Find what the next `most` corners see; until all are `built`, each search looks for itself, where it comes by.
+        Find what the next `most` corners see. Until all are `built` there are no `lengths`, and each `way` looks for itself, where it comes by.
+        """
+
+    @property
+    def graph_pays(self) -> bool:
+        """
+        Whether ways have looked around as many corners as there are, so that to build pays.
         """
 
     @property
     def built(self) -> bool: ...
+
+    @property
+    def looks(self) -> int: ...
 
     @property
     def corners(self) -> int: ...
@@ -526,6 +535,11 @@ class Ways:
 
     def way(self, start: tuple[float, float], goal: tuple[float, float]) -> NDArray[numpy.float64]:
         """The shortest way with its ends, (k, 2); empty if there is none."""
+
+    def lengths_alone(self, exits: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], entries: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, mutual: bool) -> NDArray[numpy.float64] | None:
+        """
+        All `lengths`, way by way without the graph; None if it comes to pay before the end.
+        """
 
     def lengths(self, exits: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], entries: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, mutual: bool, first: int, last: int, threads: int) -> NDArray[numpy.float64]:
         """

@@ -103,7 +103,8 @@ class Executor:
         self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
-        self._beginning = Beginning(self.ledger, self.crew, self._forecast.hold_until_s, self._alone)
+        hold_until_s = self._forecast.hold_until_s if peers is None else peers.hold_until_s
+        self._beginning = Beginning(self.ledger, self.crew, hold_until_s, self._alone)
         self._punctuality = Punctuality(self.ledger, self.crew, self._beginning)
         self._dispatch = Dispatch(
             self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, peers
