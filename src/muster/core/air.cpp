@@ -180,11 +180,29 @@ Point where_lines_meet(Point a, Point along_a, Point b, Point along_b) {
 Air::Air(Rings region, std::vector<PrismShape> prisms, double lowest, double top)
     : region_(std::move(region)), prisms_(std::move(prisms)), lowest_(lowest), top_(top), first_edge_{0} {
   for (const auto& ring : region_.rings()) add_upright(ring, lowest, std::max(top, lowest), false, edges_);
-  for (const PrismShape& prism : prisms_) {
+  for (PrismShape& prism : prisms_) {
+    if (prism.floor <= lowest) prism.floor = -std::numeric_limits<double>::infinity();  // nothing passes below
     first_edge_.push_back(edges_.size());
     for (const auto& ring : prism.base.rings()) add_prism(ring, prism, lowest, top, edges_);
   }
   first_edge_.push_back(edges_.size());
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    for (const Spot end : {edges_[e].from, edges_[e].to}) ends_.push_back({{end.x, end.y, end.z}, static_cast<int>(e)});
+  }
+  std::sort(ends_.begin(), ends_.end());
+}
+
+std::vector<int> Air::edges_at(Spot p, int edge) const {
+  std::vector<int> found{edge};
+  for (const Spot end : {edges_[edge].from, edges_[edge].to}) {
+    if (distance(end, p) > kTouch) continue;
+    const std::array<double, 3> key{end.x, end.y, end.z};
+    for (auto at = std::lower_bound(ends_.begin(), ends_.end(), std::pair{key, -1});
+         at != ends_.end() && at->first == key; ++at) {
+      found.push_back(at->second);
+    }
+  }
+  return found;
 }
 
 std::vector<AirEdge> Air::loose_edges(double off) const {
@@ -280,19 +298,21 @@ std::vector<std::pair<Spot, int>> Air::tight_turns(Spot a, Spot corner, Spot b) 
     if (low.x > high_x || high.x < low_x || low.y > high_y || high.y < low_y) continue;
     for (std::size_t e = first_edge_[k + 1]; e < first_edge_[k + 2]; ++e) pierce(e);
   }
-  std::sort(turns.begin(), turns.end(), [](const Turn& l, const Turn& r) { return l.s < r.s; });
+  // From a on, all that is left lies to the right of the way to the next.
   turns.push_back({length, 0.0, b, -1});
-  std::vector<Turn> hull{{0.0, 0.0, a, -1}};
-  for (const Turn& turn : turns) {
-    const auto below = [&] {
-      const Turn &q = hull[hull.size() - 1], &p = hull[hull.size() - 2];
-      return (q.s - p.s) * (turn.h - p.h) - (q.h - p.h) * (turn.s - p.s) >= 0.0;
-    };
-    while (hull.size() > 1 && below()) hull.pop_back();
-    hull.push_back(turn);
-  }
   std::vector<std::pair<Spot, int>> found;
-  for (std::size_t k = 1; k + 1 < hull.size(); ++k) found.emplace_back(hull[k].at, hull[k].edge);
+  Turn here{0.0, 0.0, a, -1};
+  while (found.size() < turns.size()) {
+    const Turn* next = &turns.back();
+    for (const Turn& turn : turns) {
+      const double s = turn.s - here.s, h = turn.h - here.h, next_s = next->s - here.s, next_h = next->h - here.h;
+      const double left = next_s * h - next_h * s, further = (s * s + h * h) - (next_s * next_s + next_h * next_h);
+      if (std::hypot(s, h) > slack && (left > 0.0 || (left == 0.0 && further > 0.0))) next = &turn;
+    }
+    if (next->edge < 0) return found;
+    found.emplace_back(next->at, next->edge);
+    here = *next;
+  }
   return found;
 }
 

@@ -2,6 +2,7 @@
 // turn.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -75,6 +76,8 @@ class Air {
   // The edges once more, with fewer corners where prisms are round: they run outside, by `off` at most, and where they
   // would run into something else they stay as they are.
   std::vector<AirEdge> loose_edges(double off) const;
+  // An edge, and where it ends at the point, all that end there.
+  std::vector<int> edges_at(Spot end, int edge) const;
   // Where edges pierce the triangle between two points and a free third one: the turns of the shortest way between the
   // two that keeps to the side of the third, and on which edge each is.
   std::vector<std::pair<Spot, int>> tight_turns(Spot a, Spot corner, Spot b) const;
@@ -95,7 +98,8 @@ class Air {
   std::vector<PrismShape> prisms_;
   double lowest_, top_;
   std::vector<AirEdge> edges_;
-  std::vector<std::size_t> first_edge_;  // of the region, of each prism, and the end
+  std::vector<std::pair<std::array<double, 3>, int>> ends_;  // in order
+  std::vector<std::size_t> first_edge_;                      // of the region, of each prism, and the end
 };
 
 }  // namespace muster

@@ -133,9 +133,14 @@ std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tre
     for (int node = last; node >= 0; node = tree.parent[node]) way.push_back(nodes_[node].at);
     way.push_back(from.at);
     std::reverse(way.begin(), way.end());
-    std::vector<int> edges = tighten(way);
+    std::vector<Spot> tight = way;
+    std::vector<int> edges;
+    tighten(tight, edges);
     if (!pulled.insert(edges).second) continue;
-    pull(way, edges);
+    if (all_seen(tight)) {  // but for rounding it is
+      pull(tight, edges);
+      way = std::move(tight);
+    }
     if (shortest.empty() || length_of(way) < length_of(shortest)) shortest = std::move(way);
   }
   return shortest;
@@ -164,79 +169,89 @@ std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
   return nodes;
 }
 
-// Lays a way around the true edges, turn by turn; on which each turning point is then (the ends: -1).
-std::vector<int> AirWays::tighten(std::vector<Spot>& way) const {
+// Lays a way around the true edges, turn by turn.
+void AirWays::tighten(std::vector<Spot>& way, std::vector<int>& edges) const {
   std::vector<Spot> tight{way.front()};
-  std::vector<int> edges{-1};
+  std::vector<int> on{-1};
   for (std::size_t k = 1; k + 1 < way.size(); ++k) {
     for (const auto& [at, edge] : air_->tight_turns(tight.back(), way[k], way[k + 1])) {
       tight.push_back(at);
-      edges.push_back(edge);
+      on.push_back(edge);
     }
   }
   tight.push_back(way.back());
-  edges.push_back(-1);
+  on.push_back(-1);
   way = std::move(tight);
-  return edges;
+  edges = std::move(on);
 }
 
-// Slides and drops turning points as long as that helps. Where all at once would slide out of sight, one at a time.
+// Tightens and slides as long as that helps. Where all turns at once would slide out of sight, one at a time does.
 void AirWays::pull(std::vector<Spot>& way, std::vector<int>& edges) const {
   constexpr int kRounds = 40;
   for (int round = 0; round < kRounds; ++round) {
-    shorten(way, edges);
     const double before = length_of(way);
     std::vector<Spot> moved = way;
-    while (slide(moved, edges)) {
+    std::vector<int> on = edges;
+    while (slide(moved, on)) {
     }
-    if (all_seen(moved)) {
-      way = moved;
-    } else {
-      slide_in_sight(way, edges);
-      turn_where_stuck(way, edges);
+    if (!all_seen(moved)) {
+      moved = way;
+      slide_around(moved, on);
     }
+    tighten(moved, on);
+    if (!all_seen(moved) || length_of(moved) >= before) return;  // but for rounding it is seen
+    way = std::move(moved);
+    edges = std::move(on);
     if (before - length_of(way) <= 1e-9 * before) return;
   }
 }
 
-void AirWays::slide_in_sight(std::vector<Spot>& way, const std::vector<int>& edges) const {
+// A turn that slides takes the string along: what that meets on its way, it is laid around.
+void AirWays::slide_around(std::vector<Spot>& way, std::vector<int>& edges) const {
   constexpr double kLeastShare = 0.05;
+  std::vector<Spot> laid{way.front()};
+  std::vector<int> on{-1};
+  const auto turn = [&](Spot at, int edge) {
+    laid.push_back(at);
+    on.push_back(edge);
+  };
   for (std::size_t k = 1; k + 1 < way.size(); ++k) {
-    const Spot before = way[k - 1], at = way[k], after = way[k + 1];
-    const Spot wanted = turning_point(air_->edges()[edges[k]], before, after);
-    for (double share = 1.0; share > kLeastShare; share /= 2) {
+    const Spot before = laid.back(), at = way[k], after = way[k + 1];
+    const int edge = best_edge_at(at, edges[k], before, after);
+    const Spot wanted = turning_point(air_->edges()[edge], before, after);
+    double share = 1.0;
+    for (; share > kLeastShare; share /= 2) {
       const Spot there = at + share * (wanted - at);
-      if (!air_->sees(before, there) || !air_->sees(there, after)) continue;
-      way[k] = there;
+      if (!air_->sees(at, there)) continue;  // edges run through other obstacles
+      const auto first = air_->tight_turns(before, at, there), then = air_->tight_turns(there, at, after);
+      std::vector<Spot> string{before};
+      for (const auto& [point, _] : first) string.push_back(point);
+      string.push_back(there);
+      for (const auto& [point, _] : then) string.push_back(point);
+      string.push_back(after);
+      if (length_of(string) >= distance(before, at) + distance(at, after)) continue;
+      for (const auto& [point, other] : first) turn(point, other);
+      turn(there, edge);
+      for (const auto& [point, other] : then) turn(point, other);
       break;
     }
+    if (share <= kLeastShare) turn(at, edge);
   }
+  turn(way.back(), -1);
+  way = std::move(laid);
+  edges = std::move(on);
 }
 
-// A turning point that wants to go where it is not seen gets one more beside it, on an edge that lets it go there.
-void AirWays::turn_where_stuck(std::vector<Spot>& way, std::vector<int>& edges) const {
-  const auto& all = air_->edges();
-  for (std::size_t k = 1; k + 1 < way.size(); ++k) {
-    const Spot before = way[k - 1], after = way[k + 1], wanted = turning_point(all[edges[k]], before, after);
-    const bool hidden_before = !air_->sees(before, wanted), hidden_after = !air_->sees(wanted, after);
-    if (hidden_before == hidden_after) continue;
-    const Spot from = hidden_before ? before : wanted, to = hidden_before ? wanted : after;
-    const double rest = hidden_before ? distance(wanted, after) : distance(before, wanted);
-    double best = distance(before, way[k]) + distance(way[k], after) - rest;
-    int edge = -1;
-    for (std::size_t e = 0; e < all.size(); ++e) {
-      const Spot turn = turning_point(all[e], from, to);
-      const double length = distance(from, turn) + distance(turn, to);
-      if (length < best * (1.0 - 1e-9) && air_->sees(from, turn) && air_->sees(turn, to))
-        best = length, edge = static_cast<int>(e);
-    }
-    if (edge < 0) continue;
-    way[k] = wanted;
-    const auto at = static_cast<std::ptrdiff_t>(hidden_before ? k : k + 1);
-    way.insert(way.begin() + at, turning_point(all[edge], from, to));
-    edges.insert(edges.begin() + at, edge);
-    ++k;
+// Where edges meet, the one along which the turn gains most.
+int AirWays::best_edge_at(Spot turn, int edge, Spot before, Spot after) const {
+  double least = distance(before, turn) + distance(turn, after);
+  int best = edge;
+  for (const int other : air_->edges_at(turn, edge)) {
+    const Spot there = turning_point(air_->edges()[other], before, after);
+    const double length = distance(before, there) + distance(there, after);
+    if (length < least) least = length, best = other;
   }
+  return best;
 }
 
 // One pass over the turning points; whether it has gained enough to go on.
@@ -281,17 +296,6 @@ bool AirWays::all_seen(const std::vector<Spot>& way) const {
     if (!air_->sees(way[k - 1], way[k])) return false;
   }
   return true;
-}
-
-void AirWays::shorten(std::vector<Spot>& way, std::vector<int>& edges) const {
-  for (std::size_t k = 1; k + 1 < way.size();) {
-    if (air_->sees(way[k - 1], way[k + 1])) {
-      way.erase(way.begin() + static_cast<std::ptrdiff_t>(k));
-      edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(k));
-    } else {
-      ++k;
-    }
-  }
 }
 
 std::vector<double> AirWays::lengths(const std::vector<Spot>& places, int first, int last, int threads,

@@ -51,14 +51,13 @@ class AirWays {
   void grow(const Seat& from, Tree& tree) const;
   std::vector<Spot> way(const Seat& from, const Seat& to, const Tree& tree) const;
   std::vector<int> candidates(const Seat& to, const Tree& tree) const;
-  std::vector<int> tighten(std::vector<Spot>& way) const;
+  void tighten(std::vector<Spot>& way, std::vector<int>& edges) const;
   void pull(std::vector<Spot>& way, std::vector<int>& edges) const;
-  void slide_in_sight(std::vector<Spot>& way, const std::vector<int>& edges) const;
-  void turn_where_stuck(std::vector<Spot>& way, std::vector<int>& edges) const;
+  void slide_around(std::vector<Spot>& way, std::vector<int>& edges) const;
+  int best_edge_at(Spot turn, int edge, Spot before, Spot after) const;
   bool slide(std::vector<Spot>& way, const std::vector<int>& edges) const;
   bool lay_evenly(std::vector<Spot>& way, const std::vector<int>& edges, std::size_t first, std::size_t last) const;
   bool all_seen(const std::vector<Spot>& way) const;
-  void shorten(std::vector<Spot>& way, std::vector<int>& edges) const;
 
   std::shared_ptr<const Air> air_;
   std::vector<AirEdge> loose_;  // of which nodes are samples
