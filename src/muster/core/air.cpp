@@ -247,7 +247,11 @@ std::vector<Point> Air::loosened(const std::vector<Point>& ring, const PrismShap
       const Point meet = where_lines_meet(at(here), side(here), at(k), side(k));
       double away = distance(meet, at(here + 1));
       for (std::size_t j = here + 2; j <= k; ++j) away = std::min(away, distance(meet, at(j)));
-      if (away > off || !clear(meet, prism)) break;
+      if (away > off) break;
+      // Beside something else the true corners stay, if any of them is to be seen.
+      bool stays = clear(meet, prism);
+      for (std::size_t j = here + 1; j <= k && !stays; ++j) stays = clear(at(j), prism);
+      if (!clear(meet, prism) && stays) break;
       next = k;
       corner = meet;
     }
@@ -292,10 +296,17 @@ std::vector<std::pair<Spot, int>> Air::tight_turns(Spot a, Spot corner, Spot b) 
   };
   const double low_x = std::min({a.x, b.x, corner.x}) - kTouch, high_x = std::max({a.x, b.x, corner.x}) + kTouch;
   const double low_y = std::min({a.y, b.y, corner.y}) - kTouch, high_y = std::max({a.y, b.y, corner.y}) + kTouch;
+  const double highest = std::max({a.z, b.z, corner.z, top_});
   for (std::size_t e = 0; e < first_edge_[1]; ++e) pierce(e);
   for (std::size_t k = 0; k < prisms_.size(); ++k) {
     const Point low = prisms_[k].base.low(), high = prisms_[k].base.high();
     if (low.x > high_x || high.x < low_x || low.y > high_y || high.y < low_y) continue;
+    // Where the plane passes beside the whole prism, it pierces no edge.
+    const double floor = std::max(prisms_[k].floor, lowest_), ceiling = std::min(prisms_[k].ceiling, highest);
+    const Spot off = Spot{(low.x + high.x) / 2, (low.y + high.y) / 2, (floor + ceiling) / 2} - a;
+    const double reach = std::abs(normal.x) * (high.x - low.x) + std::abs(normal.y) * (high.y - low.y) +
+                         std::abs(normal.z) * std::max(0.0, ceiling - floor);
+    if (std::abs(dot(off, normal)) > reach / 2 + slack) continue;
     for (std::size_t e = first_edge_[k + 1]; e < first_edge_[k + 2]; ++e) pierce(e);
   }
   // From a on, all that is left lies to the right of the way to the next.
@@ -346,7 +357,8 @@ bool Air::blocks(const PrismShape& prism, Spot a, Spot b) {
     from = std::max(from, ((rise > 0.0 ? low : high) - a.z) / rise);
     to = std::min(to, ((rise > 0.0 ? high : low) - a.z) / rise);
   }
-  return from < to && prism.base.enters(flat(a), flat(b), from, to, true);
+  return from < to && prism.base.near(along(flat(a), flat(b), from), along(flat(a), flat(b), to)) &&
+         prism.base.enters(flat(a), flat(b), from, to, true);
 }
 
 }  // namespace muster

@@ -2,6 +2,7 @@
 // turn.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -32,6 +33,11 @@ class Rings {
   const std::vector<std::vector<Point>>& rings() const { return rings_; }
   Point low() const { return low_; }
   Point high() const { return high_; }
+  // Whether the boxes around a piece and around all meet.
+  bool near(Point a, Point b) const {
+    return std::max(a.x, b.x) >= low_.x && std::min(a.x, b.x) <= high_.x && std::max(a.y, b.y) >= low_.y &&
+           std::min(a.y, b.y) <= high_.y;
+  }
   bool inside(Point p) const;
   double distance_to_border(Point p) const;
   // Whether the part from t = `from` to `to` of the straight piece a-b runs through the inside (or, if not `inner`,

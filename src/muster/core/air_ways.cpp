@@ -58,21 +58,15 @@ void AirWays::sample(double rise, double run) {
       if (air_->free(at)) nodes_.push_back({at, static_cast<int>(e), !edges[e].upright && k == 0});
     }
   }
+  next_edge_.assign(nodes_.size(), nodes_.size());
+  for (std::size_t k = nodes_.size(); k-- > 1;)
+    next_edge_[k - 1] = nodes_[k - 1].edge == nodes_[k].edge ? next_edge_[k] : k;
 }
 
 void AirWays::build(int threads, const Pause& pause) {
   pieces_.assign(nodes_.size(), {});
   for_each_parallel(static_cast<int>(nodes_.size()), threads, pause, [&] {
-    return [&, blocker = std::size_t{0}](int k) mutable {
-      const Node& node = nodes_[k];
-      for (std::size_t o = static_cast<std::size_t>(k) + 1; o < nodes_.size(); ++o) {
-        const Node& other = nodes_[o];
-        const Spot d = other.at - node.at;
-        if (!taut(node, d) || !taut(other, d)) continue;
-        if (air_->sees(node.at, other.at, blocker))
-          pieces_[k].push_back({static_cast<int>(o), distance(node.at, other.at)});
-      }
-    };
+    return [&, blocker = std::size_t{0}](int k) mutable { look_around(static_cast<std::size_t>(k), blocker); };
   });
   // So far each piece is known at one end.
   std::vector<std::size_t> found;
@@ -81,6 +75,26 @@ void AirWays::build(int threads, const Pause& pause) {
     for (std::size_t p = 0; p < found[k]; ++p) {
       const Piece piece = pieces_[k][p];
       pieces_[piece.other].push_back({static_cast<int>(k), piece.length});
+    }
+  }
+}
+
+// Finds which nodes after this one it sees. Whether a piece is taut at an upright edge is the same for all samples of
+// it.
+void AirWays::look_around(std::size_t k, std::size_t& blocker) {
+  const Node& node = nodes_[k];
+  for (std::size_t o = k + 1; o < nodes_.size();) {
+    const int edge = nodes_[o].edge;
+    const bool upright = loose_[edge].upright;
+    if (upright && !taut(nodes_[o], nodes_[o].at - node.at)) {
+      o = next_edge_[o];
+      continue;
+    }
+    for (const std::size_t end = upright ? next_edge_[o] : o + 1; o < end; ++o) {
+      const Spot d = nodes_[o].at - node.at;
+      if (!taut(node, d) || !(upright || taut(nodes_[o], d))) continue;
+      if (air_->sees(node.at, nodes_[o].at, blocker))
+        pieces_[k].push_back({static_cast<int>(o), distance(node.at, nodes_[o].at)});
     }
   }
 }
@@ -126,7 +140,9 @@ std::vector<Spot> AirWays::way(Spot a, Spot b) const {
 std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tree) const {
   if (!from.free || !to.free) return {};
   if (air_->sees(from.at, to.at)) return {from.at, to.at};
+  constexpr double kWorthPulling = 1.01;
   std::vector<Spot> shortest;
+  double least = kFar;
   std::set<std::vector<int>> pulled;  // by their edges
   for (const int last : candidates(to, tree)) {
     std::vector<Spot> way{to.at};
@@ -137,18 +153,20 @@ std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tre
     std::vector<int> edges;
     tighten(tight, edges);
     if (!pulled.insert(edges).second) continue;
+    if (length_of(tight) > kWorthPulling * least) continue;
     if (all_seen(tight)) {  // but for rounding it is
       pull(tight, edges);
       way = std::move(tight);
     }
-    if (shortest.empty() || length_of(way) < length_of(shortest)) shortest = std::move(way);
+    const double length = length_of(way);
+    if (length < least) least = length, shortest = std::move(way);
   }
   return shortest;
 }
 
 // The best last node of each edge, for what is second between samples may be first when it is pulled straight.
 std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
-  constexpr double kWorthPulling = 1.03;
+  constexpr double kWorthLayingTight = 1.03;
   constexpr std::size_t kMost = 8;
   std::map<int, Open> best;  // of each edge
   double least = kFar;
@@ -161,7 +179,7 @@ std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
   }
   std::vector<Open> order;
   for (const auto& [edge, open] : best) {
-    if (open.key <= kWorthPulling * least) order.push_back(open);
+    if (open.key <= kWorthLayingTight * least) order.push_back(open);
   }
   std::sort(order.begin(), order.end(), [](const Open& a, const Open& b) { return a.key < b.key; });
   std::vector<int> nodes;
@@ -187,12 +205,12 @@ void AirWays::tighten(std::vector<Spot>& way, std::vector<int>& edges) const {
 
 // Tightens and slides as long as that helps. Where all turns at once would slide out of sight, one at a time does.
 void AirWays::pull(std::vector<Spot>& way, std::vector<int>& edges) const {
-  constexpr int kRounds = 40;
+  constexpr int kRounds = 40, kPasses = 100;
   for (int round = 0; round < kRounds; ++round) {
     const double before = length_of(way);
     std::vector<Spot> moved = way;
     std::vector<int> on = edges;
-    while (slide(moved, on)) {
+    for (int pass = 0; pass < kPasses && slide(moved, on); ++pass) {
     }
     if (!all_seen(moved)) {
       moved = way;

@@ -47,6 +47,7 @@ class AirWays {
 
   void sample(double rise, double run);
   bool taut(const Node& node, Spot direction) const { return node.corner || loose_[node.edge].taut(direction); }
+  void look_around(std::size_t node, std::size_t& blocker);
   Seat seat(Spot p) const;
   void grow(const Seat& from, Tree& tree) const;
   std::vector<Spot> way(const Seat& from, const Seat& to, const Tree& tree) const;
@@ -62,6 +63,7 @@ class AirWays {
   std::shared_ptr<const Air> air_;
   std::vector<AirEdge> loose_;  // of which nodes are samples
   std::vector<Node> nodes_;
+  std::vector<std::size_t> next_edge_;  // of each node: the first after it on another edge
   std::vector<std::vector<Piece>> pieces_;
 };
 
