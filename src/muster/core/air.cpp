@@ -182,6 +182,7 @@ Air::Air(Rings region, std::vector<PrismShape> prisms, double lowest, double top
   for (const auto& ring : region_.rings()) add_upright(ring, lowest, std::max(top, lowest), false, edges_);
   for (PrismShape& prism : prisms_) {
     if (prism.floor <= lowest) prism.floor = -std::numeric_limits<double>::infinity();  // nothing passes below
+    boxes_.push_back({prism.base.low(), prism.base.high(), prism.floor, prism.ceiling});
     first_edge_.push_back(edges_.size());
     for (const auto& ring : prism.base.rings()) add_prism(ring, prism, lowest, top, edges_);
   }
@@ -336,12 +337,23 @@ bool Air::free(Spot p) const {
   });
 }
 
+// Whether the box around the piece meets this one, and the line does from above.
+bool Air::Box::may_block(Spot a, Spot b) const {
+  if (std::min(a.x, b.x) > high.x || std::max(a.x, b.x) < low.x || std::min(a.y, b.y) > high.y ||
+      std::max(a.y, b.y) < low.y || std::min(a.z, b.z) > ceiling || std::max(a.z, b.z) < floor) {
+    return false;
+  }
+  const double x = b.x - a.x, y = b.y - a.y;
+  const double middle = x * ((low.y + high.y) - 2 * a.y) - y * ((low.x + high.x) - 2 * a.x);
+  return std::abs(middle) <= std::abs(x) * (high.y - low.y) + std::abs(y) * (high.x - low.x);
+}
+
 bool Air::sees(Spot a, Spot b, std::size_t& blocker) const {
   if (std::min(a.z, b.z) < lowest_ - kTouch) return false;
   if (blocker < prisms_.size() && blocks(prisms_[blocker], a, b)) return false;
   if (region_.enters(flat(a), flat(b), 0.0, 1.0, false)) return false;
   for (std::size_t k = 0; k < prisms_.size(); ++k) {
-    if (k == blocker || !blocks(prisms_[k], a, b)) continue;
+    if (k == blocker || !boxes_[k].may_block(a, b) || !blocks(prisms_[k], a, b)) continue;
     blocker = k;
     return false;
   }
@@ -357,8 +369,7 @@ bool Air::blocks(const PrismShape& prism, Spot a, Spot b) {
     from = std::max(from, ((rise > 0.0 ? low : high) - a.z) / rise);
     to = std::min(to, ((rise > 0.0 ? high : low) - a.z) / rise);
   }
-  return from < to && prism.base.near(along(flat(a), flat(b), from), along(flat(a), flat(b), to)) &&
-         prism.base.enters(flat(a), flat(b), from, to, true);
+  return from < to && prism.base.enters(flat(a), flat(b), from, to, true);
 }
 
 }  // namespace muster

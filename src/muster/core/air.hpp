@@ -2,7 +2,6 @@
 // turn.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -33,11 +32,6 @@ class Rings {
   const std::vector<std::vector<Point>>& rings() const { return rings_; }
   Point low() const { return low_; }
   Point high() const { return high_; }
-  // Whether the boxes around a piece and around all meet.
-  bool near(Point a, Point b) const {
-    return std::max(a.x, b.x) >= low_.x && std::min(a.x, b.x) <= high_.x && std::max(a.y, b.y) >= low_.y &&
-           std::min(a.y, b.y) <= high_.y;
-  }
   bool inside(Point p) const;
   double distance_to_border(Point p) const;
   // Whether the part from t = `from` to `to` of the straight piece a-b runs through the inside (or, if not `inner`,
@@ -100,8 +94,16 @@ class Air {
   bool clear(Point p, const PrismShape& but) const;
   std::vector<Point> loosened(const std::vector<Point>& ring, const PrismShape& prism, double off) const;
 
+  // A prism's, upright.
+  struct Box {
+    Point low, high;
+    double floor, ceiling;
+    bool may_block(Spot a, Spot b) const;
+  };
+
   Rings region_;
   std::vector<PrismShape> prisms_;
+  std::vector<Box> boxes_;  // of the prisms, in little memory
   double lowest_, top_;
   std::vector<AirEdge> edges_;
   std::vector<std::pair<std::array<double, 3>, int>> ends_;  // in order

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "heap.hpp"
@@ -39,6 +38,13 @@ double length_of(const std::vector<Spot>& way) {
 }
 
 }  // namespace
+
+// A way and the edge on which each of its points is; -1: an end. None where its points are samples.
+struct AirWays::String {
+  std::vector<Spot> way;
+  std::vector<int> edges;
+  double length = 0.0;
+};
 
 struct AirWays::Tree {
   std::vector<double> length;
@@ -140,33 +146,37 @@ std::vector<Spot> AirWays::way(Spot a, Spot b) const {
 std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tree) const {
   if (!from.free || !to.free) return {};
   if (air_->sees(from.at, to.at)) return {from.at, to.at};
-  constexpr double kWorthPulling = 1.01;
+  constexpr double kWorthPulling = 1.005;
+  std::map<std::vector<int>, String> strings;  // by their edges
+  for (const int last : candidates(to, tree)) {
+    String string;
+    string.way.push_back(to.at);
+    for (int node = last; node >= 0; node = tree.parent[node]) string.way.push_back(nodes_[node].at);
+    string.way.push_back(from.at);
+    std::reverse(string.way.begin(), string.way.end());
+    String tight = string;
+    tighten(tight.way, tight.edges);
+    // But for rounding it is seen; else the way stays on the samples.
+    if (all_seen(tight.way)) string = std::move(tight);
+    string.length = length_of(string.way);
+    strings.try_emplace(std::vector<int>(string.edges), std::move(string));
+  }
+  std::vector<String> order;
+  for (auto& [_, string] : strings) order.push_back(std::move(string));
+  std::sort(order.begin(), order.end(), [](const String& l, const String& r) { return l.length < r.length; });
   std::vector<Spot> shortest;
   double least = kFar;
-  std::set<std::vector<int>> pulled;  // by their edges
-  for (const int last : candidates(to, tree)) {
-    std::vector<Spot> way{to.at};
-    for (int node = last; node >= 0; node = tree.parent[node]) way.push_back(nodes_[node].at);
-    way.push_back(from.at);
-    std::reverse(way.begin(), way.end());
-    std::vector<Spot> tight = way;
-    std::vector<int> edges;
-    tighten(tight, edges);
-    if (!pulled.insert(edges).second) continue;
-    if (length_of(tight) > kWorthPulling * least) continue;
-    if (all_seen(tight)) {  // but for rounding it is
-      pull(tight, edges);
-      way = std::move(tight);
-    }
-    const double length = length_of(way);
-    if (length < least) least = length, shortest = std::move(way);
+  for (String& string : order) {
+    if (string.length > kWorthPulling * least) break;
+    if (!string.edges.empty()) pull(string.way, string.edges);
+    if (const double length = length_of(string.way); length < least) least = length, shortest = std::move(string.way);
   }
   return shortest;
 }
 
 // The best last node of each edge, for what is second between samples may be first when it is pulled straight.
 std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
-  constexpr double kWorthLayingTight = 1.03;
+  constexpr double kWorthTightening = 1.03;
   constexpr std::size_t kMost = 8;
   std::map<int, Open> best;  // of each edge
   double least = kFar;
@@ -179,7 +189,7 @@ std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
   }
   std::vector<Open> order;
   for (const auto& [edge, open] : best) {
-    if (open.key <= kWorthLayingTight * least) order.push_back(open);
+    if (open.key <= kWorthTightening * least) order.push_back(open);
   }
   std::sort(order.begin(), order.end(), [](const Open& a, const Open& b) { return a.key < b.key; });
   std::vector<int> nodes;

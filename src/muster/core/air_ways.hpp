@@ -43,6 +43,7 @@ class AirWays {
     bool free;
     std::vector<Piece> nodes;
   };
+  struct String;
   struct Tree;
 
   void sample(double rise, double run);
