@@ -175,6 +175,15 @@ Point where_lines_meet(Point a, Point along_a, Point b, Point along_b) {
   return along(a, {a.x + along_a.x, a.y + along_a.y}, cross(minus(b, a), along_b) / cross(along_a, along_b));
 }
 
+// Whether a triangle and a box are on different sides of a plane across this axis.
+bool lie_apart(const std::array<Spot, 3>& triangle, Spot low, Spot high, Spot axis, double slack) {
+  const double middle = dot(axis, 0.5 * (low + high)),
+               half = dot({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)}, 0.5 * (high - low));
+  const double one = dot(axis, triangle[0]), two = dot(axis, triangle[1]), three = dot(axis, triangle[2]);
+  const double near = half + slack * std::sqrt(dot(axis, axis)) + Air::kTouch;
+  return std::min({one, two, three}) > middle + near || std::max({one, two, three}) < middle - near;
+}
+
 }  // namespace
 
 Air::Air(Rings region, std::vector<PrismShape> prisms, double lowest, double top)
@@ -295,19 +304,15 @@ std::vector<std::pair<Spot, int>> Air::tight_turns(Spot a, Spot corner, Spot b) 
     if (h * (length - top_at) > height * (length - s) + slack * length) return;
     turns.push_back({s, h, at, static_cast<int>(e)});
   };
-  const double low_x = std::min({a.x, b.x, corner.x}) - kTouch, high_x = std::max({a.x, b.x, corner.x}) + kTouch;
-  const double low_y = std::min({a.y, b.y, corner.y}) - kTouch, high_y = std::max({a.y, b.y, corner.y}) + kTouch;
-  const double highest = std::max({a.z, b.z, corner.z, top_});
   for (std::size_t e = 0; e < first_edge_[1]; ++e) pierce(e);
-  for (std::size_t k = 0; k < prisms_.size(); ++k) {
-    const Point low = prisms_[k].base.low(), high = prisms_[k].base.high();
-    if (low.x > high_x || high.x < low_x || low.y > high_y || high.y < low_y) continue;
-    // Where the plane passes beside the whole prism, it pierces no edge.
-    const double floor = std::max(prisms_[k].floor, lowest_), ceiling = std::min(prisms_[k].ceiling, highest);
-    const Spot off = Spot{(low.x + high.x) / 2, (low.y + high.y) / 2, (floor + ceiling) / 2} - a;
-    const double reach = std::abs(normal.x) * (high.x - low.x) + std::abs(normal.y) * (high.y - low.y) +
-                         std::abs(normal.z) * std::max(0.0, ceiling - floor);
-    if (std::abs(dot(off, normal)) > reach / 2 + slack) continue;
+  const double highest = std::max({a.z, b.z, corner.z, top_});
+  const std::array<Spot, 3> triangle{a, corner, b};
+  for (std::size_t k = 0; k < boxes_.size(); ++k) {
+    const Spot low{boxes_[k].low.x, boxes_[k].low.y, std::max(boxes_[k].floor, lowest_)};
+    const Spot high{boxes_[k].high.x, boxes_[k].high.y, std::min(boxes_[k].ceiling, highest)};
+    const auto apart = [&](Spot axis) { return lie_apart(triangle, low, high, axis, slack); };
+    if (apart({1, 0, 0}) || apart({0, 1, 0}) || apart({0, 0, 1}) || apart(normal) || apart({base.y, -base.x, 0}))
+      continue;
     for (std::size_t e = first_edge_[k + 1]; e < first_edge_[k + 2]; ++e) pierce(e);
   }
   // From a on, all that is left lies to the right of the way to the next.

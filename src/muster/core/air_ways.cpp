@@ -215,7 +215,7 @@ void AirWays::tighten(std::vector<Spot>& way, std::vector<int>& edges) const {
 
 // Tightens and slides as long as that helps. Where all turns at once would slide out of sight, one at a time does.
 void AirWays::pull(std::vector<Spot>& way, std::vector<int>& edges) const {
-  constexpr int kRounds = 40, kPasses = 100;
+  constexpr int kRounds = 40, kPasses = 30;
   for (int round = 0; round < kRounds; ++round) {
     const double before = length_of(way);
     std::vector<Spot> moved = way;
@@ -230,7 +230,7 @@ void AirWays::pull(std::vector<Spot>& way, std::vector<int>& edges) const {
     if (!all_seen(moved) || length_of(moved) >= before) return;  // but for rounding it is seen
     way = std::move(moved);
     edges = std::move(on);
-    if (before - length_of(way) <= 1e-9 * before) return;
+    if (before - length_of(way) <= 1e-8 * before) return;
   }
 }
 
@@ -297,7 +297,7 @@ bool AirWays::slide(std::vector<Spot>& way, const std::vector<int>& edges) const
       way[k] = turning_point(all[edges[k]], way[k - 1], way[k + 1]);
     }
   }
-  return before - length_of(way) > 1e-10 * before;
+  return before - length_of(way) > 1e-9 * before;
 }
 
 // Between two points the turns around upright edges alone are the shortest where the way rises evenly; if the edges are
