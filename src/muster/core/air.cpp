@@ -48,6 +48,13 @@ Rings::Rings(std::vector<std::vector<Point>> rings) : rings_(std::move(rings)) {
     high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y)};
   });
   convex_ = rings_.size() == 1 && turns_left_only(rings_.front());
+  if (!convex_) return;
+  for_sides(rings_, [&](Point p, Point q) {
+    const double length = muster::distance(p, q);
+    if (length == 0.0) return;
+    const Point inward{-(q.y - p.y) / length, (q.x - p.x) / length};
+    sides_.push_back({inward, dot(inward, p)});
+  });
 }
 
 bool Rings::inside(Point p) const {
@@ -75,11 +82,8 @@ bool Rings::beside(Point a, Point d, double off) const {
 bool Rings::enters_convex(Point a, Point b, double from, double to) const {
   const Point d = minus(b, a);
   const double least = Air::kTouch / std::max(std::sqrt(dot(d, d)), Air::kTouch);
-  const std::vector<Point>& ring = rings_.front();
-  for (std::size_t k = 0, before = ring.size() - 1; k < ring.size(); before = k++) {
-    const Point side = minus(ring[k], ring[before]);
-    const double depth = cross(side, minus(a, ring[before])) - Air::kTouch * std::sqrt(dot(side, side));
-    const double rate = cross(side, d);
+  for (const Side& side : sides_) {
+    const double depth = dot(side.inward, a) - side.offset - Air::kTouch, rate = dot(side.inward, d);
     if (rate > 0.0) {
       from = std::max(from, -depth / rate);
     } else if (rate < 0.0) {

@@ -43,8 +43,15 @@ class Rings {
   bool beside(Point a, Point direction, double off) const;
   bool enters_convex(Point a, Point b, double from, double to) const;
 
+  // How deep a point is on the inner side of a line: dot(inward, p) - offset.
+  struct Side {
+    Point inward;
+    double offset;
+  };
+
   Point low_, high_;
   bool convex_ = false;
+  std::vector<Side> sides_;  // of a convex whole
 };
 
 struct PrismShape {

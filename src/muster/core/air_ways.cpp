@@ -247,7 +247,7 @@ void AirWays::slide_around(std::vector<Spot>& way, std::vector<int>& edges) cons
     const Spot before = laid.back(), at = way[k], after = way[k + 1];
     const int edge = best_edge_at(at, edges[k], before, after);
     const Spot wanted = turning_point(air_->edges()[edge], before, after);
-    double share = 1.0;
+    double share = distance(at, wanted) > Air::kTouch ? 1.0 : 0.0;
     for (; share > kLeastShare; share /= 2) {
       const Spot there = at + share * (wanted - at);
       if (!air_->sees(at, there)) continue;  // edges run through other obstacles
