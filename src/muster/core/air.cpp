@@ -48,6 +48,13 @@ Rings::Rings(std::vector<std::vector<Point>> rings) : rings_(std::move(rings)) {
     high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y)};
   });
   convex_ = rings_.size() == 1 && turns_left_only(rings_.front());
+  if (!convex_) return;
+  for_sides(rings_, [&](Point p, Point q) {
+    const double length = muster::distance(p, q);
+    if (length == 0.0) return;
+    const Point inward{-(q.y - p.y) / length, (q.x - p.x) / length};
+    sides_.push_back({inward, dot(inward, p)});
+  });
 }
 
 bool Rings::inside(Point p) const {
@@ -75,11 +82,8 @@ bool Rings::beside(Point a, Point d, double off) const {
 bool Rings::enters_convex(Point a, Point b, double from, double to) const {
   const Point d = minus(b, a);
   const double least = Air::kTouch / std::max(std::sqrt(dot(d, d)), Air::kTouch);
-  const std::vector<Point>& ring = rings_.front();
-  for (std::size_t k = 0, before = ring.size() - 1; k < ring.size(); before = k++) {
-    const Point side = minus(ring[k], ring[before]);
-    const double depth = cross(side, minus(a, ring[before])) - Air::kTouch * std::sqrt(dot(side, side));
-    const double rate = cross(side, d);
+  for (const Side& side : sides_) {
+    const double depth = dot(side.inward, a) - side.offset - Air::kTouch, rate = dot(side.inward, d);
     if (rate > 0.0) {
       from = std::max(from, -depth / rate);
     } else if (rate < 0.0) {
@@ -175,16 +179,44 @@ Point where_lines_meet(Point a, Point along_a, Point b, Point along_b) {
   return along(a, {a.x + along_a.x, a.y + along_a.y}, cross(minus(b, a), along_b) / cross(along_a, along_b));
 }
 
+// Whether a triangle and a box are on different sides of a plane across this axis.
+bool lie_apart(const std::array<Spot, 3>& triangle, Spot low, Spot high, Spot axis, double slack) {
+  const double middle = dot(axis, 0.5 * (low + high)),
+               half = dot({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)}, 0.5 * (high - low));
+  const double one = dot(axis, triangle[0]), two = dot(axis, triangle[1]), three = dot(axis, triangle[2]);
+  const double near = half + slack * std::sqrt(dot(axis, axis)) + Air::kTouch;
+  return std::min({one, two, three}) > middle + near || std::max({one, two, three}) < middle - near;
+}
+
 }  // namespace
 
 Air::Air(Rings region, std::vector<PrismShape> prisms, double lowest, double top)
     : region_(std::move(region)), prisms_(std::move(prisms)), lowest_(lowest), top_(top), first_edge_{0} {
   for (const auto& ring : region_.rings()) add_upright(ring, lowest, std::max(top, lowest), false, edges_);
-  for (const PrismShape& prism : prisms_) {
+  for (PrismShape& prism : prisms_) {
+    if (prism.floor <= lowest) prism.floor = -std::numeric_limits<double>::infinity();  // nothing passes below
+    boxes_.push_back({prism.base.low(), prism.base.high(), prism.floor, prism.ceiling});
     first_edge_.push_back(edges_.size());
     for (const auto& ring : prism.base.rings()) add_prism(ring, prism, lowest, top, edges_);
   }
   first_edge_.push_back(edges_.size());
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    for (const Spot end : {edges_[e].from, edges_[e].to}) ends_.push_back({{end.x, end.y, end.z}, static_cast<int>(e)});
+  }
+  std::sort(ends_.begin(), ends_.end());
+}
+
+std::vector<int> Air::edges_at(Spot p, int edge) const {
+  std::vector<int> found{edge};
+  for (const Spot end : {edges_[edge].from, edges_[edge].to}) {
+    if (distance(end, p) > kTouch) continue;
+    const std::array<double, 3> key{end.x, end.y, end.z};
+    for (auto at = std::lower_bound(ends_.begin(), ends_.end(), std::pair{key, -1});
+         at != ends_.end() && at->first == key; ++at) {
+      found.push_back(at->second);
+    }
+  }
+  return found;
 }
 
 std::vector<AirEdge> Air::loose_edges(double off) const {
@@ -229,7 +261,11 @@ std::vector<Point> Air::loosened(const std::vector<Point>& ring, const PrismShap
       const Point meet = where_lines_meet(at(here), side(here), at(k), side(k));
       double away = distance(meet, at(here + 1));
       for (std::size_t j = here + 2; j <= k; ++j) away = std::min(away, distance(meet, at(j)));
-      if (away > off || !clear(meet, prism)) break;
+      if (away > off) break;
+      // Beside something else the true corners stay, if any of them is to be seen.
+      bool stays = clear(meet, prism);
+      for (std::size_t j = here + 1; j <= k && !stays; ++j) stays = clear(at(j), prism);
+      if (!clear(meet, prism) && stays) break;
       next = k;
       corner = meet;
     }
@@ -272,27 +308,32 @@ std::vector<std::pair<Spot, int>> Air::tight_turns(Spot a, Spot corner, Spot b) 
     if (h * (length - top_at) > height * (length - s) + slack * length) return;
     turns.push_back({s, h, at, static_cast<int>(e)});
   };
-  const double low_x = std::min({a.x, b.x, corner.x}) - kTouch, high_x = std::max({a.x, b.x, corner.x}) + kTouch;
-  const double low_y = std::min({a.y, b.y, corner.y}) - kTouch, high_y = std::max({a.y, b.y, corner.y}) + kTouch;
   for (std::size_t e = 0; e < first_edge_[1]; ++e) pierce(e);
-  for (std::size_t k = 0; k < prisms_.size(); ++k) {
-    const Point low = prisms_[k].base.low(), high = prisms_[k].base.high();
-    if (low.x > high_x || high.x < low_x || low.y > high_y || high.y < low_y) continue;
+  const double highest = std::max({a.z, b.z, corner.z, top_});
+  const std::array<Spot, 3> triangle{a, corner, b};
+  for (std::size_t k = 0; k < boxes_.size(); ++k) {
+    const Spot low{boxes_[k].low.x, boxes_[k].low.y, std::max(boxes_[k].floor, lowest_)};
+    const Spot high{boxes_[k].high.x, boxes_[k].high.y, std::min(boxes_[k].ceiling, highest)};
+    const auto apart = [&](Spot axis) { return lie_apart(triangle, low, high, axis, slack); };
+    if (apart({1, 0, 0}) || apart({0, 1, 0}) || apart({0, 0, 1}) || apart(normal) || apart({base.y, -base.x, 0}))
+      continue;
     for (std::size_t e = first_edge_[k + 1]; e < first_edge_[k + 2]; ++e) pierce(e);
   }
-  std::sort(turns.begin(), turns.end(), [](const Turn& l, const Turn& r) { return l.s < r.s; });
+  // From a on, all that is left lies to the right of the way to the next.
   turns.push_back({length, 0.0, b, -1});
-  std::vector<Turn> hull{{0.0, 0.0, a, -1}};
-  for (const Turn& turn : turns) {
-    const auto below = [&] {
-      const Turn &q = hull[hull.size() - 1], &p = hull[hull.size() - 2];
-      return (q.s - p.s) * (turn.h - p.h) - (q.h - p.h) * (turn.s - p.s) >= 0.0;
-    };
-    while (hull.size() > 1 && below()) hull.pop_back();
-    hull.push_back(turn);
-  }
   std::vector<std::pair<Spot, int>> found;
-  for (std::size_t k = 1; k + 1 < hull.size(); ++k) found.emplace_back(hull[k].at, hull[k].edge);
+  Turn here{0.0, 0.0, a, -1};
+  while (found.size() < turns.size()) {
+    const Turn* next = &turns.back();
+    for (const Turn& turn : turns) {
+      const double s = turn.s - here.s, h = turn.h - here.h, next_s = next->s - here.s, next_h = next->h - here.h;
+      const double left = next_s * h - next_h * s, further = (s * s + h * h) - (next_s * next_s + next_h * next_h);
+      if (std::hypot(s, h) > slack && (left > 0.0 || (left == 0.0 && further > 0.0))) next = &turn;
+    }
+    if (next->edge < 0) return found;
+    found.emplace_back(next->at, next->edge);
+    here = *next;
+  }
   return found;
 }
 
@@ -305,12 +346,23 @@ bool Air::free(Spot p) const {
   });
 }
 
+// Whether the box around the piece meets this one, and the line does from above.
+bool Air::Box::may_block(Spot a, Spot b) const {
+  if (std::min(a.x, b.x) > high.x || std::max(a.x, b.x) < low.x || std::min(a.y, b.y) > high.y ||
+      std::max(a.y, b.y) < low.y || std::min(a.z, b.z) > ceiling || std::max(a.z, b.z) < floor) {
+    return false;
+  }
+  const double x = b.x - a.x, y = b.y - a.y;
+  const double middle = x * ((low.y + high.y) - 2 * a.y) - y * ((low.x + high.x) - 2 * a.x);
+  return std::abs(middle) <= std::abs(x) * (high.y - low.y) + std::abs(y) * (high.x - low.x);
+}
+
 bool Air::sees(Spot a, Spot b, std::size_t& blocker) const {
   if (std::min(a.z, b.z) < lowest_ - kTouch) return false;
   if (blocker < prisms_.size() && blocks(prisms_[blocker], a, b)) return false;
   if (region_.enters(flat(a), flat(b), 0.0, 1.0, false)) return false;
   for (std::size_t k = 0; k < prisms_.size(); ++k) {
-    if (k == blocker || !blocks(prisms_[k], a, b)) continue;
+    if (k == blocker || !boxes_[k].may_block(a, b) || !blocks(prisms_[k], a, b)) continue;
     blocker = k;
     return false;
   }

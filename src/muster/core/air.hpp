@@ -2,6 +2,7 @@
 // turn.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -42,8 +43,15 @@ class Rings {
   bool beside(Point a, Point direction, double off) const;
   bool enters_convex(Point a, Point b, double from, double to) const;
 
+  // How deep a point is on the inner side of a line: dot(inward, p) - offset.
+  struct Side {
+    Point inward;
+    double offset;
+  };
+
   Point low_, high_;
   bool convex_ = false;
+  std::vector<Side> sides_;  // of a convex whole
 };
 
 struct PrismShape {
@@ -75,6 +83,8 @@ class Air {
   // The edges once more, with fewer corners where prisms are round: they run outside, by `off` at most, and where they
   // would run into something else they stay as they are.
   std::vector<AirEdge> loose_edges(double off) const;
+  // An edge, and where it ends at the point, all that end there.
+  std::vector<int> edges_at(Spot end, int edge) const;
   // Where edges pierce the triangle between two points and a free third one: the turns of the shortest way between the
   // two that keeps to the side of the third, and on which edge each is.
   std::vector<std::pair<Spot, int>> tight_turns(Spot a, Spot corner, Spot b) const;
@@ -91,11 +101,20 @@ class Air {
   bool clear(Point p, const PrismShape& but) const;
   std::vector<Point> loosened(const std::vector<Point>& ring, const PrismShape& prism, double off) const;
 
+  // A prism's, upright.
+  struct Box {
+    Point low, high;
+    double floor, ceiling;
+    bool may_block(Spot a, Spot b) const;
+  };
+
   Rings region_;
   std::vector<PrismShape> prisms_;
+  std::vector<Box> boxes_;  // of the prisms, in little memory
   double lowest_, top_;
   std::vector<AirEdge> edges_;
-  std::vector<std::size_t> first_edge_;  // of the region, of each prism, and the end
+  std::vector<std::pair<std::array<double, 3>, int>> ends_;  // in order
+  std::vector<std::size_t> first_edge_;                      // of the region, of each prism, and the end
 };
 
 }  // namespace muster

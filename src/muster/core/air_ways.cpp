@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "heap.hpp"
@@ -40,6 +39,13 @@ double length_of(const std::vector<Spot>& way) {
 
 }  // namespace
 
+// A way and the edge on which each of its points is; -1: an end. None where its points are samples.
+struct AirWays::String {
+  std::vector<Spot> way;
+  std::vector<int> edges;
+  double length = 0.0;
+};
+
 struct AirWays::Tree {
   std::vector<double> length;
   std::vector<int> parent;
@@ -58,21 +64,15 @@ void AirWays::sample(double rise, double run) {
       if (air_->free(at)) nodes_.push_back({at, static_cast<int>(e), !edges[e].upright && k == 0});
     }
   }
+  next_edge_.assign(nodes_.size(), nodes_.size());
+  for (std::size_t k = nodes_.size(); k-- > 1;)
+    next_edge_[k - 1] = nodes_[k - 1].edge == nodes_[k].edge ? next_edge_[k] : k;
 }
 
 void AirWays::build(int threads, const Pause& pause) {
   pieces_.assign(nodes_.size(), {});
   for_each_parallel(static_cast<int>(nodes_.size()), threads, pause, [&] {
-    return [&, blocker = std::size_t{0}](int k) mutable {
-      const Node& node = nodes_[k];
-      for (std::size_t o = static_cast<std::size_t>(k) + 1; o < nodes_.size(); ++o) {
-        const Node& other = nodes_[o];
-        const Spot d = other.at - node.at;
-        if (!taut(node, d) || !taut(other, d)) continue;
-        if (air_->sees(node.at, other.at, blocker))
-          pieces_[k].push_back({static_cast<int>(o), distance(node.at, other.at)});
-      }
-    };
+    return [&, blocker = std::size_t{0}](int k) mutable { look_around(static_cast<std::size_t>(k), blocker); };
   });
   // So far each piece is known at one end.
   std::vector<std::size_t> found;
@@ -81,6 +81,26 @@ void AirWays::build(int threads, const Pause& pause) {
     for (std::size_t p = 0; p < found[k]; ++p) {
       const Piece piece = pieces_[k][p];
       pieces_[piece.other].push_back({static_cast<int>(k), piece.length});
+    }
+  }
+}
+
+// Finds which nodes after this one it sees. Whether a piece is taut at an upright edge is the same for all samples of
+// it.
+void AirWays::look_around(std::size_t k, std::size_t& blocker) {
+  const Node& node = nodes_[k];
+  for (std::size_t o = k + 1; o < nodes_.size();) {
+    const int edge = nodes_[o].edge;
+    const bool upright = loose_[edge].upright;
+    if (upright && !taut(nodes_[o], nodes_[o].at - node.at)) {
+      o = next_edge_[o];
+      continue;
+    }
+    for (const std::size_t end = upright ? next_edge_[o] : o + 1; o < end; ++o) {
+      const Spot d = nodes_[o].at - node.at;
+      if (!taut(node, d) || !(upright || taut(nodes_[o], d))) continue;
+      if (air_->sees(node.at, nodes_[o].at, blocker))
+        pieces_[k].push_back({static_cast<int>(o), distance(node.at, nodes_[o].at)});
     }
   }
 }
@@ -126,24 +146,37 @@ std::vector<Spot> AirWays::way(Spot a, Spot b) const {
 std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tree) const {
   if (!from.free || !to.free) return {};
   if (air_->sees(from.at, to.at)) return {from.at, to.at};
-  std::vector<Spot> shortest;
-  std::set<std::vector<int>> pulled;  // by their edges
+  constexpr double kWorthPulling = 1.005;
+  std::map<std::vector<int>, String> strings;  // by their edges
   for (const int last : candidates(to, tree)) {
-    std::vector<Spot> way{to.at};
-    for (int node = last; node >= 0; node = tree.parent[node]) way.push_back(nodes_[node].at);
-    way.push_back(from.at);
-    std::reverse(way.begin(), way.end());
-    std::vector<int> edges = tighten(way);
-    if (!pulled.insert(edges).second) continue;
-    pull(way, edges);
-    if (shortest.empty() || length_of(way) < length_of(shortest)) shortest = std::move(way);
+    String string;
+    string.way.push_back(to.at);
+    for (int node = last; node >= 0; node = tree.parent[node]) string.way.push_back(nodes_[node].at);
+    string.way.push_back(from.at);
+    std::reverse(string.way.begin(), string.way.end());
+    String tight = string;
+    tighten(tight.way, tight.edges);
+    // But for rounding it is seen; else the way stays on the samples.
+    if (all_seen(tight.way)) string = std::move(tight);
+    string.length = length_of(string.way);
+    strings.try_emplace(std::vector<int>(string.edges), std::move(string));
+  }
+  std::vector<String> order;
+  for (auto& [_, string] : strings) order.push_back(std::move(string));
+  std::sort(order.begin(), order.end(), [](const String& l, const String& r) { return l.length < r.length; });
+  std::vector<Spot> shortest;
+  double least = kFar;
+  for (String& string : order) {
+    if (string.length > kWorthPulling * least) break;
+    if (!string.edges.empty()) pull(string.way, string.edges);
+    if (const double length = length_of(string.way); length < least) least = length, shortest = std::move(string.way);
   }
   return shortest;
 }
 
 // The best last node of each edge, for what is second between samples may be first when it is pulled straight.
 std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
-  constexpr double kWorthPulling = 1.03;
+  constexpr double kWorthTightening = 1.03;
   constexpr std::size_t kMost = 8;
   std::map<int, Open> best;  // of each edge
   double least = kFar;
@@ -156,7 +189,7 @@ std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
   }
   std::vector<Open> order;
   for (const auto& [edge, open] : best) {
-    if (open.key <= kWorthPulling * least) order.push_back(open);
+    if (open.key <= kWorthTightening * least) order.push_back(open);
   }
   std::sort(order.begin(), order.end(), [](const Open& a, const Open& b) { return a.key < b.key; });
   std::vector<int> nodes;
@@ -164,79 +197,89 @@ std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
   return nodes;
 }
 
-// Lays a way around the true edges, turn by turn; on which each turning point is then (the ends: -1).
-std::vector<int> AirWays::tighten(std::vector<Spot>& way) const {
+// Lays a way around the true edges, turn by turn.
+void AirWays::tighten(std::vector<Spot>& way, std::vector<int>& edges) const {
   std::vector<Spot> tight{way.front()};
-  std::vector<int> edges{-1};
+  std::vector<int> on{-1};
   for (std::size_t k = 1; k + 1 < way.size(); ++k) {
     for (const auto& [at, edge] : air_->tight_turns(tight.back(), way[k], way[k + 1])) {
       tight.push_back(at);
-      edges.push_back(edge);
+      on.push_back(edge);
     }
   }
   tight.push_back(way.back());
-  edges.push_back(-1);
+  on.push_back(-1);
   way = std::move(tight);
-  return edges;
+  edges = std::move(on);
 }
 
-// Slides and drops turning points as long as that helps. Where all at once would slide out of sight, one at a time.
+// Tightens and slides as long as that helps. Where all turns at once would slide out of sight, one at a time does.
 void AirWays::pull(std::vector<Spot>& way, std::vector<int>& edges) const {
-  constexpr int kRounds = 40;
+  constexpr int kRounds = 40, kPasses = 30;
   for (int round = 0; round < kRounds; ++round) {
-    shorten(way, edges);
     const double before = length_of(way);
     std::vector<Spot> moved = way;
-    while (slide(moved, edges)) {
+    std::vector<int> on = edges;
+    for (int pass = 0; pass < kPasses && slide(moved, on); ++pass) {
     }
-    if (all_seen(moved)) {
-      way = moved;
-    } else {
-      slide_in_sight(way, edges);
-      turn_where_stuck(way, edges);
+    if (!all_seen(moved)) {
+      moved = way;
+      slide_around(moved, on);
     }
-    if (before - length_of(way) <= 1e-9 * before) return;
+    tighten(moved, on);
+    if (!all_seen(moved) || length_of(moved) >= before) return;  // but for rounding it is seen
+    way = std::move(moved);
+    edges = std::move(on);
+    if (before - length_of(way) <= 1e-8 * before) return;
   }
 }
 
-void AirWays::slide_in_sight(std::vector<Spot>& way, const std::vector<int>& edges) const {
+// A turn that slides takes the string along: what that meets on its way, it is laid around.
+void AirWays::slide_around(std::vector<Spot>& way, std::vector<int>& edges) const {
   constexpr double kLeastShare = 0.05;
+  std::vector<Spot> laid{way.front()};
+  std::vector<int> on{-1};
+  const auto turn = [&](Spot at, int edge) {
+    laid.push_back(at);
+    on.push_back(edge);
+  };
   for (std::size_t k = 1; k + 1 < way.size(); ++k) {
-    const Spot before = way[k - 1], at = way[k], after = way[k + 1];
-    const Spot wanted = turning_point(air_->edges()[edges[k]], before, after);
-    for (double share = 1.0; share > kLeastShare; share /= 2) {
+    const Spot before = laid.back(), at = way[k], after = way[k + 1];
+    const int edge = best_edge_at(at, edges[k], before, after);
+    const Spot wanted = turning_point(air_->edges()[edge], before, after);
+    double share = distance(at, wanted) > Air::kTouch ? 1.0 : 0.0;
+    for (; share > kLeastShare; share /= 2) {
       const Spot there = at + share * (wanted - at);
-      if (!air_->sees(before, there) || !air_->sees(there, after)) continue;
-      way[k] = there;
+      if (!air_->sees(at, there)) continue;  // edges run through other obstacles
+      const auto first = air_->tight_turns(before, at, there), then = air_->tight_turns(there, at, after);
+      std::vector<Spot> string{before};
+      for (const auto& [point, _] : first) string.push_back(point);
+      string.push_back(there);
+      for (const auto& [point, _] : then) string.push_back(point);
+      string.push_back(after);
+      if (length_of(string) >= distance(before, at) + distance(at, after)) continue;
+      for (const auto& [point, other] : first) turn(point, other);
+      turn(there, edge);
+      for (const auto& [point, other] : then) turn(point, other);
       break;
     }
+    if (share <= kLeastShare) turn(at, edge);
   }
+  turn(way.back(), -1);
+  way = std::move(laid);
+  edges = std::move(on);
 }
 
-// A turning point that wants to go where it is not seen gets one more beside it, on an edge that lets it go there.
-void AirWays::turn_where_stuck(std::vector<Spot>& way, std::vector<int>& edges) const {
-  const auto& all = air_->edges();
-  for (std::size_t k = 1; k + 1 < way.size(); ++k) {
-    const Spot before = way[k - 1], after = way[k + 1], wanted = turning_point(all[edges[k]], before, after);
-    const bool hidden_before = !air_->sees(before, wanted), hidden_after = !air_->sees(wanted, after);
-    if (hidden_before == hidden_after) continue;
-    const Spot from = hidden_before ? before : wanted, to = hidden_before ? wanted : after;
-    const double rest = hidden_before ? distance(wanted, after) : distance(before, wanted);
-    double best = distance(before, way[k]) + distance(way[k], after) - rest;
-    int edge = -1;
-    for (std::size_t e = 0; e < all.size(); ++e) {
-      const Spot turn = turning_point(all[e], from, to);
-      const double length = distance(from, turn) + distance(turn, to);
-      if (length < best * (1.0 - 1e-9) && air_->sees(from, turn) && air_->sees(turn, to))
-        best = length, edge = static_cast<int>(e);
-    }
-    if (edge < 0) continue;
-    way[k] = wanted;
-    const auto at = static_cast<std::ptrdiff_t>(hidden_before ? k : k + 1);
-    way.insert(way.begin() + at, turning_point(all[edge], from, to));
-    edges.insert(edges.begin() + at, edge);
-    ++k;
+// Where edges meet, the one along which the turn gains most.
+int AirWays::best_edge_at(Spot turn, int edge, Spot before, Spot after) const {
+  double least = distance(before, turn) + distance(turn, after);
+  int best = edge;
+  for (const int other : air_->edges_at(turn, edge)) {
+    const Spot there = turning_point(air_->edges()[other], before, after);
+    const double length = distance(before, there) + distance(there, after);
+    if (length < least) least = length, best = other;
   }
+  return best;
 }
 
 // One pass over the turning points; whether it has gained enough to go on.
@@ -254,7 +297,7 @@ bool AirWays::slide(std::vector<Spot>& way, const std::vector<int>& edges) const
       way[k] = turning_point(all[edges[k]], way[k - 1], way[k + 1]);
     }
   }
-  return before - length_of(way) > 1e-10 * before;
+  return before - length_of(way) > 1e-9 * before;
 }
 
 // Between two points the turns around upright edges alone are the shortest where the way rises evenly; if the edges are
@@ -281,17 +324,6 @@ bool AirWays::all_seen(const std::vector<Spot>& way) const {
     if (!air_->sees(way[k - 1], way[k])) return false;
   }
   return true;
-}
-
-void AirWays::shorten(std::vector<Spot>& way, std::vector<int>& edges) const {
-  for (std::size_t k = 1; k + 1 < way.size();) {
-    if (air_->sees(way[k - 1], way[k + 1])) {
-      way.erase(way.begin() + static_cast<std::ptrdiff_t>(k));
-      edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(k));
-    } else {
-      ++k;
-    }
-  }
 }
 
 std::vector<double> AirWays::lengths(const std::vector<Spot>& places, int first, int last, int threads,

@@ -43,26 +43,28 @@ class AirWays {
     bool free;
     std::vector<Piece> nodes;
   };
+  struct String;
   struct Tree;
 
   void sample(double rise, double run);
   bool taut(const Node& node, Spot direction) const { return node.corner || loose_[node.edge].taut(direction); }
+  void look_around(std::size_t node, std::size_t& blocker);
   Seat seat(Spot p) const;
   void grow(const Seat& from, Tree& tree) const;
   std::vector<Spot> way(const Seat& from, const Seat& to, const Tree& tree) const;
   std::vector<int> candidates(const Seat& to, const Tree& tree) const;
-  std::vector<int> tighten(std::vector<Spot>& way) const;
+  void tighten(std::vector<Spot>& way, std::vector<int>& edges) const;
   void pull(std::vector<Spot>& way, std::vector<int>& edges) const;
-  void slide_in_sight(std::vector<Spot>& way, const std::vector<int>& edges) const;
-  void turn_where_stuck(std::vector<Spot>& way, std::vector<int>& edges) const;
+  void slide_around(std::vector<Spot>& way, std::vector<int>& edges) const;
+  int best_edge_at(Spot turn, int edge, Spot before, Spot after) const;
   bool slide(std::vector<Spot>& way, const std::vector<int>& edges) const;
   bool lay_evenly(std::vector<Spot>& way, const std::vector<int>& edges, std::size_t first, std::size_t last) const;
   bool all_seen(const std::vector<Spot>& way) const;
-  void shorten(std::vector<Spot>& way, std::vector<int>& edges) const;
 
   std::shared_ptr<const Air> air_;
   std::vector<AirEdge> loose_;  // of which nodes are samples
   std::vector<Node> nodes_;
+  std::vector<std::size_t> next_edge_;  // of each node: the first after it on another edge
   std::vector<std::vector<Piece>> pieces_;
 };
 

@@ -59,6 +59,25 @@ def grid_lengths(blocked, places):
     return _lengths(places, corners, lambda a, b: grid_sees(blocked, a, b), lambda p: grid_free(blocked, p))
 
 
+def cells_region(blocked):
+    """The free cells of a grid without pinches as one region of the plane."""
+    return shapely.union_all([shapely.box(x, y, x + 1, y + 1) for y, x in np.argwhere(~blocked)])
+
+
+def sparse_region_lengths(region, places):
+    """As `region_lengths`, faster: all pairs of vertices at once, one search for all places."""
+    nodes = np.concatenate([places, np.unique(shapely.get_coordinates(region), axis=0)])
+    first, second = np.triu_indices(len(nodes), 1)
+    apart = (nodes[first] != nodes[second]).any(axis=1)
+    first, second = first[apart], second[apart]
+    shapely.prepare(region)
+    seen = shapely.covers(region, shapely.linestrings(np.stack([nodes[first], nodes[second]], axis=1)))
+    first, second = first[seen], second[seen]
+    weights = np.linalg.norm(nodes[first] - nodes[second], axis=1)
+    graph = csr_array((weights, (first, second)), shape=(len(nodes), len(nodes)))
+    return dijkstra(graph, directed=False, indices=range(len(places)))[:, : len(places)]
+
+
 def region_lengths(region, places):
     """Shortest lengths between places of a region, by way of all its vertices."""
     corners = [tuple(p) for p in np.unique(shapely.get_coordinates(region), axis=0)]

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 import shapely
+from tests.motion.paths.brute import sparse_region_lengths as region_lengths
 
 from muster import core
 from muster.mission.errors import ParameterError
@@ -110,6 +111,29 @@ def test_paths_are_free_as_long_as_their_lengths_and_within_half_a_percent(seed)
     best = fine.lengths(places, first=0, last=len(places), threads=1)
     upper = np.triu(free, 1)
     assert (lengths[upper] <= 1.005 * best[upper]).all()
+
+
+def test_nothing_passes_below_what_stands_on_the_ground():
+    space = PrismSpace(HALL, (Prism(shapely.box(9, 5, 11, 15), 0, 300),))
+    assert find(space, (5, 10, 0), (15, 10, 0)).length_m == pytest.approx(2 * np.hypot(4, 5) + 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_among_round_towers_the_way_is_that_of_the_plane(seed):
+    """They are too high to pass over; the plane's lengths are exact, by other code."""
+    rng = np.random.default_rng(seed)
+    bases = [
+        shapely.Point(p).buffer(r) for p, r in zip(rng.uniform(2, 18, (8, 2)), rng.uniform(0.5, 2, 8), strict=True)
+    ]
+    space = PrismSpace(HALL, tuple(Prism(base, 0, 500) for base in bases))
+    free = HALL.difference(shapely.union_all(bases))
+    places = [p for p in rng.uniform(0, 20, (20, 2)) if shapely.contains_xy(free.buffer(-0.01), *p)][:8]
+    wanted = region_lengths(free, places)
+    found = travel_lengths(space, [(*p, 1.0) for p in places], [(*p, 1.0) for p in places])
+    free_of_walls = np.isfinite(wanted)
+    assert (np.isfinite(found) == free_of_walls).all()
+    assert (found[free_of_walls] >= wanted[free_of_walls] * (1 - 1e-6)).all()
+    assert (found[free_of_walls] <= wanted[free_of_walls] * (1 + 1e-6)).all()
 
 
 def test_exits_and_entries_may_differ():

@@ -84,6 +84,26 @@ def test_paths_stay_in_free_cells_and_join_the_points_given(data):
             assert grid_sees(space.grid.blocked, a, b), (planner, a, b)
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_over_open_ground_theta_star_stays_in_free_cells(seed):
+    """Few blocks on much ground: each look passes over many columns at once."""
+    rng = np.random.default_rng(seed)
+    blocked = rng.random((40, 50)) < 0.01
+    for row, column, down, right in rng.integers(0, 25, (3, 4)):
+        blocked[row : row + down, column : column + right] = True
+    free = np.argwhere(~blocked)
+    if len(free) < 2:
+        return
+    start, goal = free[rng.choice(len(free), 2)][:, ::-1] + 0.5
+    space = GridSpace(Grid(blocked, 1.0))
+    answer = find(space, start, goal, planner="theta-star")
+    assert length(find(space, start, goal)) <= length(answer) * (1 + 1e-12)
+    assert length(answer) <= length(find(space, start, goal, planner="a-star")) * (1 + 1e-12)
+    if isinstance(answer, Path):
+        assert all(grid_sees(blocked, a, b) for a, b in zip(answer.points, answer.points[1:], strict=False))
+
+
 @settings(max_examples=25)
 @given(regions(), st.integers(0, 2**32 - 1))
 def test_paths_over_a_region_stay_in_it(space, seed):

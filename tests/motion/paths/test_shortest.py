@@ -5,9 +5,10 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.motion.paths.brute import grid_lengths, region_lengths
+from tests.motion.paths.brute import cells_region, grid_lengths, region_lengths, sparse_region_lengths
 from tests.motion.paths.spaces import grids, places_in, places_on, regions
 
+from muster import core
 from muster.mission.errors import ParameterError
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
@@ -41,6 +42,66 @@ def test_on_grids_nothing_is_shorter(data):
 def test_in_regions_nothing_is_shorter(space, places):
     wanted = region_lengths(space.region, places)
     assert_lengths(space, places, wanted)
+
+
+def without_pinches(blocked):
+    """Where two blocked cells touch at a corner, the free ones beside them are blocked too, until none do."""
+    while True:
+        a, b, c, d = blocked[:-1, :-1], blocked[:-1, 1:], blocked[1:, :-1], blocked[1:, 1:]
+        pinches = (a & d & ~b & ~c) | (b & c & ~a & ~d)
+        if not pinches.any():
+            return blocked
+        blocked[:-1, :-1] |= pinches
+        blocked[1:, 1:] |= pinches
+        blocked[:-1, 1:] |= pinches
+        blocked[1:, :-1] |= pinches
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_among_many_corners_nothing_is_shorter(seed):
+    """So many that each way is bounded by one over cells, and looked for in an ellipse."""
+    rng = np.random.default_rng(seed)
+    blocked = without_pinches(rng.random((40, 50)) < (0.07, 0.12)[seed % 2])
+    blocked[20, : 40 + seed] = True
+    blocked = without_pinches(blocked)
+    space = GridSpace(Grid(blocked, 1.0))
+    assert core.Ways.on_grid(core.GridMap(blocked)).corners > 256
+    free = np.argwhere(~blocked)
+    places = free[rng.choice(len(free), 8, replace=False)][:, ::-1] + 0.5
+    assert_lengths(space, places, sparse_region_lengths(cells_region(blocked), places))
+
+
+@pytest.mark.parametrize("share", [0.01, 0.05, 0.3])
+def test_a_way_alone_is_as_long_as_in_the_graph(share):
+    rng = np.random.default_rng(7)
+    blocked = rng.random((150, 200)) < share
+    blocked[75, :180] = True
+    ways = core.Ways.on_grid(core.GridMap(blocked))
+    free = np.argwhere(~blocked)
+    places = free[rng.choice(len(free), 12, replace=False)][:, ::-1] + 0.5
+    alone = [[core_length(ways, a, b) for b in places] for a in places]
+    while not ways.built:
+        ways.build(1000, 1)
+    in_graph = [[core_length(ways, a, b) for b in places] for a in places]
+    assert np.array(alone) == pytest.approx(np.array(in_graph), rel=1e-9)
+    assert np.isfinite(alone).any()
+
+
+def core_length(ways, a, b):
+    way = ways.way(tuple(a), tuple(b))
+    return np.linalg.norm(np.diff(way, axis=0), axis=1).sum() if len(way) else np.inf
+
+
+def test_the_graph_is_built_when_ways_have_looked_around_as_many_corners():
+    blocked = np.random.default_rng(7).random((60, 60)) < 0.2
+    ways = core.Ways.on_grid(core.GridMap(blocked))
+    free = np.argwhere(~blocked)[:, ::-1] + 0.5
+    assert ways.lengths_alone(free[[0, -1]], free[[0, -1]], mutual=True) is not None
+    assert not ways.graph_pays
+    assert ways.lengths_alone(free, free, mutual=True) is None
+    assert ways.graph_pays
+    finder = PathFinder(GridSpace(Grid(blocked, 1.0)))
+    assert finder.lengths(free[::40]) == pytest.approx(path_lengths(finder, free[::40]), rel=1e-9)
 
 
 @settings(max_examples=30, deadline=None)
