@@ -13,6 +13,7 @@ from muster_studies.auction_5 import AUCTION_5
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure
 from muster_studies.flown import FLOWN
+from muster_studies.jams import JAMS
 from muster_studies.localisation import LOCALISATION
 from muster_studies.market_5 import MARKET_5
 from muster_studies.market_rescue import MARKET_RESCUE
@@ -70,6 +71,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     LOCALISATION,
     ROTORS,
     FLOWN,
+    JAMS,
     NEGOTIATION,
 )
 

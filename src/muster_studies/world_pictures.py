@@ -34,7 +34,13 @@ def world_figure(mission: Mission, plan: Plan, title: str, ignored: tuple[str, .
     from muster.report.film.scenery import FilmScene
 
     footage = Footage(mission)
-    how: dict[str, Any] = {"world": "physics", "recorder": footage, "on_world": footage.on_world, "ignore": ignored}
+    how: dict[str, Any] = {
+        "world": "physics",
+        "avoidance": "orca",
+        "recorder": footage,
+        "on_world": footage.on_world,
+        "ignore": ignored,
+    }
     with closing(Simulation(mission, plan, **how)) as simulation:
         while simulation.time_s < at_s and not simulation.done:  # each call ends with an event
             simulation.advance(at_s)

@@ -45,7 +45,9 @@ def test_who_stands_where_another_goes_steps_aside_and_comes_back():
     aside = aim_of(it.arranged(0.0, [waiting("a", (0, 0)), going("b", (5, 0), (0.2, 0))]), "a")
     assert math.dist(aside, (0.2, 0)) >= 2 * RADIUS + 0.1
     assert math.dist(aside, (0, 0)) < 1.0
-    back = it.arranged(9.0, [waiting("a", aside), going("b", (0.2, 0), (5, 0))])
+    on_it = it.arranged(9.0, [waiting("a", aside), going("b", (0.2, 0), (5, 0))])
+    assert aim_of(on_it, "a") == aside
+    back = it.arranged(10.0, [waiting("a", aside), going("b", (2, 0), (5, 0))])
     assert aim_of(back, "a") == (0, 0)
     assert aim_of(it.arranged(12.0, [waiting("a", (0, 0)), going("b", (4, 0), (5, 0))]), "a") is None
 
@@ -122,12 +124,12 @@ def test_who_is_pushed_while_it_makes_room_is_not_brought_back(when):
     if when != "on its way aside":
         it.arranged(1.0, [waiting("a", aside), COMES])
     if when in ("on its way back", "back"):
-        assert aim_of(it.arranged(2.0, [waiting("a", aside), LEAVES]), "a") == (0, 0)
+        assert aim_of(it.arranged(5.0, [waiting("a", aside), LEAVES]), "a") == (0, 0)
     if when == "back":
-        assert aim_of(it.arranged(3.0, [waiting("a", (0, 0)), LEAVES]), "a") is None
+        assert aim_of(it.arranged(6.0, [waiting("a", (0, 0)), LEAVES]), "a") is None
     far = (-0.3, 0.0) if when == "back" else (-0.6, -1.6)
     for k in range(3):
-        assert aim_of(it.arranged(4.0 + k, [waiting("a", far), LEAVES]), "a") is None
+        assert aim_of(it.arranged(7.0 + k, [waiting("a", far), LEAVES]), "a") is None
 
 
 def test_who_makes_room_again_and_again_comes_back_to_where_it_began():
@@ -165,3 +167,34 @@ def test_one_works_where_another_waits_and_nobody_touches():
     assert apart >= 2 * RADIUS
     assert math.dist(places["a"], (0, 0)) < 0.15
     assert math.dist(places["b"], (4, 0)) < 0.15
+
+
+@pytest.mark.parametrize("heard_share", [0.2, 0.4, 0.7, 1.0])
+@pytest.mark.parametrize("work", [(0.0, 0.0), (0.3, 0.2)])
+def test_two_that_meet_at_one_place_do_not_stand_off_where_one_is_heard_late(heard_share, work):
+    """Of each second b is heard for a share, and stands for the rest: under load that is so."""
+    bodies = {"a": robot("a"), "b": robot("b")}
+    places = {"a": (0.0, 0.0), "b": (4.0, 0.0)}
+    velocities = dict.fromkeys(places, (0.0, 0.0, 0.0))
+    steering, it = Steering(interval_s=DT, space=False), room()
+    turns, aside = 0, False  # how often a sets out to come back
+    for k in range(1600):
+        now = k * DT
+        there = math.dist(places["b"], work) < 0.1
+        if there:
+            break
+        heard = now % 1.0 < heard_share
+        aim = Waypoint((*work, 0.0)) if heard else None
+        team = [
+            SteeredRobot(bodies["a"], (*places["a"], 0.0), 0.0, velocities["a"], None, False, waits=True),
+            SteeredRobot(bodies["b"], (*places["b"], 0.0), 0.0, velocities["b"], aim, there),
+        ]
+        arranged = it.arranged(now, team)
+        comes_back = aim_of(arranged, "a") == (0.0, 0.0)
+        turns += comes_back and aside
+        aside = not comes_back
+        for name, (*body, _) in steering.velocities(arranged).items():
+            velocities[name] = tuple(map(float, flu_to_enu(body, 0.0)))
+            places[name] = tuple(p + DT * v for p, v in zip(places[name], velocities[name], strict=False))
+    assert there
+    assert turns == 0

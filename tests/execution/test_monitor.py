@@ -4,7 +4,7 @@ import pytest
 from tests.execution.world import Point
 
 from muster import Robot
-from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck
+from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck
 from muster.execution.robot_state import Activity, RobotState
 from muster.mission.errors import ParameterError
 from muster.motion.leg_times import LegTimes
@@ -68,35 +68,7 @@ def test_capacity_with_room_for_rounding():
     assert exceeds(10.001, 10.0)
 
 
-@pytest.mark.parametrize("limit", ["silent_after_s", "stuck_after_s", "look_every_s"])
+@pytest.mark.parametrize("limit", ["silent_after_s", "stuck_after_s", "aside_s", "jam_after_s", "look_every_s"])
 def test_limits_are_above_0(limit):
     with pytest.raises(ParameterError, match=f"{limit}: 0; expected seconds above 0"):
         Limits(**{limit: 0})
-
-
-def at_work(name, place, point, held_s=100.0, activity=Activity.WORKING):
-    """A robot of 0.3 m that is to hold at a point, and stands where it is."""
-    robot = Robot(id=name, position=place, radius_m=0.3)
-    port = Point(robot)
-    port.step(0.0)
-    state = RobotState(robot, port, None, LegTimes(1.0), in_time=False, last_heard_s=0.0)
-    state.hear(0.0)
-    state.send(0.0, activity, [Waypoint((*point, 0.0), hold_s=held_s)])
-    return state
-
-
-def test_those_are_held_up_who_have_one_at_work_before_them():
-    works, waits = at_work("w", (5, 0), (5, 0)), at_work("a", (4.3, 0), (5, 0.1), activity=Activity.DRIVING)
-    behind = at_work("b", (3.5, 0), (5, 0.1), activity=Activity.RETURNING)
-    elsewhere = at_work("c", (3, 3), (5, 3), activity=Activity.DRIVING)
-    assert {state.robot.id for state in held_up([works, behind, elsewhere, waits])} == {"a", "b"}
-
-
-def test_of_two_at_work_close_by_the_one_that_is_off_its_place_is_held_up():
-    works, off = at_work("w", (5, 0), (5, 0)), at_work("o", (5.65, 0), (5.4, 0))
-    assert [state.robot.id for state in held_up([works, off])] == ["o"]
-
-
-def test_nobody_is_held_up_by_one_that_does_not_work():
-    stands = at_work("s", (5, 0), (5, 0), activity=Activity.WAITING)
-    assert held_up([stands, at_work("a", (4.3, 0), (5, 0.1), activity=Activity.DRIVING)]) == []

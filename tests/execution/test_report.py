@@ -50,6 +50,9 @@ def test_it_prints_what_the_command_promises():
         "deadlines_missed_s",
         "within_exceeded_s",
         "shifts_exceeded_s",
+        "traffic",
+        "orders",
+        "tasks_forgotten",
         "remarks",
     ]
     assert (data["done_twice"], data["found"], data["remarks"]) == ({}, [], [])

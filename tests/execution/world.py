@@ -18,6 +18,7 @@ class Point:
         self.waypoints, self.held = [], 0.0
         self.broken = self.mute = self.slow = False
         self.refuses = ()  # places to which it will not go
+        self.waits_for = None  # whom it says to wait for; then it stands
         self.now, self.last, self.sent = now, None, 0
 
     def send(self, waypoints):
@@ -35,7 +36,7 @@ class Point:
     def step(self, dt):
         """Go on exactly: to the next way point, hold, and on to the one after it."""
         refused = self.passed < len(self.waypoints) and self.waypoints[self.passed].position in self.refuses
-        left = 0.0 if self.broken or refused else dt
+        left = 0.0 if self.broken or refused or self.waits_for else dt
         while left > 0 and self.passed < len(self.waypoints):
             goal = self.waypoints[self.passed]
             way = math.dist(self.position, goal.position)
@@ -55,7 +56,8 @@ class Point:
         if not self.mute:
             counted = self.odometry, self.order, self.passed
             why = "no way, it says" if refused else ""
-            self.last = Telemetry(self.now, self.position, 0.0, (0.0, 0.0, 0.0), *counted, refused=why)
+            still = (0.0, 0.0, 0.0)
+            self.last = Telemetry(self.now, self.position, 0.0, still, *counted, refused=why, waits_for=self.waits_for)
 
 
 class World:

@@ -9,6 +9,7 @@ from tests.report.voyages import carry_out
 
 from muster import verify
 from muster.report import plot_gantt
+from muster.report.activity_spans import spans
 from muster.report.record import ExecutionEvent, RecordWriter, read_record
 from muster.report.recorded_gantt import plot_flown_gantt
 
@@ -72,3 +73,35 @@ def test_robots_that_joined_have_rows(recorded, drawn):
     ax = plot_flown_gantt(replace(recording, events=(*joins, *recording.events)))
     assert [label.get_text() for label in ax.get_yticklabels()] == ["ada", "bob", "idle", "eve"]
     assert bars(drawn(ax, "travel-eve"))[0][:2] == pytest.approx((2.0, 0.2))
+
+
+def test_waiting_in_traffic_interrupts_travel_also_where_it_is_told_after_its_end():
+    told = [
+        (0.0, "sets_out", {"robot": "a", "task": "x"}),
+        (6.0, "waits_in_traffic", {"robot": "a", "waits_for": "b", "position": [0, 0], "since_s": 5.0}),
+        (8.0, "sets_out", {"robot": "a", "task": "x"}),  # it stood aside meanwhile
+        (11.0, "arrives", {"robot": "a", "task": "x"}),
+        (11.5, "goes_on", {"robot": "a", "until_s": 10.0, "waited_s": {"b": 5.0}, "position": [0, 0]}),
+        (12.0, "starts", {"robot": "a", "task": "x"}),
+        (13.0, "waits_in_traffic", {"robot": "a", "waits_for": "c", "position": [0, 0], "since_s": 12.5}),
+        (20.0, "ends", {"robot": "a", "task": "x"}),
+    ]
+    found = spans([ExecutionEvent(*event) for event in told], 30.0)
+    assert sorted((span.from_s, span.until_s, span.kind) for span in found if span.task == "x") == [
+        (0.0, 5.0, "travel"),
+        (5.0, 10.0, "traffic"),
+        (10.0, 11.0, "travel"),
+        (11.0, 12.0, "waiting"),
+        (12.0, 20.0, "work"),
+        (12.5, 30.0, "traffic"),
+    ]
+
+
+def test_waiting_in_traffic_has_bars_and_an_entry_of_its_own(recorded, drawn):
+    recording = recorded()
+    waits = {"robot": "ada", "waits_for": "bob", "position": [0, 0], "since_s": 0.5}
+    events = (*recording.events, ExecutionEvent(1.5, "waits_in_traffic", waits))
+    goes_on = ExecutionEvent(2.5, "goes_on", {"robot": "ada", "until_s": 2.0, "waited_s": {"bob": 1.5}})
+    ax = plot_flown_gantt(replace(recording, events=tuple(sorted((*events, goes_on), key=lambda e: e.time_s))))
+    assert bars(drawn(ax, "traffic-ada"))[0][:2] == pytest.approx((0.5, 1.5))
+    assert "in traffic" in [text.get_text() for text in ax.get_legend().get_texts()]

@@ -143,7 +143,7 @@ def test_the_observer_sees_every_step_or_every_so_often():
     ("wrong", "message"),
     [
         ({"dt_s": 0.0}, "dt_s: 0.0; expected a finite number above 0"),
-        ({"avoidance": "orka"}, "avoidance: orka; expected orca, rvo, hrvo, avo, none"),
+        ({"avoidance": "orka"}, "avoidance: orka; expected auto, orca, rvo, hrvo, avo, none"),
         ({"seed": -1}, "seed: -1; expected 0 to"),
     ],
 )

@@ -16,6 +16,7 @@ import numpy as np
 from muster.mission.model import Robot
 from muster.motion.avoidance import Agents, Avo, Hrvo, Method, Orca, Rvo
 from muster.motion.avoidance.orca import Parameters
+from muster.motion.avoidance_names import AUTO
 from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
 from muster.motion.kinematics.kinematics import approach
@@ -29,8 +30,10 @@ SETTLES_S = 0.4
 _STANDS = 1e9
 """Priority of a robot that stands: the others go around it."""
 
+_ORCA = Orca(Parameters(horizon_s=2.0, wall_horizon_s=2.0))
 _METHODS: Mapping[str, Method | None] = {
-    "orca": Orca(Parameters(horizon_s=2.0, wall_horizon_s=2.0)),
+    AUTO: _ORCA,  # what keeps real robots apart by itself: no right of way is over them
+    "orca": _ORCA,
     "rvo": Rvo(),
     "hrvo": Hrvo(),
     "avo": Avo(),
@@ -83,7 +86,7 @@ class Steering:
     margin_m
         by which robots are taken for larger.
     avoidance
-        how they pass each other: orca, rvo or hrvo (in the plane), or none.
+        how they pass each other: orca (which `auto` is, too), rvo or hrvo (in the plane), or none.
     """
 
     def __init__(self, *, interval_s: float, space: bool, margin_m: float = 0.05, avoidance: str = "orca") -> None:

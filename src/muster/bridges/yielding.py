@@ -2,7 +2,9 @@
 
 Only one that has done what it was sent to do is moved. Where another is to go to a place so near that both bodies do
 not fit, or is held up on its way there, it steps aside to the nearest place at which it is in nobody's way. It comes
-back only from where it was sent aside: whom somebody else has moved, or drives, stays where that leads.
+back when nobody has claimed its place for a while and nobody stands there: else two robots that meet at one place stand
+off for ever, one making way and coming back, as soon as the other is heard late. It comes back only from where it was
+sent aside: whom somebody else has moved, or drives, stays where that leads.
 """
 
 from __future__ import annotations
@@ -19,6 +21,8 @@ _HELD_UP_S = 1.0
 """A robot that is to go and hardly does for so long is held up."""
 _SLOW = 0.1
 """Share of its speed below which a robot hardly goes."""
+_KEEPS_AWAY_S = 3.0
+"""Seconds for which one that made room stays away after its place was last claimed."""
 _AHEAD_M = 3.0
 """Metres ahead of a robot that is held up, within which robots that stand yield."""
 _DIRECTIONS, _RINGS = 24, 8
@@ -70,6 +74,7 @@ class Yielding:
         self._posts: dict[str, Place] = {}  # from where a robot was sent aside last
         self._trips: dict[str, _Trip] = {}  # of those that are on their way aside, there, or on their way back
         self._slow_since: dict[str, float] = {}
+        self._claimed_s: dict[str, float] = {}  # when the place of a robot was claimed last
 
     def arranged(self, now: float, team: Sequence[SteeredRobot]) -> list[SteeredRobot]:
         """The team with aims for those that wait and are in the way, or are to come back.
@@ -80,7 +85,7 @@ class Yielding:
             seconds of any clock that does not go back.
         """
         claims = [claim for steered in team if steered.aim is not None for claim in self._claims(now, steered)]
-        return [self._moved(steered, team, claims) if steered.waits else self._busy(steered) for steered in team]
+        return [self._moved(now, steered, team, claims) if steered.waits else self._busy(steered) for steered in team]
 
     def _busy(self, steered: SteeredRobot) -> SteeredRobot:
         self._forget(steered)
@@ -89,6 +94,7 @@ class Yielding:
     def _forget(self, steered: SteeredRobot) -> None:
         self._posts.pop(steered.robot.id, None)
         self._trips.pop(steered.robot.id, None)
+        self._claimed_s.pop(steered.robot.id, None)
 
     def _claims(self, now: float, steered: SteeredRobot) -> Iterator[_Claim]:
         """Where it is to go, and if it is held up the ground before it."""
@@ -103,13 +109,19 @@ class Yielding:
             x, y = (a + share * (b - a) for a, b in zip(steered.position[:2], steered.aim.position[:2], strict=True))
             yield _Claim(robot, steered.position, (x, y, steered.position[2]))
 
-    def _moved(self, steered: SteeredRobot, team: Sequence[SteeredRobot], claims: Sequence[_Claim]) -> SteeredRobot:
+    def _moved(
+        self, now: float, steered: SteeredRobot, team: Sequence[SteeredRobot], claims: Sequence[_Claim]
+    ) -> SteeredRobot:
         name = steered.robot.id
         if self._strays(steered):
             self._forget(steered)
         trip, post = self._trips.get(name), self._posts.get(name, steered.position)
-        if not self._in_the_way(steered, post, claims):
-            return steered if trip is None else self._back(steered, trip, post)
+        if self._in_the_way(steered, post, claims):
+            self._claimed_s[name] = now
+        elif trip is None:
+            return steered
+        elif self._may_come_back(now, steered, post, team):
+            return self._back(steered, trip, post)
         if trip is None or self._in_the_way(steered, trip.end, claims):
             aside = self._place_for(steered, post, team, claims)
             if aside is None:
@@ -120,6 +132,17 @@ class Yielding:
         if arrived:
             self._trips[name] = _Trip(trip.end, trip.end)
         return replace(steered, aim=Waypoint(trip.end), arrived=arrived)
+
+    def _may_come_back(self, now: float, steered: SteeredRobot, post: Place, team: Sequence[SteeredRobot]) -> bool:
+        """Whether its place has not been claimed for a while, and nobody is on it; or it is on its way already."""
+        name = steered.robot.id
+        if self._trips[name].end == post:
+            return True
+        others = [other for other in team if other.robot.id != name]
+        taken = any(
+            math.dist(post[:2], other.position[:2]) < self._apart_m(steered.robot, other.robot) for other in others
+        )
+        return not taken and now - self._claimed_s.get(name, -math.inf) >= _KEEPS_AWAY_S
 
     def _back(self, steered: SteeredRobot, trip: _Trip, post: Place) -> SteeredRobot:
         """On its way back, to its post; it stays where others have led it from where there is no straight way."""

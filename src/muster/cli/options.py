@@ -15,6 +15,7 @@ from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
+from muster.motion.avoidance_names import AUTO, AVOIDANCE
 
 if TYPE_CHECKING:
     from muster.verification import Verdict
@@ -179,17 +180,14 @@ def objective_option(verb: Verb) -> Verb:
     return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
 
 
-AVOIDANCE = ("orca", "rvo", "hrvo", "avo", "none")
-
-
 def avoidance_option(verb: Verb) -> Verb:
     """--avoidance."""
     return click.option(
         "--avoidance",
         type=click.Choice(AVOIDANCE),
-        default="orca",
+        default=AUTO,
         show_default=True,
-        help="How robots pass each other.",
+        help="How robots pass each other; auto: simulated in the plane by rvo, else by orca.",
     )(verb)
 
 

@@ -14,7 +14,10 @@ from muster.mission.model import Mission, Tag
 _NEAR_M = 1.0
 """What was found farther from a tag is another one."""
 _SHOWN_S = 0.01  # by which waiting differs in what is printed
+_MOST_HELD_UP = 5
+"""Rows of waiting in traffic that are printed."""
 _CAUSES = {
+    "traffic": "other robots",
     "prerequisite": "prerequisites",
     "window": "time windows",
     "lag": "lags",
@@ -44,7 +47,9 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
         rows = [(*row, _charge(of)) for row, of in zip(rows, report["robots"], strict=True)]
     print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
+    _print_orders(report.get("orders"))
     _print_lateness(report)
+    _print_traffic(report)
     if report.get("reallocations"):
         of_tasks = "; of tasks by the one in force then" if with_tasks else ""
         click.echo(f"planned           of robots: by the plan that the mission began with{of_tasks}")
@@ -70,7 +75,9 @@ def _how(report: Report) -> str:
 
 
 def _print_figures(report: Report, mission: Mission, unit: str) -> None:
-    done, lost = len(report.get("tasks_done", ())), len(report.get("tasks_lost", ()))
+    forgotten = report.get("tasks_forgotten", {})
+    done = len(report.get("tasks_done", ())) + forgotten.get("done", 0)
+    lost = len(report.get("tasks_lost", ())) + forgotten.get("lost", 0) + forgotten.get("cancelled", 0)
     known = max(done + lost, len(mission.tasks))  # more than these two if it was interrupted
     for name, value in (
         ("mission time", f"{number(report.get('mission_time_s'))} s"),
@@ -81,6 +88,29 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
         ("planned again", counted(report.get("reallocations", 0), "time")),
     ):
         click.echo(f"{name:<17} {value}")
+
+
+def _print_orders(orders: Report | None) -> None:
+    """Print what became of tasks that came while the mission was carried out, and how fast."""
+    if not orders:
+        return
+    fates = {name: orders.get(name, 0) for name in ("done", "open", "cancelled", "lost", "refused")}
+    came_to = ", ".join(f"{count} {name}" for name, count in fates.items() if count)
+    rows = {
+        "orders": f"{orders['taken']}: {came_to or 'none done'}; {orders['done_per_hour']:g} done an hour",
+        "in a route after": _seconds(orders["until_in_route"]),
+        "done after": _seconds(orders["until_done"]),
+        "clock behind by": _seconds(orders["clock_lag"]) if orders.get("clock_lag") else "",
+    }
+    for name, value in rows.items():
+        if value:
+            click.echo(f"{name:<17} {value}")
+
+
+def _seconds(figures: Report) -> str:
+    """What half of all, 95 % of them, and the longest took."""
+    median, p95, most = (number(figures[key]) for key in ("median_s", "p95_s", "most_s"))
+    return f"{median} s (median), {p95} s (95 %), {most} s (at most)"
 
 
 def _waiting(report: Report) -> str:
@@ -104,6 +134,27 @@ def _print_lateness(report: Report) -> None:
     rows = [(row["task"], number(row.get("at_s")), str(row.get("reason", "-"))) for row in report.get("missed", ())]
     if rows:
         print_table(("task not begun in time", "at [s]", "reason"), rows, right=("at [s]",))
+
+
+def _print_traffic(report: Report) -> None:
+    """Print who held up whom in traffic, the longest waiting first."""
+    found = report.get("traffic", ())
+    rows = [
+        (
+            row["robot"],
+            row["waits_for"],
+            number(row.get("waiting_s")),
+            str(row.get("times", "-")),
+            number(row.get("longest_s")),
+            ", ".join(number(value) for value in row.get("position", ())[:2]),
+        )
+        for row in found[:_MOST_HELD_UP]
+    ]
+    if rows:
+        columns = ("waits in traffic", "for", "waited [s]", "times", "longest [s]", "there at [m]")
+        print_table(columns, rows, right=columns[2:5])
+    if len(found) > len(rows):
+        click.echo(f"{'in traffic':<17} and {counted(len(found) - len(rows), 'more pair')} of robots")
 
 
 def _nearness(report: Report) -> str:

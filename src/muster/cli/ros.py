@@ -34,6 +34,7 @@ from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
+from muster.motion.avoidance_names import AUTO
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
@@ -174,7 +175,7 @@ def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
 
 def _require_steering(drive: str, avoidance: str) -> None:
     """Refuse --avoidance for robots that find their way themselves."""
-    if drive == "goals" and avoidance != "orca":
+    if drive == "goals" and avoidance not in (AUTO, "orca"):
         raise ParameterError(f"--avoidance {avoidance} with --drive goals; expected --drive cmd_vel")
 
 

@@ -258,6 +258,8 @@ void bind_crowd_world(nb::module_& m) {
             return std::tuple(e.sum, e.most, e.steps);
           },
           "robot"_a, "Metres off its trajectory: the sum over steps in which it followed it, the most, the steps.")
+      .def("held_up_by", &CrowdWorld::held_up_by, "robot"_a,
+           "The robot that holds one up on the way of its order; -1 where none does.")
       .def(
           "busy", [](const CrowdWorld& w, int robot) { return w.robots()[robot].phase != Phase::idle; }, "robot"_a)
       .def("positions",

@@ -1,7 +1,8 @@
-// How near the robots of a simulated crowd come to each other, within steps too.
+// How near the robots of a simulated crowd come to each other, within steps too, and who holds up whom.
 #include <algorithm>
 
 #include "approach.hpp"
+#include "course.hpp"
 #include "crowd_world.hpp"
 
 namespace muster {
@@ -9,6 +10,8 @@ namespace muster {
 namespace {
 
 constexpr double kOverlap = 1e-9;  // metres: what is less is rounding
+constexpr double kHardly = 0.1;    // share of its top speed below which a robot hardly gets on
+constexpr double kBeside = 0.1;    // metres between two bodies that hinder each other
 
 }  // namespace
 
@@ -43,6 +46,34 @@ void CrowdWorld::measure(int i, int k) {
   const std::pair pair(std::min(i, k), std::max(i, k));
   const auto [contact, first] = contacts_.try_emplace(pair, CrowdContact{time(), distance});
   contact->second.distance = std::min(contact->second.distance, distance);
+}
+
+int CrowdWorld::held_up_by(int i) const {
+  const CrowdRobot& robot = robots_[i];
+  if (robot.phase != Phase::going || !robot.turned_aside || robot.approach >= kHardly * robot.top_speed()) return -1;
+  const double stop = Braking{settings_.dt, robot.body.acceleration}.distance(robot.top_speed());
+  const Vec<3> way = robot.goal() - robot.position;
+  const double far = norm(way), share = far > 0.0 ? std::min(1.0, (stop + robot.body.radius) / far) : 0.0;
+  int ahead = -1, beside = -1;
+  double nearest_ahead = kBeside, nearest = stop + robot.body.radius;
+  for (int k = 0; k < static_cast<int>(robots_.size()); ++k) {
+    const CrowdRobot& other = robots_[k];
+    if (k == i || other.body.radius == 0.0) continue;
+    const double both = robot.body.radius + other.body.radius;
+    const double gap = norm(other.position - robot.position) - both;
+    if (gap < nearest) {
+      nearest = gap;
+      beside = k;
+    }
+    if (dot(other.position - robot.position, way) <= 0.0) continue;
+    const Vec<3> closest = closest_on_piece(other.position, robot.position, robot.position + share * way);
+    const double clear = norm(other.position - closest) - both;
+    if (clear < nearest_ahead) {
+      nearest_ahead = clear;
+      ahead = k;
+    }
+  }
+  return ahead >= 0 ? ahead : beside;
 }
 
 }  // namespace muster

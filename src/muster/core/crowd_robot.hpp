@@ -137,6 +137,7 @@ struct CrowdRobot {
   double wheel_way = kNoWheels, wheel_turn = kNoWheels;  // by encoders, in this step
 
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
+  double approach = 0.0;      // m/s by which it comes nearer to its way point, over about the last half second
   Patience patience;
   Trail trail;
   bool arrives = false;         // whether its way point is close by, and nobody on it

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kAside = 0.05;    // share of the top speed by which a velocity differs from one that is followed
 constexpr double kTurned = 0.01;   // radians: the laws of [tcf-thesis] never turn a robot exactly to a heading
+constexpr double kAlmost = 4.0;    // radii from its way point within which one goes there whoever stands behind it;
+                                   // ORCA looks no farther ahead than it has to
+constexpr double kApproach = 0.5;  // seconds over which an approach is a mean
 constexpr double kWallsFor = 1.0;  // metres for which the walls once collected are enough
 constexpr std::uint64_t kWheels = 0x5eed0fc0de0d0e7cULL;  // what wheels do by themselves is drawn apart from the rest
 
@@ -60,6 +63,7 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.patience = {};
   robot.trail = {robot.position, {}, false};
   robot.waits = false;
+  robot.approach = 0.0;
   robot.asked_until = kNever;
   robot.aside.clear();
 }
@@ -187,7 +191,8 @@ void CrowdWorld::want(const AgentTree<3>& tree) {
   for (std::size_t i = 0; i < n; ++i) course_[i] = course(robots_[i]);
   wanted_ = course_;
   if (settings_.avoidance == Avoidance::none) return;
-  const Manners manners(robots_, walls_, tree, time(), settings_.dt, settings_.space);
+  const double almost = settings_.avoidance == Avoidance::orca ? 1.0 : kAlmost;
+  const Manners manners(robots_, walls_, tree, time(), settings_.dt, settings_.space, almost);
   for (int i = 0; i < static_cast<int>(n); ++i) {
     if (robots_[i].is_away(time())) wanted_[i] = course_[i] = manners.course_without_order(i);
     if (course_[i] != Vec<3>{} && robots_[i].body.radius > 0.0) wanted_[i] = manners.wanted(i, course_[i]);
@@ -284,6 +289,9 @@ void CrowdWorld::take_note(int i) {
     robot.errors = {robot.errors.sum + error, std::max(robot.errors.most, error), robot.errors.steps + 1};
   }
   if (robot.phase == Phase::going) {
+    const Vec<3>& goal = robot.goal();
+    const double nearer = (norm(goal - before_[i]) - norm(goal - robot.position)) / settings_.dt;
+    robot.approach += std::min(1.0, settings_.dt / kApproach) * (nearer - robot.approach);
     while (robot.phase == Phase::going && passes(robot, before_[i], settings_.tolerances, settings_.dt)) {
       if (robot.way[robot.next].stops())
         robot.phase = Phase::turning;

@@ -102,6 +102,9 @@ class CrowdWorld {
 
   Felt felt(int i) const;
   Counted counted(int i) const;
+  // The robot that holds up robot i on the way of its order, -1 where none does: i hardly gets on, as others turn it
+  // aside, and this is the nearest ahead, or else the nearest.
+  int held_up_by(int i) const;
 
   double time() const { return settings_.dt * static_cast<double>(steps_); }
   double dt() const { return settings_.dt; }

@@ -76,11 +76,12 @@ Vec<3> Trail::aim(const CrowdRobot& robot) const {
 }
 
 Manners::Manners(std::vector<CrowdRobot>& robots, const std::vector<WallSet>& walls, const AgentTree<3>& tree,
-                 double time, double dt, bool space)
+                 double time, double dt, bool space, double almost)
     : robots_(robots),
       tree_(tree),
       time_(time),
       dt_(dt),
+      almost_(almost),
       largest_radius_(largest_radius(robots)),
       room_(robots, walls, tree, largest_radius_, space) {}
 
@@ -121,8 +122,8 @@ Vec<3> Manners::wanted_under_way(int i, const Vec<3>& course, const std::vector<
   const bool yields = std::any_of(near.begin(), near.end(), [&](int k) {
     return on_way_point(k) && robots_[k].has_time() && !robots_[k].aside.empty();
   });
-  const bool almost_there =
-      norm(goal - robot.position) < robot.body.radius && std::none_of(near.begin(), near.end(), on_way_point);
+  const bool almost_there = norm(goal - robot.position) < almost_ * robot.body.radius &&
+                            std::none_of(near.begin(), near.end(), [&](int k) { return is_before(i, k); });
   const bool impatient = robot.patience.stuck > (almost_there ? kYields : kPatience);
   robot.arrives = almost_there && !impatient;
   if (yields && robot.patience.stuck < kYields) return {};
@@ -190,6 +191,15 @@ Vec<3> Manners::wanted_back(CrowdRobot& robot, const Vec<3>& course) const {
   if (robot.trail.back) return straight_to(robot, aim, dt_);
   robot.patience = {};
   return course;
+}
+
+// Robot i would touch k on the straight way to its way point.
+bool Manners::is_before(int i, int k) const {
+  const CrowdRobot &robot = robots_[i], &other = robots_[k];
+  if (other.body.radius == 0.0) return false;
+  const double now = norm(other.position - robot.position);
+  const Vec<3> closest = closest_on_piece(other.position, robot.position, robot.goal());
+  return norm(closest - other.position) < std::min(robot.body.radius + other.body.radius, now - kOnPiece);
 }
 
 bool Manners::is_on(int k, const Vec<3>& place, double radius) const {

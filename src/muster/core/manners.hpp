@@ -20,7 +20,7 @@ namespace muster {
 class Manners {
  public:
   Manners(std::vector<CrowdRobot>& robots, const std::vector<WallSet>& walls, const AgentTree<3>& tree, double time,
-          double dt, bool space);
+          double dt, bool space, double almost);
 
   // The velocity with which robot i, which is away from its post or asked to leave it, would go if it were alone.
   Vec<3> course_without_order(int i) const;
@@ -35,11 +35,13 @@ class Manners {
   Vec<3> wanted_under_way(int i, const Vec<3>& course, const std::vector<int>& near) const;
   Vec<3> wanted_back(CrowdRobot& robot, const Vec<3>& course) const;
   Vec<3> wanted_aside(int i, const Vec<3>& course, const std::vector<int>& near) const;
+  bool is_before(int i, int k) const;
   bool is_on(int k, const Vec<3>& place, double radius) const;
 
   std::vector<CrowdRobot>& robots_;
   const AgentTree<3>& tree_;
   double time_, dt_;
+  double almost_;  // radii from its way point within which a robot is almost there
   double largest_radius_;
   MakingRoom room_;
 };

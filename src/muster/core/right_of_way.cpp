@@ -10,6 +10,7 @@ namespace muster {
 namespace {
 
 constexpr double kRounding = 1e-10;  // metres
+constexpr double kCreep = 5e-10;     // metres: two that push each other would come nearer by rounding in every step
 constexpr double kTouch = 1e-4;      // metres by which a body may lie on a wall: paths of a map lead along it exactly
 constexpr int kHalvings = 20;
 constexpr double kStraight = -1.0;
@@ -57,7 +58,8 @@ void RightOfWay::look_at_robots(int i) {
     const double braked = stopping(i, own.straight, {}, towards);
     const double gap = distance - own.radius - other.radius - clearance_;
     const double left = gap - braked - stopping(k, other.straight, {}, -1.0 * towards);
-    limits_.push_back({towards, braked + (other.stands ? 1.0 : 0.5) * std::max(0.0, left)});
+    limits_.push_back(
+        {towards, braked + (other.stands ? 1.0 : 0.5) * std::max(0.0, left), left > -kCreep ? kRounding : 0.0});
   }
 }
 
@@ -67,19 +69,19 @@ void RightOfWay::look_at_walls(int i) {
   const auto consider = [&](const Vec<3>& closest) {
     const double distance = norm(closest - p);
     if (distance > 0.0)
-      limits_.push_back({(1.0 / distance) * (closest - p), std::max(0.0, distance - own.radius + kTouch)});
+      limits_.push_back({(1.0 / distance) * (closest - p), std::max(0.0, distance - own.radius + kTouch), kRounding});
   };
   for (const Upright& face : *own.faces) consider(face.closest(p));
   for (const Slab& slab : own.walls->slabs)
     if (slab.covers(p)) consider(slab.closest(p));
   if (std::isfinite(own.walls->ground))
-    limits_.push_back({Vec<3>{{0.0, 0.0, -1.0}}, std::max(0.0, p[2] - own.walls->ground)});
+    limits_.push_back({Vec<3>{{0.0, 0.0, -1.0}}, std::max(0.0, p[2] - own.walls->ground), kRounding});
 }
 
 bool RightOfWay::allowed(int i, double share) const {
   const Vec<3> velocity = choices_[i].at(share);
   return std::all_of(limits_.begin(), limits_.end(), [&](const Limit& limit) {
-    return stopping(i, velocity, choices_[i].after, limit.towards) <= limit.most + kRounding;
+    return stopping(i, velocity, choices_[i].after, limit.towards) <= limit.most + limit.rounding;
   });
 }
 

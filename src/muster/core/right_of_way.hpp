@@ -41,6 +41,7 @@ class RightOfWay {
   struct Limit {
     Vec<3> towards;
     double most;
+    double rounding;  // by which it may be more
   };
   void look_at_robots(int i);
   void look_at_walls(int i);

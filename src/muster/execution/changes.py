@@ -87,7 +87,7 @@ class Changes:
         """Exclude a robot: its tasks are free, the current one too."""
         if state.out == FAILED or (state.out and why != FAILED):
             return
-        state.out, state.out_s = why, now
+        state.out, state.out_s, state.out_at = why, now, state.position
         broken: tuple[str, ...] = ()
         if state.activity is Activity.WORKING:
             broken = break_off(self.crew, self.ledger, state.route[0], now)
@@ -99,13 +99,13 @@ class Changes:
             if len(self.ledger.unit(task)) > 1 or self.ledger.tasks[task].is_for_team:
                 yield Change("work_broken_off", {"task": task, "robot": state.robot.id})
 
-    def readmit(self, state: RobotState, now: float) -> Iterator[Change]:
+    def readmit(self, state: RobotState, now: float, reason: str = "") -> Iterator[Change]:
         """Let a robot take part again, from where it is."""
         if state.out:
             state.out, state.last_heard_s, state.stuck_before = "", now, False
             self.ledger.unblock(state.robot.id)
             state.stop(now)
-            yield Change("robot_returns", {"robot": state.robot.id})
+            yield Change("robot_returns", {"robot": state.robot.id} | ({"reason": reason} if reason else {}))
 
     def require_newcomer(self, robot: Robot) -> None:
         """Raise ParameterError where a robot cannot join: its id is taken, or it does not fit the mission."""

@@ -1,22 +1,22 @@
 """The monitor's findings about a robot: it is silent, it makes no progress, or it will use more than its capacity.
 
-A robot that others hold up who are at work does not count as stuck, however long they take.
+A robot that waits in traffic does not count as stuck, however long that takes (`traffic_waits`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
-from muster.execution.robot_state import MOVING, Activity, RobotState
+from muster.execution.robot_state import Activity, RobotState
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.port import Place
 
 _ROUNDING = 1e-6  # relative and absolute; by how much usage may be above capacity
-_ASIDE_M = 0.05  # by which a robot said to be before another may be aside
+_MOVED_M = 0.2  # by which one that was stuck has to be elsewhere, at least
 _LEAST_SHARE = 0.05  # of its speed, with which a robot gets on
 
 
@@ -29,19 +29,27 @@ class Limits:
     silent_after_s
         a robot that has said nothing new for longer counts as silent.
     stuck_after_s
-        a robot that gets on by less than a twentieth of its speed for so long is sent again, and the next time out.
+        a robot that gets on by less than a twentieth of its speed for so long, while nobody is in its way, is sent
+        again, and the next time out.
+    aside_after_s, aside_s
+        of robots that hold each other up for so long one after the other stands aside for a while.
+    jam_after_s
+        a jam that lasts longer is told; when it has lasted twice as long, one of its robots gives up its task.
     look_every_s
         how often robots are looked at; at most as often as the executor ticks.
     """
 
     silent_after_s: float = 5.0
     stuck_after_s: float = 30.0
+    aside_after_s: float = 5.0
+    aside_s: float = 5.0
+    jam_after_s: float = 30.0
     look_every_s: float = 0.5
 
     def __post_init__(self) -> None:
-        for name in ("silent_after_s", "stuck_after_s", "look_every_s"):
-            if not getattr(self, name) > 0:
-                raise ParameterError(f"{name}: {getattr(self, name)}; expected seconds above 0")
+        for name, seconds in asdict(self).items():
+            if not seconds > 0:
+                raise ParameterError(f"{name}: {seconds}; expected seconds above 0")
 
 
 def is_silent(state: RobotState, now: float, limits: Limits) -> bool:
@@ -62,41 +70,12 @@ def is_stuck(state: RobotState, now: float, limits: Limits) -> bool:
     return now - state.nearest_s > limits.stuck_after_s * (2 if arrives else 1)
 
 
-def seems_late(state: RobotState, now: float, limits: Limits) -> bool:
-    """Whether a robot may soon count as stuck."""
-    works_s = state.work_s if state.activity is Activity.WORKING else 0.0
-    return state.activity in MOVING and now > state.nearest_s + works_s + limits.stuck_after_s / 2
-
-
-def held_up(crew: Sequence[RobotState]) -> list[RobotState]:
-    """Robots under way that are blocked by a robot at work, or by one that is blocked itself.
-
-    Of two that stand close to their way points at work, the one that is nearer to its own holds the other up.
-    """
-    under_way = [state for state in crew if state.activity in MOVING and state.points_left and state.robot.radius_m > 0]
-    stand = [state for state in under_way if _stands_at_work(state)]
-    held: list[RobotState] = []
-    for one in stand:  # grows
-        reached = [state for state in under_way if state not in held and state is not one and _is_before(one, state)]
-        reached = [state for state in reached if state not in stand or _off(state) > _off(one)]
-        stand += [state for state in reached if state not in stand]
-        held += reached
-    return held
-
-
-def _stands_at_work(state: RobotState) -> bool:
-    still = state.telemetry is not None and not any(state.telemetry.velocity)
-    return state.activity is Activity.WORKING and still and _off(state) <= state.robot.radius_m
-
-
-def _off(state: RobotState) -> float:
-    return math.dist(state.position, state.points_left[0])
-
-
-def _is_before(other: RobotState, state: RobotState) -> bool:
-    """Whether a robot cannot get to its next way point without touching another where that is now."""
-    reach = state.robot.radius_m + other.robot.radius_m + _ASIDE_M
-    return distance_to_piece(other.position, state.position, state.points_left[0]) < reach
+def moves_again(state: RobotState) -> bool:
+    """Whether a robot that was put out is elsewhere by now, farther than it took to brake."""
+    if state.out_at is None:
+        return False
+    braking_m = state.robot.speed_mps**2 / (2 * limits_of(state.robot).acceleration_mps2)
+    return math.dist(state.position, state.out_at) > braking_m + max(_MOVED_M, state.robot.radius_m)
 
 
 def distance_to_piece(point: Place, start: Place, end: Place) -> float:

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
+from muster.execution.orders import OrdersReport
 from muster.execution.task_ledger import Ledger
+from muster.execution.traffic_waits import TrafficAccount
 from muster.mission.data_frames import data_frame
 from muster.mission.html_tables import html_line, html_table
 from muster.mission.objectives import lateness, objective_values
@@ -35,6 +37,10 @@ class Account:
         by robot how long it was under way after its shift, of those that were.
     back_s
         when robots were back, where that counts for the makespan.
+    traffic
+        who held up whom in traffic.
+    orders
+        of a mission in which tasks came on the way.
     """
 
     objective: str
@@ -49,6 +55,8 @@ class Account:
     charges: Mapping[str, float] = field(default_factory=dict)
     shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
+    traffic: TrafficAccount = field(default_factory=TrafficAccount)
+    orders: OrdersReport | None = None
 
 
 @dataclass(frozen=True)
@@ -121,6 +129,21 @@ class FoundReport:
 
 
 @dataclass(frozen=True)
+class TrafficReport:
+    """For how long in all, how often and for how long at most one robot waited in traffic for another.
+
+    `position` is where the robot stood that waited the longest time.
+    """
+
+    robot: str
+    waits_for: str
+    waiting_s: float
+    times: int
+    longest_s: float
+    position: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class MissedReport:
     """A task that was not begun in time, noticed at `at_s`; `next_s` is when it still could begin, None: never."""
 
@@ -145,11 +168,13 @@ class Report:
         how often two robots touched, and the least distance between their centres, None for one robot; both None where
         nobody measured it.
     waiting_s
-        seconds that robots waited at tasks done, in all.
+        seconds that robots waited, in all: at tasks done, and in traffic.
+    traffic
+        who held up whom in traffic, the longest waiting first.
     waiting_by_cause_s
-        seconds that robots waited at tasks, done or not, by cause, where a task has a rule about time or teams:
-        `prerequisite`, `window`, `lag`, `team`, `start` (of a task that begins with it), `dependant` (so that another
-        task can begin soon enough after it).
+        seconds that robots waited, by cause: `traffic`; and at tasks, done or not, where a task has a rule about time
+        or teams: `prerequisite`, `window`, `lag`, `team`, `start` (of a task that begins with it), `dependant` (so that
+        another task can begin soon enough after it).
     lateness_s
         by how much tasks done ended after their due times, in all.
     missed
@@ -168,6 +193,11 @@ class Report:
         by task that several robots have begun, as they could not hear each other, these robots.
     found
         what cameras found, in order of time.
+    orders
+        figures of tasks that came while it was carried out; None: none did.
+    tasks_forgotten
+        how many tasks done, cancelled and lost are not listed, as a standing fleet keeps its last ones alone; sums
+        such as `waiting_s`, and the objective, are of all.
     remarks
         what else a person should hear of.
     """
@@ -192,13 +222,17 @@ class Report:
     deadlines_missed_s: dict[str, float] = field(default_factory=dict)
     within_exceeded_s: dict[str, float] = field(default_factory=dict)
     shifts_exceeded_s: dict[str, float] = field(default_factory=dict)
+    traffic: tuple[TrafficReport, ...] = ()
+    orders: OrdersReport | None = None
+    tasks_forgotten: dict[str, int] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """What `muster simulate --format json` prints."""
         lost = [{"task": task, "reason": reason} for task, reason in self.tasks_lost]
         rows: dict[str, list[dict[str, Any]]] = {
-            name: [asdict(row) for row in getattr(self, name)] for name in ("robots", "tasks", "found", "missed")
+            name: [asdict(row) for row in getattr(self, name)]
+            for name in ("robots", "tasks", "found", "missed", "traffic")
         }
         for row in rows["tasks"]:
             row["team"] = list(row["team"])
@@ -247,7 +281,7 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         tasks_lost=tuple(account.lost.items()),
         contacts=contacts,
         min_distance_m=min_distance_m,
-        waiting_s=ledger.waiting_s,
+        waiting_s=ledger.waiting_s + account.traffic.waiting_s,
         reallocations=account.reallocations,
         robots=tuple(
             RobotReport(robot, account.usage_planned.get(robot, 0.0), used, account.charges.get(robot))
@@ -257,13 +291,16 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         ends_s={task: ledger.ends_s[task] for task in done},
         objective=_objective(account),
         tasks=tuple(_task(ledger, task) for task in done),
-        waiting_by_cause_s=_waiting_by_cause(ledger),
-        lateness_s=sum(ledger.late_s(task) for task in done),
+        waiting_by_cause_s=_waiting_by_cause(account),
+        traffic=_traffic(account.traffic),
+        lateness_s=ledger.retired.lateness_s + sum(ledger.late_s(task) for task in done),
         missed=tuple(MissedReport(one.task, one.at_s, one.reason, one.next_s) for one in ledger.missed),
         deadlines_missed_s={task: ledger.overdue_s(task) for task in done if ledger.overdue_s(task) > 0},
         within_exceeded_s={task: ledger.begun_too_late_s(task) for task in done if ledger.begun_too_late_s(task) > 0},
         shifts_exceeded_s=dict(account.shifts_exceeded_s),
         done_twice=dict(account.done_twice),
+        orders=account.orders,
+        tasks_forgotten=_forgotten(ledger),
     )
 
 
@@ -285,17 +322,36 @@ def _task(ledger: Ledger, task: str) -> TaskReport:
     )
 
 
-def _waiting_by_cause(ledger: Ledger) -> dict[str, float]:
-    causes: dict[str, float] = {}
+def _traffic(account: TrafficAccount) -> tuple[TrafficReport, ...]:
+    rows = [
+        TrafficReport(robot, other, pair.waiting_s, pair.times, pair.longest_s, pair.place)
+        for (robot, other), pair in account.pairs.items()
+    ]
+    return tuple(sorted(rows, key=lambda row: (-row.waiting_s, row.robot, row.waits_for)))
+
+
+def _waiting_by_cause(account: Account) -> dict[str, float]:
+    ledger = account.ledger
+    causes = dict(ledger.retired.waits_s)
+    if account.traffic.pairs:
+        causes["traffic"] = account.traffic.waiting_s
     for by_cause in ledger.waits_s.values():
         for cause, seconds in by_cause.items():
             causes[cause] = causes.get(cause, 0.0) + seconds
     return dict(sorted(causes.items()))
 
 
+def _forgotten(ledger: Ledger) -> dict[str, int]:
+    sums = ledger.retired
+    return {name: count for name in ("done", "cancelled", "lost") if (count := getattr(sums, name))}
+
+
 def _objective(account: Account) -> ObjectiveReport:
-    ledger = account.ledger
+    ledger, sums = account.ledger, account.ledger.retired
     arrivals = [ledger.arrival_usage[task] for task in ledger.ends_s]
     late = lateness((ledger.tasks[task].priority, end, ledger.tasks[task].due_s) for task, end in ledger.ends_s.items())
-    flown = objective_values(account.used.values(), arrivals, [*ledger.ends_s.values(), *account.back_s], late)
+    ends_s = [*ledger.ends_s.values(), sums.last_end_s, *account.back_s]
+    flown = objective_values(account.used.values(), arrivals, ends_s, late + sums.lateness)
+    if sums.done:
+        flown["average"] = (sum(arrivals) + sums.arrival_usage) / (len(arrivals) + sums.done)
     return ObjectiveReport(account.objective, account.objective_planned, flown[account.objective])

@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from itertools import takewhile
 
 from muster.execution.task_motion import Work, path_length, place
 from muster.mission.model import Robot
@@ -59,6 +60,8 @@ class RobotState:
     done: list[str] = field(default_factory=list)
     out: str = ""
     out_s: float = 0.0  # since when
+    out_at: Place | None = None  # where it was then
+    aside_until_s: float = -math.inf  # until when it stands aside for others in a jam
     activity: Activity = Activity.IDLE
     telemetry: Telemetry | None = None
     work: Work | None = None  # at state
@@ -77,7 +80,7 @@ class RobotState:
     usage_to_task: float = 0.0  # from then to the end of the current task, as planned
     busy_s: float = 0.0
     since_s: float = 0.0  # up to when `busy_s` counts
-    nearest_m: float = math.inf  # least way left of this order, and when it was reached, or others last held it up
+    nearest_m: float = math.inf  # least way left of this order, and when it was reached, or it last waited in traffic
     nearest_s: float = 0.0
     stuck_before: bool = False
     warned_of: str = ""  # the task on the way to which its capacity was found too small
@@ -100,6 +103,11 @@ class RobotState:
     def refuge(self) -> Place:
         """A place near by that is known to be free."""
         return self.left if self.left is not None else place(self.robot.position)
+
+    @property
+    def order(self) -> int:
+        """The number of its last order."""
+        return self._order
 
     @property
     def passed(self) -> int:
@@ -176,8 +184,13 @@ class RobotState:
 
     @property
     def way_left_m(self) -> float:
-        """Metres of the last order that it has not travelled."""
-        return path_length(self.position, self._waypoints[self.passed :])
+        """Metres of the last order that it has not travelled, by its own navigation where that tells them."""
+        left = self._waypoints[self.passed :]
+        told = None if self.telemetry is None or self.telemetry.order != self._order else self.telemetry.left_m
+        if told is None or not left:
+            return path_length(self.position, left)
+        marks = sum(1 for _ in takewhile(lambda waypoint: waypoint.via, left))
+        return told + path_length(left[marks].position, left[marks + 1 :])
 
     @property
     def used(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from muster.execution.changes import OUT
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from muster.execution.executor import Executor
 
 TaskState = Literal["open", "under way", "done", "lost", "cancelled"]
+IN_TRAFFIC = "in traffic"
+"""The activity of a robot under way that waits for another."""
 _AT_TASK = (Activity.DRIVING, Activity.WAITING, Activity.WORKING)
 
 
@@ -24,7 +26,8 @@ class RobotStatus:
     Parameters
     ----------
     activity
-        `driving`, `waiting`, `working`, `returning`, `idle`.
+        `driving`, `waiting`, `working`, `returning`, `idle`; `in traffic` where it would drive or work, and waits for
+        another robot that is in its way.
     out
         why it takes no part, in words; empty if it does.
     task
@@ -32,7 +35,10 @@ class RobotStatus:
     waits_for
         the prerequisites for which it waits there.
     waits
-        why it waits there, in words: `waits for window: opens at 600 s`, `waits for team: r_2`; empty if it does not.
+        why it waits, in words: `waits for window: opens at 600 s`, `waits for team: r_2`, `waits in traffic for r_3`;
+        empty if it does not.
+    held_up_by
+        the robot for which it waits in traffic; empty where it does not.
     team
         the robots that do the task together with it, itself included, where they are several.
     route
@@ -56,6 +62,7 @@ class RobotStatus:
     usage_left: float | None
     charge: float | None
     available: bool
+    held_up_by: str = ""
 
 
 @dataclass(frozen=True)
@@ -70,7 +77,11 @@ def status_of(executor: Executor) -> Status:
     """How the mission that is carried out stands."""
     limited = "capacity" not in executor.planned.ignored
     crew = executor.crew
-    robots = {name: _robot(state, crew, executor.ledger, limited=limited) for name, state in crew.items()}
+    traffic = executor.traffic
+    robots = {
+        name: _in_traffic(_robot(state, crew, executor.ledger, limited=limited), traffic.waits_for(name))
+        for name, state in crew.items()
+    }
     return Status(robots, {task: _state(task, executor) for task in executor.ledger.tasks})
 
 
@@ -90,6 +101,12 @@ def _robot(state: RobotState, crew: Mapping[str, RobotState], ledger: Ledger, *,
         charge=state.charge,
         available=state.available,
     )
+
+
+def _in_traffic(robot: RobotStatus, held_up_by: str) -> RobotStatus:
+    if not held_up_by:
+        return robot
+    return replace(robot, activity=IN_TRAFFIC, held_up_by=held_up_by, waits=f"waits in traffic for {held_up_by}")
 
 
 def _wait(state: RobotState, ledger: Ledger) -> str:

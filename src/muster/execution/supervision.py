@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.execution.changes import SILENT, STUCK, Change, Changes
 from muster.execution.dispatch import Dispatch, Emit
-from muster.execution.monitor import Limits, exceeds, held_up, is_silent, is_stuck, seems_late, stands_in_the_way
+from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.execution.task_ledger import Ledger
+from muster.execution.traffic_waits import Progress, TrafficWaits, plain_place
+
+GIVES_UP_AFTER = 4
+"""Times the limit of a jam after which one of its robots gives up its task."""
+LONGEST_ASIDE = 3
+"""Times the first time that a robot stands aside at most."""
 
 
 @dataclass
 class Supervisor:
-    """Notices missed telemetry, way points refused, no progress, and too little capacity.
+    """Notices missed telemetry, way points refused, waiting in traffic, jams, no progress, and too little capacity.
 
     Parameters
     ----------
-    crew, ledger, dispatch, changes
+    crew, ledger, dispatch, changes, traffic
         of the executor.
     capacity
         how much a robot can use; None: any amount.
@@ -34,6 +40,7 @@ class Supervisor:
     ledger: Ledger
     dispatch: Dispatch
     changes: Changes
+    traffic: TrafficWaits
     capacity: Callable[[RobotState], float | None]
     limits: Limits
     emit: Emit
@@ -44,14 +51,18 @@ class Supervisor:
         if now < self.look_s:
             return
         self.look_s = now + self.limits.look_every_s
-        if any(seems_late(state, now, self.limits) for state in self._present):
-            for state in held_up(self._present):
-                state.nearest_s = now
+        for kind, data in self.traffic.look(now):
+            self.emit(kind, data)
+        for robot in self.traffic.waits:
+            self.crew[robot].nearest_s = now
+        yield from self._break_jams(now)
         for state in self._present:
             if is_silent(state, now, self.limits):
                 yield from self.changes.exclude(state, SILENT, now)
             elif state.refused and state.activity in MOVING:
                 yield from self._let_refuse(state, now)
+            elif (broken := self._broken_before(state, now)) is not None:
+                yield from self._give_way_to_broken(state, broken, now)
             elif is_stuck(state, now, self.limits):
                 yield from self._free_or_put_out(state, now)
             elif state.activity is Activity.DRIVING and self.capacity(state) is not None:
@@ -65,15 +76,89 @@ class Supervisor:
         """A robot without progress is sent again, and excluded the next time; not if a failed robot blocks it."""
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, state.robot, state.points_left)), None)
-        if blocking is not None and state.activity is Activity.RETURNING:
-            self.dispatch.end_here(state, now)
-        elif blocking is not None:
-            yield from self._give_up_blocked(state, blocking, now)
+        if blocking is not None:
+            yield from self._give_way_to_broken(state, blocking, now)
         elif state.stuck_before:
-            yield from self.changes.exclude(state, STUCK, now, "no progress")
+            yield from self.changes.exclude(state, STUCK, now, "no progress with nobody in its way")
         else:
             self.emit("robot_sent_again", {"robot": state.robot.id, "reason": "no progress"})
             self.dispatch.again(state, now)
+
+    def _broken_before(self, state: RobotState, now: float) -> RobotState | None:
+        """The robot that is out for which another has waited too long."""
+        other = self.crew.get(self.traffic.waits_for(state.robot.id))
+        too_long = now - self.traffic.progress[state.robot.id].since_s > self.limits.stuck_after_s
+        return other if other is not None and other.out and too_long else None
+
+    def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> Iterator[Change]:
+        if state.activity is Activity.RETURNING:
+            self.dispatch.end_here(state, now)
+        else:
+            yield from self._give_up_blocked(state, broken, now)
+
+    def _break_jams(self, now: float) -> Iterator[Change]:
+        """In a jam one robot after the other stands aside; a long one is told; at last a robot gives up its task."""
+        for jam in self.traffic.jams():
+            members = self.traffic.members(jam)
+            lasted_s, held_s = (min(getattr(one, key) for one in members) for key in ("jammed_s", "held_s"))
+            if lasted_s >= self.limits.jam_after_s and not all(one.told for one in members):
+                self._tell_jam(jam, members, now - lasted_s)
+            if self._steered(members):  # who steers them lets them pass
+                continue
+            if lasted_s >= GIVES_UP_AFTER * self.limits.jam_after_s:
+                for one in members:
+                    one.jammed_s = self.limits.jam_after_s
+                yield from self._give_up_in_jam(self._first_to_yield(members), jam, now)
+            elif held_s >= self._turn(jam, members) * self.limits.aside_after_s:
+                for one in members:
+                    one.held_s = 0.0
+                self._let_stand_aside(self._first_to_yield(members), now)
+
+    def _steered(self, members: Sequence[Progress]) -> bool:
+        """Whether traffic decides who passes first of these robots."""
+        said = [self.crew[one.robot].telemetry for one in members]
+        return any(one is not None and one.waits_for is not None for one in said)
+
+    def _turn(self, jam: Collection[str], members: Sequence[Progress]) -> int:
+        """Which of a jam is the next to stand aside, from 1, as far as its robots do not know of each other.
+
+        Of robots of another crew nothing is known: those that see each other alone take turns by their ids.
+        """
+        strangers = [robot for robot in jam if robot not in self.crew]
+        return 1 + sum(robot < members[0].robot for robot in strangers)
+
+    def _first_to_yield(self, members: Sequence[Progress]) -> RobotState:
+        """Who stands aside next: by turns, first who has no task there, then by priority."""
+
+        def rank(one: Progress) -> tuple[int, bool, float, str]:
+            state = self.crew[one.robot]
+            return one.asides, state.activity is not Activity.RETURNING, state.robot.avoidance_priority, one.robot
+
+        return self.crew[min(members, key=rank).robot]
+
+    def _tell_jam(self, jam: frozenset[str], members: Sequence[Progress], since_s: float) -> None:
+        for robot in jam & self.traffic.progress.keys():
+            self.traffic.progress[robot].told = True
+        place = plain_place(self.crew[members[0].robot].position)
+        self.emit("traffic_jam", {"robots": sorted(jam), "position": place, "since_s": since_s})
+
+    def _let_stand_aside(self, state: RobotState, now: float) -> None:
+        """Longer each time; work is not broken off for that."""
+        robot = state.robot.id
+        progress = self.traffic.progress[robot]
+        progress.asides += 1
+        if state.activity is not Activity.WORKING:
+            self.emit("robot_stands_aside", {"robot": robot, "waits_for": self.traffic.waits[robot].waits_for})
+            aside_s = min(progress.asides, LONGEST_ASIDE) * self.limits.aside_s
+            self.dispatch.stand_aside(state, now + aside_s, now)
+
+    def _give_up_in_jam(self, state: RobotState, jam: Collection[str], now: float) -> Iterator[Change]:
+        if state.activity is Activity.RETURNING:
+            self.dispatch.end_here(state, now)
+        else:
+            others = ", ".join(robot for robot in sorted(jam) if robot != state.robot.id)
+            reason = f"jam: held up by {others} for {GIVES_UP_AFTER * self.limits.jam_after_s:g} s"
+            yield from self.dispatch.refuse(state, state.route[0], reason, now)
 
     def _let_refuse(self, state: RobotState, now: float) -> Iterator[Change]:
         """A robot cannot reach its way point: other robots do the task, or it ends where it is."""

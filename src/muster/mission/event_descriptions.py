@@ -14,6 +14,8 @@ def event_line(kind: str, data: Mapping[str, Any]) -> str:
         return found_line(data)
     if kind == "waits":
         return f"waits: robot {data.get('robot')}, task {data.get('task')}, {data.get('words')}"
+    if kind in _TRAFFIC:
+        return _TRAFFIC[kind](data)
     parts = [f"{key} {_short(value)}" for key, value in data.items() if value not in ({}, [], ())]
     return f"{kind.replace('_', ' ')}: {', '.join(parts)}" if parts else kind.replace("_", " ")
 
@@ -35,6 +37,30 @@ def _replanned(data: Mapping[str, Any]) -> str:
     for words, tasks in (("given up", data.get("dropped", {})), ("nobody can do", data.get("left_out", {}))):
         line += f"; {words}: {', '.join(tasks)}" if tasks else ""
     return line
+
+
+def _waits_in_traffic(data: Mapping[str, Any]) -> str:
+    return f"waits in traffic: robot {data.get('robot')}, for {data.get('waits_for')}, at {_place(data)}"
+
+
+def _goes_on(data: Mapping[str, Any]) -> str:
+    """`goes on: robot r_0, after 12.5 s for r_1, 3.0 s for r_2`."""
+    waits = [f"{seconds:.1f} s for {robot}" for robot, seconds in data.get("waited_s", {}).items()]
+    return f"goes on: robot {data.get('robot')}, after {', '.join(waits)}"
+
+
+def _traffic_jam(data: Mapping[str, Any]) -> str:
+    since_s = data.get("since_s", 0.0)
+    return (
+        f"traffic jam: {', '.join(data.get('robots', ()))} hold each other up at {_place(data)} since {since_s:.1f} s"
+    )
+
+
+def _place(data: Mapping[str, Any]) -> str:
+    return ", ".join(f"{value + 0.0:.2f}" for value in data.get("position", ()))
+
+
+_TRAFFIC = {"waits_in_traffic": _waits_in_traffic, "goes_on": _goes_on, "traffic_jam": _traffic_jam}
 
 
 def _short(value: Any) -> str:

@@ -1,15 +1,17 @@
-"""What robots did over time, from a record's events: spans of travel, waiting and work."""
+"""What robots did over time, from a record's events: spans of travel, waiting, work, and waiting in traffic."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from muster.report.record import ExecutionEvent
 from muster.report.record.mission_state import OUT
 
-TRAVEL, WAITING, WORK = "travel", "waiting", "work"
+TRAVEL, WAITING, WORK, TRAFFIC = "travel", "waiting", "work", "traffic"
 _BEGINS = {"sets_out": TRAVEL, "arrives": WAITING, "starts": WORK, "returns": TRAVEL}
+WAITS_IN_TRAFFIC, GOES_ON = "waits_in_traffic", "goes_on"
 _ENDS = ("ends", "robot_at_end")
 _BREAKS_OFF = (*OUT, "cancel_task", "lost", "work_broken_off")
 
@@ -28,31 +30,85 @@ class Span:
 def spans(events: Sequence[ExecutionEvent], duration_s: float) -> list[Span]:
     """The spans in a record's events, in the order of their ends; of spans without length only work is included.
 
-    A span ends when the robot begins something else, ends the task or fails, when the task is cancelled, lost, or given
-    to another robot or to none by a new plan, and at the latest with the record.
+    Waiting in traffic interrupts travel, and lies upon work. A span ends when the robot begins something else, ends the
+    task or fails, when the task is cancelled, lost, or given to another robot or to none by a new plan, and at the
+    latest with the record.
     """
-    found: list[Span] = []
-    doing: dict[str, tuple[str, str, float]] = {}
-
-    def close(robot: str, until_s: float) -> None:
-        if robot in doing:
-            task, kind, from_s = doing.pop(robot)
-            if until_s > from_s or kind == WORK:
-                found.append(Span(robot, task, kind, from_s, until_s))
-
+    activities = _Activities()
     for event in events:
+        activities.take(event)
+    return activities.ended(duration_s)
+
+
+class _Activities:
+    """What robots do as events tell it, and the spans that are over."""
+
+    def __init__(self) -> None:
+        self._found: list[Span] = []
+        self._doing: dict[str, tuple[str, str, float]] = {}  # robot: task, kind, since when; inf while it is held up
+        self._held_up: dict[str, tuple[str, float]] = {}  # robot: task, since when
+        self._ended_s: dict[str, float] = {}  # when travel ended of a robot that was held up until then, or so
+
+    def take(self, event: ExecutionEvent) -> None:
+        if event.kind == WAITS_IN_TRAFFIC:
+            self._hold_up(str(event.data["robot"]), float(event.data["since_s"]))
+        elif event.kind == GOES_ON:
+            self._let_go(str(event.data["robot"]), float(event.data["until_s"]))
+        else:
+            self._begin_or_end(event)
+
+    def ended(self, duration_s: float) -> list[Span]:
+        """All spans, of a record that ends then."""
+        for robot in list(self._held_up):
+            self._let_go(robot, duration_s)
+        for robot in list(self._doing):
+            self._close(robot, duration_s)
+        return self._found
+
+    def _begin_or_end(self, event: ExecutionEvent) -> None:
         task = event.data.get("task")
         for robot in event.data.get("team") or [str(event.data.get("robot"))]:
             if event.kind in _BEGINS:
-                close(robot, event.time_s)
-                doing[robot] = ("" if task is None else str(task), _BEGINS[event.kind], event.time_s)
+                self._begin(robot, "" if task is None else str(task), _BEGINS[event.kind], event.time_s)
             elif event.kind in _ENDS:
-                close(robot, event.time_s)
-        for one in [name for name, (of, kind, _) in doing.items() if _breaks_off(event, name, of, kind)]:
-            close(one, event.time_s)
-    for one in list(doing):
-        close(one, duration_s)
-    return found
+                self._close(robot, event.time_s)
+        for one in [name for name, (of, kind, _) in self._doing.items() if _breaks_off(event, name, of, kind)]:
+            self._close(one, event.time_s)
+
+    def _begin(self, robot: str, task: str, kind: str, now: float) -> None:
+        self._close(robot, now)
+        still_held_up = kind == TRAVEL and robot in self._held_up
+        if still_held_up:
+            self._ended_s.pop(robot, None)
+        self._doing[robot] = task, kind, math.inf if still_held_up else now
+
+    def _close(self, robot: str, until_s: float) -> None:
+        if robot not in self._doing:
+            return
+        task, kind, from_s = self._doing.pop(robot)
+        if from_s == math.inf:
+            self._ended_s[robot] = until_s
+        elif until_s > from_s or kind == WORK:
+            self._found.append(Span(robot, task, kind, from_s, until_s))
+
+    def _hold_up(self, robot: str, from_s: float) -> None:
+        task, kind, since_s = self._doing.get(robot, ("", WORK, 0.0))
+        self._held_up[robot] = task, max(since_s, from_s)
+        if kind == TRAVEL:
+            self._close(robot, max(since_s, from_s))
+            self._doing[robot] = task, TRAVEL, math.inf
+
+    def _let_go(self, robot: str, until_s: float) -> None:
+        """It goes on with its travel, if that did not end meanwhile."""
+        if robot not in self._held_up:
+            return
+        task, from_s = self._held_up.pop(robot)
+        ended_s = self._ended_s.pop(robot, until_s)
+        self._found.append(Span(robot, task, TRAFFIC, from_s, max(from_s, min(until_s, ended_s))))
+        if robot in self._doing and self._doing[robot][2] == math.inf:
+            self._doing[robot] = *self._doing[robot][:2], until_s
+        elif ended_s > until_s:
+            self._found.append(Span(robot, task, TRAVEL, until_s, ended_s))
 
 
 def _breaks_off(event: ExecutionEvent, robot: str, task: str, kind: str) -> bool:

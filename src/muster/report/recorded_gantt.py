@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from muster.report.activity_spans import TRAVEL, WAITING, WORK, spans
+from muster.report.activity_spans import TRAFFIC, TRAVEL, WAITING, WORK, spans
 from muster.report.canvas import add_legend, add_title, note_entries
 from muster.report.fonts import Names
 from muster.report.record import Recording
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 
 def plot_flown_gantt(recording: Recording) -> Axes:
-    """Draw when each robot travelled, worked and waited: the robots of the mission, then those that joined.
+    """Draw when each robot travelled, worked and waited, at tasks and in traffic.
+
+    There is a row for each robot of the mission, then for those that joined.
 
     Looks like `plot_gantt`, with what the mission asked of tasks that were added too. The lines are the end of the
     mission, and the makespan of the plan that it began with.
@@ -59,6 +61,7 @@ def recorded_rows(recording: Recording) -> tuple[Row, ...]:
                 work=tuple(Work(span.task, span.from_s, span.until_s) for span in own if span.kind == WORK),
                 travel=lasting((span.from_s, span.until_s) for span in own if span.kind == TRAVEL),
                 waiting=lasting((span.from_s, span.until_s) for span in own if span.kind == WAITING),
+                traffic=lasting((span.from_s, span.until_s) for span in own if span.kind == TRAFFIC),
             )
         )
     return tuple(rows)

@@ -24,6 +24,8 @@ GRID = "#E8E8E8"
 TEXT = "#222222"
 QUIET_TEXT = "#6B6B6B"
 ALARM = "#B00020"
+TRAFFIC = "#FFE14D"
+"""Waiting in traffic, whatever the robot's own colour."""
 
 MOST_ARROWS = 60
 """Prerequisites that are drawn; where there are more, none is."""

@@ -12,7 +12,7 @@ import numpy as np
 from muster.report.canvas import new_axes, quiet_frame, settle, shortened, write
 from muster.report.fonts import Names
 from muster.report.labels import text_size
-from muster.report.styles import DASHED, GRID, PREREQUISITE, QUIET_TEXT, TEXT, Style, robot_style
+from muster.report.styles import DASHED, GRID, PREREQUISITE, QUIET_TEXT, TEXT, TRAFFIC, Style, robot_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +21,7 @@ MOST_NAMES = 300
 """Tasks up to which bars are named."""
 MOST_ROWS_NAMED = 60
 """Robots up to which each row is named."""
-WORK_HEIGHT, WAIT_HEIGHT, TRAVEL_HEIGHT = 0.5, 0.3, 0.1
+WORK_HEIGHT, WAIT_HEIGHT, TRAFFIC_HEIGHT, TRAVEL_HEIGHT = 0.5, 0.3, 0.2, 0.1
 """Heights of the bars, in rows."""
 _FONT = 6.5
 _STEPS = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800)
@@ -43,12 +43,13 @@ class Work:
 
 @dataclass(frozen=True)
 class Row:
-    """What one robot does; spans of travel and waiting last."""
+    """What one robot does; spans of travel and waiting last. `traffic` is waiting in traffic, on the way or at work."""
 
     robot: str
     work: tuple[Work, ...]
     travel: tuple[Span, ...]
     waiting: tuple[Span, ...]
+    traffic: tuple[Span, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -124,6 +125,8 @@ class TimeChart:
         ]
         if any(row.waiting for row in self.rows):
             entries.append((Patch(**_waiting(grey)), "waiting"))
+        if any(row.traffic for row in self.rows):
+            entries.append((Patch(facecolor=TRAFFIC, edgecolor=QUIET_TEXT, linewidth=0.5), "in traffic"))
         if has_arrows:
             entries.append((Line2D([], [], color=PREREQUISITE, linewidth=1.0, marker=9, markersize=5), "prerequisite"))
         for (_, name), style in zip(self.lines, _LINES, strict=False):
@@ -158,6 +161,8 @@ def _draw_row(ax: Any, number: int, row: Row) -> None:
     thin = {"facecolor": style.color, "linewidth": 0, "snap": False, "zorder": 2}  # snapped to pixels it may vanish
     _bars(ax, number, row.travel, TRAVEL_HEIGHT, gid=f"travel-{name}", **thin)
     _bars(ax, number, row.waiting, WAIT_HEIGHT, gid=f"waiting-{name}", zorder=2, **_waiting(style))
+    in_traffic = {"facecolor": TRAFFIC, "edgecolor": QUIET_TEXT, "linewidth": 0.5, "zorder": 3.1}
+    _bars(ax, number, row.traffic, TRAFFIC_HEIGHT, gid=f"traffic-{name}", **in_traffic)
     look = {"facecolor": style.color, "edgecolor": style.color, "linewidth": 1.2, "zorder": 3}
     _bars(ax, number, work, WORK_HEIGHT, gid=f"work-{name}", **look)
 

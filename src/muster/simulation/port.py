@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,8 +22,8 @@ from muster.simulation.noise import Noise
 class SimulatedPort:
     """The port of one robot of a world, a `RobotPort`; `body` is the robot.
 
-    With `trajectories` orders become trajectories that the robot follows. A muted robot's telemetry stays as it last
-    was; the robot goes on, and still receives way points.
+    `name_of` gives the id of the robot of a number. With `trajectories` orders become trajectories that the robot
+    follows. A muted robot's telemetry stays as it last was; the robot goes on, and still receives way points.
     """
 
     def __init__(
@@ -34,8 +34,10 @@ class SimulatedPort:
         noise: Noise,
         seed: int,
         trajectories: TrajectoryMaker | None = None,
+        name_of: Callable[[int], str] = str,
     ) -> None:
         self.body = robot
+        self._name_of = name_of
         self._trajectories = trajectories
         self.battery: Battery | None = None
         self._held_before_s = 0.0
@@ -114,8 +116,14 @@ class SimulatedPort:
 
     def _now(self) -> Telemetry:
         charge = None if self.battery is None else self.battery.charge
-        said = Telemetry(*self._crowd.report(self._number), self._felt(), charge)
+        said = Telemetry(*self._crowd.report(self._number), self._felt(), charge, waits_for=self._held_up_by)
         return self._disturbed(said) if self._noise.of_telemetry else said
+
+    @property
+    def _held_up_by(self) -> str:
+        """Who holds it up, by the world's collision avoidance; empty where nobody does."""
+        number = self._crowd.held_up_by(self._number)
+        return self._name_of(number) if number >= 0 else ""
 
     def _felt(self) -> Inertial | None:
         return Inertial(self._crowd.dt, *self._crowd.felt(self._number)) if self._crowd.steps else None

@@ -18,7 +18,7 @@ from muster.mission.consistency import positions
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
-from muster.motion.avoidance.names import require_avoidance
+from muster.motion.avoidance_names import AUTO, method_for
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of, turning_radius_of
@@ -77,7 +77,8 @@ class WorldBase(SimulatedWorld, ABC):
     noise
         see `Noise`.
     avoidance
-        `orca`, in the plane `rvo` or `hrvo` too, or `none`: robots drive through each other and through walls.
+        `auto`, the method that jams least; `orca`, in the plane `rvo`, `hrvo` or `avo` too; or `none`: robots drive
+        through each other and through walls.
     law
         how robots come to the velocity that they want: `profile`, speeds and turns on the spot as fast as the limits
         allow; `thesis`, quadcopters and differential drives by (4.9)-(4.16) and (4.21)-(4.25) of [tcf-thesis];
@@ -111,7 +112,7 @@ class WorldBase(SimulatedWorld, ABC):
         seed: int = 0,
         dt_s: float = 0.1,
         noise: Noise = NO_NOISE,
-        avoidance: str = "orca",
+        avoidance: str = AUTO,
         law: str = "profile",
         horizon_s: float = 2.0,
         arrival_m: float = 0.02,
@@ -120,7 +121,7 @@ class WorldBase(SimulatedWorld, ABC):
         observe_s: float = 0.0,
     ) -> None:
         require_law(law)
-        _require(avoidance, mission, seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
+        _require(seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
         self._map = World.of(mission) if mission.map is not None and mission.travel_rule == "map" else None
         self._dimensions = mission.dimensions
         self._lowest_m = _lowest(mission)
@@ -133,7 +134,7 @@ class WorldBase(SimulatedWorld, ABC):
         self._observed_steps = max(1, round(observe_s / dt_s))
         self._crowd = core.CrowdWorld(
             dt=dt_s,
-            avoidance=avoidance,
+            avoidance=method_for(avoidance, mission.dimensions),
             space=mission.dimensions == 3,
             horizon=horizon_s,
             wall_horizon=max(WALL_HORIZON_S, dt_s),
@@ -215,7 +216,7 @@ class WorldBase(SimulatedWorld, ABC):
         self._numbers[robot.id] = number
         self._robots.append(robot)
         trajectories = self._trajectories_of(robot)
-        port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories)
+        port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories, self._name_of)
         self._ports[robot.id] = port
         at_start = charge_at_start(self._batteries, robot.id)
         if at_start is not None:
@@ -354,6 +355,9 @@ class WorldBase(SimulatedWorld, ABC):
         if self._observer is not None:
             self._observer(self.time_s, self.positions, self.headings, self.velocities)
 
+    def _name_of(self, number: int) -> str:
+        return self._robots[number].id
+
     def _number(self, robot: str) -> int:
         if robot not in self._numbers:
             known = list(self._numbers)
@@ -388,8 +392,7 @@ def _lowest(mission: Mission) -> float:
     return min(0.0, *(place[2] for _, place in positions(mission) if len(place) == 3))
 
 
-def _require(avoidance: str, mission: Mission, seed: int, **numbers: float) -> None:
-    require_avoidance(avoidance, mission.dimensions)
+def _require(seed: int, **numbers: float) -> None:
     if not 0 <= seed < 2**64:
         raise ParameterError(f"seed: {seed}; expected 0 to 2^64 - 1")
     for name, number in numbers.items():

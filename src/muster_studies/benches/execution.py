@@ -57,7 +57,7 @@ def after_a_failure(seed: int, stability: int | None) -> tuple[float, float, flo
     mission = scene(seed, stability)
     travel = travel_of(mission)
     timed = _Timed(Reallocation(travel=travel, seed=seed))
-    world = KinematicWorld(mission, seed=seed)
+    world = KinematicWorld(mission, seed=seed, avoidance="orca")
     executor = Executor(mission, solve(mission, iterations=3000, seed=seed), world.ports, replan=timed)
     while world.time_s < FAILS_S:
         executor.tick(world.time_s)

@@ -46,7 +46,7 @@ def swapped(count: int, seed: int, limit_s: float = LIMIT_S) -> tuple[float, flo
     robots = (
         Robot(id=f"r_{k}", position=place, radius_m=RADIUS_M, speed_mps=SPEED_MPS) for k, place in enumerate(places)
     )
-    world = KinematicWorld(Mission(robots=tuple(robots), tasks=()), seed=seed, dt_s=DT_S)
+    world = KinematicWorld(Mission(robots=tuple(robots), tasks=()), seed=seed, dt_s=DT_S, avoidance="orca")
     for k, (x, y) in enumerate(places):
         world.ports[f"r_{k}"].send([Waypoint((-x, -y, 0.0))])
     left = count

@@ -81,7 +81,7 @@ def drive(starts: Floats, until_s: float, seed: int) -> Iterator[Reading]:
         replace(rover(), id=f"rover{k}", position=(float(x), float(y)), heading_deg=math.degrees(heading))
         for k, (x, y, heading) in enumerate(starts)
     )
-    world = KinematicWorld(replace(mission, robots=rovers, tasks=(), events=()), seed=seed)
+    world = KinematicWorld(replace(mission, robots=rovers, tasks=(), events=()), seed=seed, avoidance="orca")
     poses = _poses(world)
     yield Reading(0.0, poses, np.zeros_like(poses), _scans(world, random))
     while world.time_s < until_s - 1e-9:

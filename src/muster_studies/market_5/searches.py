@@ -114,6 +114,7 @@ class Search:
         log = Log(mission)
         how: dict[str, Any] = {
             "world": self.world,
+            "avoidance": "orca",
             "seed": self.seed,
             "noise": STEERED_NOISE,
             "localise": localise,

@@ -110,6 +110,7 @@ class Flight:
             seed=self.seed or 0,
             noise=NO_NOISE if self.seed is None else NOISE,
             pose="true",
+            avoidance="orca",
             recorder=log,
         )
         return log.flown(report)

@@ -112,6 +112,7 @@ def fly(flight: Flight) -> FlightResult:
     planned = accepted(mission, plan, flight.mission, flight.ignored, "total+max")
     ways, witness = _Ways(), _LookCounter()
     how: dict[str, Any] = {"world": flight.world, "noise": flight.noise, "seed": flight.seed, "pose": "true"}
+    how["avoidance"] = "orca"
     how["ignore"] = flight.ignored
     with closing(Simulation(mission, plan, recorder=ways, on_look=witness.take, **how)) as simulation:
         while not simulation.done:

@@ -15,7 +15,7 @@ from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.steering import STILL, SteeredRobot, Steering
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
-from muster.motion.avoidance.names import require_avoidance
+from muster.motion.avoidance_names import require_avoidance
 from muster.motion.frames import flu_to_enu
 from muster.motion.kinematics.registry import KINEMATICS
 from muster.motion.port import Waypoint

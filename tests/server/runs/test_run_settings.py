@@ -20,7 +20,7 @@ BRIDGES = ("ros1", "mavlink")
         (
             "kinematic",
             {"drive": "goals"},
-            "drive: no setting of world kinematic; expected seed, ignore, planning, dt_s, avoidance, law, noise, pose",
+            "drive: no setting of world kinematic; expected seed, ignore, planning, stay, until_s, dt_s, avoidance",
         ),
         ("kinematic", {"seed": -1}, "seed: -1; expected a whole number, 0 to"),
         ("kinematic", {"seed": True}, "seed: true; expected a whole number"),
@@ -31,7 +31,7 @@ BRIDGES = ("ros1", "mavlink")
         (
             "physics",
             {"avoidance": "orcas"},
-            "avoidance: orcas; expected orca, rvo, hrvo, avo, none; did you mean 'orca'?",
+            "avoidance: orcas; expected auto, orca, rvo, hrvo, avo, none; did you mean 'orca'?",
         ),
         ("physics", {"law": "thesiss"}, "law: thesiss; expected profile, thesis, trajectory; did you mean 'thesis'?"),
         ("kinematic", {"planning": {"alocator": "greedy"}}, '"alocator": unknown; expected allocator'),

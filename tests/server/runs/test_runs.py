@@ -299,7 +299,7 @@ def test_who_asks_for_what_cannot_be_is_told(store):
                 ({"speed": 0}, "speed: 0; expected a number above 0"),
                 ({"colour": "red"}, "colour: no setting"),
                 ({"dt_s": 7}, "dt_s: 7; expected"),
-                ({"avoidance": "no such"}, "avoidance: no such; expected orca"),
+                ({"avoidance": "no such"}, "avoidance: no such; expected auto, orca"),
             )
             for how, why in wrong:
                 with pytest.raises(ParameterError, match=why):

@@ -26,7 +26,7 @@ from muster.bridges.yielding import Yielding
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.value_types import shown
-from muster.motion.avoidance.names import require_avoidance
+from muster.motion.avoidance_names import require_avoidance
 from muster.motion.map_world import World, body_of
 from muster.motion.port import Place
 from muster.motion.robot_paths import RobotPaths

@@ -91,6 +91,11 @@ class MissionTopics:
             for name in data.get("team") or [robot]:
                 self._robots[name] = {"activity": _ACTIVITIES[kind], **task}
             self._say("robots", self._robots)
+        elif kind == "waits_in_traffic":
+            self._robots[str(robot)]["held_up_by"] = str(data["waits_for"])
+            self._say("robots", self._robots)
+        elif kind == "goes_on" and self._robots[str(robot)].pop("held_up_by", ""):
+            self._say("robots", self._robots)
         if kind == "ends":
             self._done += 1
             self._advance_status(now)

@@ -19,7 +19,10 @@ Rgb = tuple[int, int, int]
 
 INK: Rgb = (34, 34, 34)
 QUIET_INK: Rgb = (95, 99, 105)
-_NOT_TOLD = ("sets_out", "arrives", "starts", "robot_at_end", "mission_ended")
+_NOT_TOLD = (
+    *("sets_out", "arrives", "starts", "robot_at_end", "mission_ended"),
+    *("waits_in_traffic", "goes_on", "robot_stands_aside"),
+)
 _LONGEST = 64
 
 

@@ -54,13 +54,13 @@ function showCharts(now) {
 
 // Bars of what robots do
 
-const BAR_SHARES = { travel: 0.2, waiting: 0.55, work: 0.8 };
+const BAR_SHARES = { travel: 0.2, waiting: 0.55, traffic: 0.4, work: 0.8 };
 
 function drawGantt() {
   const row = Math.min(Math.max(220 / robots.length, 2.5), 24);
   ganttPicture.style.height = `${row * robots.length + AXIS}px`;
   const [width, height] = fitted(ganttPicture);
-  picturedAs(ganttPicture, `Time chart of ${robots.length} robots: travel, waiting and work`);
+  picturedAs(ganttPicture, `Time chart of ${robots.length} robots: travel, waiting, waiting in traffic and work`);
   timeAxis(ganttPicture, width, height);
   const patterns = svg("defs");
   ganttPicture.append(patterns);
@@ -72,7 +72,8 @@ function drawGantt() {
   });
   const x = timeScale(width);
   ganttPicture.append(...markShapes(["window"], x, row));
-  for (const span of spans) ganttPicture.append(bar(span, x, row));
+  const traffic = ({ kind }) => Number(kind === "traffic"); // lies upon work
+  for (const span of [...spans].sort((a, b) => traffic(a) - traffic(b))) ganttPicture.append(bar(span, x, row));
   ganttPicture.append(...markShapes(["late", "deadline", "due", "team"], x, row));
   fillLegend();
   addCursor(ganttPicture, width, height);
@@ -98,10 +99,10 @@ function bar({ robot, task, kind, from, until }, x, row) {
     y: (robot + 0.5) * row - height / 2,
     width: Math.max(x(until) - x(from), kind === "work" ? 1.6 : 0.6),
     height,
-    fill: kind === "waiting" ? `url(#hatch-${robot})` : color,
+    ...(kind === "traffic" ? {} : { fill: kind === "waiting" ? `url(#hatch-${robot})` : color }),
     ...(kind === "waiting" ? { stroke: color, "stroke-width": 0.8 } : {}),
   });
-  const doing = { travel: "travels to", waiting: "waits at", work: "works on" }[kind];
+  const doing = DOING[kind];
   const title = `${robots[robot].id} ${doing} ${task || "its end"}: ${timeText(from)} to ${timeText(until)}`;
   shape.append(svg("title", {}, title));
   return shape;

@@ -1,6 +1,8 @@
 // What is told in words: figures, what each robot does, marks of tasks, events, the nearest pair.
 
-const DOING = { travel: "travels to", waiting: "waits at", work: "works on" };
+const DOING = {
+  travel: "travels to", waiting: "waits at", traffic: "waits in traffic on the way to", work: "works on",
+};
 const robotList = document.getElementById("robots");
 const eventList = document.getElementById("events");
 const events = data.events.map(([at, text, alarming]) => ({ at: at / 1000, text, alarming }));

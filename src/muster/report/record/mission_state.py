@@ -9,6 +9,9 @@ work of a robot has the words of the judge's schedule. An event of another kind 
 | `returns`, `robot_at_end` | `robot`, on the way to where its route ends |
 | `lost` | `task`, `reason` |
 | `robot_fails`, `robot_silent`, `robot_stuck`, `robot_returns` | `robot` |
+| `waits_in_traffic` | `robot`, `waits_for` (a robot), `position`, `since_s` |
+| `goes_on` | `robot`, `until_s`, `position`, `waited_s`: seconds by robot that it waited for |
+| `traffic_jam` | `robots`, `position`, `since_s` |
 | `robot_joins` | `robot`: a robot as in a mission file, or the id of one in the mission's `events` |
 | `new_task` | `task`: a task, likewise |
 | `cancel_task` | `task` |
@@ -18,6 +21,7 @@ work of a robot has the words of the judge's schedule. An event of another kind 
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Self
@@ -30,16 +34,26 @@ from muster.mission.value_types import Fault
 OPEN, UNDER_WAY, DONE, LOST, CANCELLED = "open", "under way", "done", "lost", "cancelled"
 OUT = ("robot_fails", "robot_silent", "robot_stuck")
 """Kinds of event after which a robot takes no part."""
-ALARMING = ("lost", *OUT, "contact")
+ALARMING = ("lost", *OUT, "contact", "traffic_jam")
 """Kinds of event that somebody should look at."""
+KEPT_OVER = 10_000
+"""Tasks that are over which somebody who writes down what happens remembers, however long it goes on."""
+_OVER = (DONE, LOST, CANCELLED)
 _BECOMES = {"starts": UNDER_WAY, "ends": DONE, "lost": LOST, "cancel_task": CANCELLED, "work_broken_off": OPEN}
 
 
 class MissionState:
-    """Robots and tasks by id, in the order in which they came, and the state of each task."""
+    """Robots and tasks by id, in the order in which they came, and the state of each task.
 
-    def __init__(self, mission: Mission) -> None:
+    Parameters
+    ----------
+    most_over
+        of so many tasks that are done, lost or cancelled the first are forgotten; None: none ever is.
+    """
+
+    def __init__(self, mission: Mission, most_over: int | None = None) -> None:
         self.mission = mission
+        self._most_over, self._over = most_over, deque[str]()
         self.robots: dict[str, Robot] = {robot.id: robot for robot in mission.robots}
         self.tasks: dict[str, Task] = {task.id: task for task in mission.tasks}
         self.states: dict[str, str] = dict.fromkeys(self.tasks, OPEN)
@@ -78,7 +92,18 @@ class MissionState:
         if kind not in _BECOMES or self.states[name] == CANCELLED:
             return None
         self.states[name] = _BECOMES[kind]
+        self._forget_before(str(name))
         return str(name)
+
+    def _forget_before(self, name: str) -> None:
+        """A task may be over: then one that was so long before is forgotten, if there are too many."""
+        if self._most_over is None or self.states[name] not in _OVER:
+            return
+        self._over.append(name)
+        if len(self._over) > self._most_over:
+            first = self._over.popleft()
+            if self.states.get(first) in _OVER:
+                del self.tasks[first], self.states[first]
 
     def _made(self, model: type, data: Any, kind: str) -> Any:
         """A robot or task from a mapping, or by the id of one in the mission's own events."""

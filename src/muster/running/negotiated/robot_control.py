@@ -44,6 +44,10 @@ _ITS_OWN = {
     "robot_sent_again",
     "robot_runs_low",
     "robot_stuck",
+    "robot_stands_aside",
+    "waits_in_traffic",
+    "goes_on",
+    "traffic_jam",
     "task_refused",
     "waits",
     "work_broken_off",
@@ -120,7 +124,7 @@ class RobotControl:
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
-        first = len(self._executor.events)
+        first = self._executor.events.total
         self._break_off()
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
@@ -128,8 +132,10 @@ class RobotControl:
         for event in self._executor.tick(now):
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
+            elif _is_back(event):
+                self._negotiator.come_back()
         self._negotiator.joint.leave_all_but(self._at)
-        return [event for event in self._executor.events[first:] if event.kind in _ITS_OWN]
+        return [event for event in self._executor.events.since(first) if event.kind in _ITS_OWN or _is_back(event)]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
@@ -316,6 +322,11 @@ class RobotControl:
         if move.task not in ledger.tasks:
             raise ParameterError(f"move_task: {shown(move.task)}; expected the id of a task that there is by then")
         return moved(ledger.tasks[move.task], move.position)
+
+
+def _is_back(event: ExecutionEvent) -> bool:
+    """Whether a robot that was stuck takes part again because it moves: no operator has told that."""
+    return event.kind == "robot_returns" and "reason" in event.data
 
 
 def _revision(routes: Mapping[str, tuple[str, ...]], ahead: Mapping[str, Mapping[str, float]]) -> Revision:

@@ -15,6 +15,7 @@ from muster.execution import ExecutionEvent, Recorder, Report, report_of
 from muster.execution.record import NoObserver
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
+from muster.motion.avoidance_names import AUTO
 from muster.negotiation.keys import new_key
 from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
@@ -58,7 +59,7 @@ def negotiate_and_carry_out(
     world: str = "kinematic",
     seed: int = 0,
     dt_s: float = 0.1,
-    avoidance: str = "orca",
+    avoidance: str = AUTO,
     law: str = "profile",
     noise: Noise = NO_NOISE,
     wind: Wind = CALM,

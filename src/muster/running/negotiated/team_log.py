@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
@@ -11,6 +12,7 @@ from muster.execution.punctuality import MISSED
 from muster.execution.reallocation import reasons_in_one_line
 from muster.execution.report import Account
 from muster.execution.task_ledger import Ledger
+from muster.execution.traffic_waits import TrafficAccount
 from muster.mission.model import Event
 from muster.mission.plan import Plan, teams_of
 from muster.mission.yaml_writer import plain
@@ -18,6 +20,8 @@ from muster.motion.port import Telemetry
 from muster.verification import verify
 
 _OF_ALL_AT_WORK = ("starts", "ends", "work_broken_off")
+_SAME_JAM_S = 30.0
+"""Seconds within which two robots tell of one jam."""
 _OF_A_TASK = ("cancel_task", "move_task", "delay_task")
 
 
@@ -54,6 +58,8 @@ class TeamLog:
         self._usage: dict[tuple[str, str], tuple[float, float]] = {}  # (robot, task) done: planned, flown
         self._done_twice: dict[str, tuple[str, ...]] = {}
         self._out: dict[str, str] = {}  # robot: why
+        self._traffic = TrafficAccount()
+        self._jams_s: dict[frozenset[str], float] = {}  # when they were told
         self._plans: list[Plan] = []
         self._causes: list[dict[str, Any]] = []
         self._now_s = 0.0
@@ -77,8 +83,14 @@ class TeamLog:
         elif kind == "robot_stuck":
             self._lose(robot, f"did not get on at {at_s:g} s")
             self._causes.append({"kind": kind, "robot": robot})
+        elif kind == "robot_returns":
+            self._out.pop(robot, None)
+            self._causes.append({"kind": kind, "robot": robot})
+        elif kind == "traffic_jam" and self._is_told_of_jam(frozenset(data["robots"]), at_s):
+            return  # another robot of the jam has told it
         elif kind in MISSED.values() and data["next_s"] is None:
             self.ledger.expire(task, str(data["reason"]))
+        self._traffic.take(kind, data)
         self.tell(at_s, kind, data)
 
     def note_usage(self, robot: str, task: str, usage: tuple[float, float]) -> None:
@@ -175,7 +187,12 @@ class TeamLog:
             mission_time_s=self._now_s,
             reallocations=len(self._plans) - 1,
             done_twice=self._done_twice,
+            traffic=self._traffic,
         )
+
+    def _is_told_of_jam(self, robots: frozenset[str], at_s: float) -> bool:
+        told_s, self._jams_s[robots] = self._jams_s.get(robots, -math.inf), at_s
+        return at_s - told_s < _SAME_JAM_S
 
     def _is_news(self, robot: str, task: str, at_s: float, kind: str, team: tuple[str, ...]) -> bool:
         """Process what all of a team tell when they begin, end or break off; return whether this robot is first."""

@@ -77,7 +77,7 @@ class PhysicsWorld(WorldBase):
         if any(self._body(robot).kind is BodyKind.ROTORCRAFT for robot in robots_of(mission)):
             windy_m = WIND_CLEARANCE_M + GUST_CLEARANCE_S * wind.gusts_mps
             self._clearance_m = windy_m if wind.blows else ROTORCRAFT_CLEARANCE_M
-        self._collide = how.get("avoidance", "orca") != "none"
+        self._collide = how.get("avoidance") != "none"
         self._wall_sets: list[Floats] = []
         self._tags = mission.tags
         self._simulated: SimulatedModel | None = None

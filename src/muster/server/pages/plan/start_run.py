@@ -22,7 +22,7 @@ _SPEEDS = {
     "": "as fast as it goes",
 }
 _SIMULATED = {"kinematic": "simulated", "physics": "simulated with physics"}  # others by their names
-_AVOIDANCE = {"orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "avo": "AVO", "none": "not at all"}
+_AVOIDANCE = {"auto": "as jams least", "orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "avo": "AVO", "none": "not at all"}
 _LAWS = {
     "profile": "speed profiles, turns on the spot",
     "thesis": "control laws of the thesis",
@@ -77,7 +77,7 @@ def _text(label: str, value: str = "") -> ui.input:
 
 def _simulated(_: PlanEntry, __: int) -> Reading:
     with ui.expansion("More").classes("full"):
-        avoidance = _choice("How robots pass each other", _AVOIDANCE, "orca")
+        avoidance = _choice("How robots pass each other", _AVOIDANCE, "auto")
         law = _choice("How robots move", _LAWS, "profile")
         seed = ui.number("Seed", value=0, min=0, precision=0).props("outlined dense").classes("full")
     return lambda: {"avoidance": avoidance.value, "law": law.value, "seed": int(seed.value or 0)}

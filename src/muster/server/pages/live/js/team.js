@@ -4,7 +4,7 @@ import { Live } from "muster-map/live.js";
 
 const OVER = ["ended", "cancelled", "failed"];
 export const FINAL = ["done", "lost", "cancelled"];
-const ALARMING = ["lost", "robot_fails", "robot_silent", "robot_stuck", "contact"];
+const ALARMING = ["lost", "robot_fails", "robot_silent", "robot_stuck", "contact", "traffic_jam"];
 const CHANGES = ["replanned", "new_task", "cancel_task", "move_task", "delay_task", "robot_joins", "robot_returns", "command", "resumed"];
 const HIGHLIGHT_MS = 12000;
 const ASTRAY_M = 1;

@@ -15,6 +15,7 @@ export function doing(robot, takenOut) {
   const waits = why ? ` ${why}` : "";
   switch (robot.activity) {
     case "driving": return robot.task ? `on the way to ${robot.task}` : "on the way";
+    case "in traffic": return `waits in traffic for ${robot.held_up_by}${robot.task ? `, on the way to ${robot.task}` : ""}`;
     case "waiting": return `waits${robot.task ? ` at ${robot.task}` : ""}${waits}`;
     case "working": return `works on ${robot.task}`;
     case "returning": return "goes to where its route ends";

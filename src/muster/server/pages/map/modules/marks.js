@@ -118,7 +118,7 @@ function drawRobot(context, view, { robot, index, x, y, heading, out, activity }
   context.fillStyle = color;
   context.fill();
   nose(context, radius, inkOn(color));
-  if (activity === "waiting") pauseSign(context, radius, heading ?? 0, theme);
+  if (activity === "waiting" || activity === "in traffic") pauseSign(context, radius, heading ?? 0, theme);
   context.restore();
 }
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 
-AVOIDANCE = ("orca", "rvo", "hrvo", "avo", "none")
+AUTO = "auto"
+"""The method that jams least in simulated worlds, by docs/avoidance.md: `rvo` in the plane, `orca` in space."""
+METHODS = ("orca", "rvo", "hrvo", "avo", "none")
+AVOIDANCE = (AUTO, *METHODS)
 _IN_THE_PLANE = ("rvo", "hrvo", "avo")
 
 
@@ -22,3 +25,17 @@ def require_avoidance(avoidance: str, dimensions: int) -> None:
         )
     if avoidance in _IN_THE_PLANE and dimensions == 3:
         raise ParameterError(f"avoidance: {avoidance}; expected orca or none: the mission is in space")
+
+
+def method_for(avoidance: str, dimensions: int) -> str:
+    """The method of a name, in so many dimensions.
+
+    Raises
+    ------
+    ParameterError
+        as `require_avoidance`.
+    """
+    require_avoidance(avoidance, dimensions)
+    if avoidance != AUTO:
+        return avoidance
+    return "rvo" if dimensions == 2 else "orca"

@@ -1,0 +1,294 @@
+"""Waiting in traffic: which robot holds up which, since when and where; and jams, in which nobody goes on by itself.
+
+A robot waits in traffic where it hardly gets on and another is in its way. Its port tells for whom
+(`Telemetry.waits_for`); where that does not tell, it follows from where the robots are. Waiting is not being stuck,
+however long it takes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from muster.execution.monitor import distance_to_piece
+from muster.execution.robot_state import MOVING, Activity, RobotState
+from muster.motion.kinematics.registry import limits_of
+from muster.motion.port import Place
+
+WAITS_AFTER_S = 1.0
+"""Seconds for which a robot is held up before that counts as waiting, and gets on before that is over."""
+_HARDLY = 0.1
+"""Share of its speed below which a robot hardly gets on."""
+_CLEAR_M = 0.1
+"""Metres between two bodies that hinder each other."""
+_NEARER_M = 0.2
+"""Metres by which a way has to grow shorter to count as progress out of a jam."""
+
+
+@dataclass
+class TrafficWait:
+    """One wait of a robot: for whom it waits now, where and since when; seconds by robot that it waited for.
+
+    `told` is whether it has lasted so long that it counts.
+    """
+
+    waits_for: str
+    place: Place
+    since_s: float
+    until_s: float
+    seconds: dict[str, float] = field(default_factory=dict)
+    told: bool = False
+
+    def note(self, waits_for: str, now: float) -> None:
+        """It goes on, until now."""
+        self.seconds[waits_for] = self.seconds.get(waits_for, 0.0) + now - self.until_s
+        self.waits_for, self.until_s = waits_for, now
+
+
+@dataclass(frozen=True)
+class HeldUp:
+    """For how long, and how often, one robot held up another in traffic, and where that one stood the longest time."""
+
+    waiting_s: float
+    times: int
+    longest_s: float
+    place: Place
+
+    @staticmethod
+    def once(seconds: float, place: Place) -> HeldUp:
+        return HeldUp(seconds, 1, seconds, place)
+
+    def and_again(self, seconds: float, place: Place) -> HeldUp:
+        longest = (seconds, place) if seconds > self.longest_s else (self.longest_s, self.place)
+        return HeldUp(self.waiting_s + seconds, self.times + 1, *longest)
+
+
+class TrafficAccount:
+    """Who held up whom, added up: its size does not grow with time."""
+
+    def __init__(self) -> None:
+        self.pairs: dict[tuple[str, str], HeldUp] = {}
+
+    def add(self, robot: str, seconds: Mapping[str, float], place: Place) -> None:
+        """A robot has waited in traffic: seconds by robot that it waited for."""
+        for other, waited_s in seconds.items():
+            if waited_s > 0:
+                before = self.pairs.get((robot, other))
+                more = HeldUp.once(waited_s, place) if before is None else before.and_again(waited_s, place)
+                self.pairs[robot, other] = more
+
+    @property
+    def waiting_s(self) -> float:
+        """Seconds that all robots waited in traffic."""
+        return sum(pair.waiting_s for pair in self.pairs.values())
+
+    def take(self, kind: str, data: Mapping[str, Any]) -> None:
+        """An event of another's log: a wait that is over."""
+        if kind == "goes_on":
+            place = [*map(float, data.get("position", ())), 0.0, 0.0, 0.0]
+            self.add(str(data["robot"]), data["waited_s"], (place[0], place[1], place[2]))
+
+    def with_waits(self, waits: Mapping[str, TrafficWait]) -> TrafficAccount:
+        """The same with waits that are not over."""
+        account = TrafficAccount()
+        account.pairs = dict(self.pairs)
+        for robot, wait in waits.items():
+            if wait.told:
+                account.add(robot, wait.seconds, wait.place)
+        return account
+
+
+@dataclass
+class Progress:
+    """How a robot gets on to one target: the least way left to it, and when that was reached.
+
+    `jammed_s` is for how long it has been in a jam since then, `held_s` the same since one of the jam stood aside,
+    `asides` how often it did itself, `told` whether the jam was told.
+    """
+
+    robot: str
+    target: str
+    least_m: float = math.inf
+    since_s: float = 0.0
+    jammed_s: float = 0.0
+    held_s: float = 0.0
+    asides: int = 0
+    told: bool = False
+
+    def note(self, left_m: float, now: float) -> None:
+        if left_m < self.least_m - _NEARER_M:
+            self.least_m, self.since_s = left_m, now
+            self.jammed_s, self.held_s, self.asides, self.told = 0.0, 0.0, 0, False
+
+
+class TrafficWaits:
+    """Keeps who waits in traffic.
+
+    Parameters
+    ----------
+    crew
+        by id; robots that are out may be in the way, too.
+    """
+
+    def __init__(self, crew: Mapping[str, RobotState]) -> None:
+        self._crew = crew
+        self._left_m: dict[str, tuple[int, float]] = {}  # of which order, at the last look
+        self._looked_s = 0.0
+        self.waits: dict[str, TrafficWait] = {}
+        self.progress: dict[str, Progress] = {}
+        self.account = TrafficAccount()
+
+    def look(self, now: float) -> Iterator[tuple[str, dict[str, Any]]]:
+        """See who waits now; yields an event of each wait that begins to count, or is over."""
+        for robot, state in self._crew.items():
+            self._note_progress(state, now)
+            other = self._held_up_by(state, now)
+            wait = self.waits.get(robot)
+            if other and wait is None:
+                self.waits[robot] = TrafficWait(other, state.position, now, now)
+            elif other and wait is not None:
+                wait.note(other, now)
+                if not wait.told and now - wait.since_s >= WAITS_AFTER_S:
+                    wait.told = True
+                    yield "waits_in_traffic", _begun(robot, wait)
+            elif wait is not None and (now - wait.until_s >= WAITS_AFTER_S or not _under_way(state)):
+                yield from self._over(robot, wait)
+        since_s, self._looked_s = self._looked_s, now
+        for core in self._cores():
+            for one in self.members(core):
+                one.jammed_s += now - since_s
+        for jam in self.jams():
+            for one in self.members(jam):
+                one.held_s += now - since_s
+
+    def waits_for(self, robot: str) -> str:
+        """For whom a robot waits in traffic; empty where it does not."""
+        wait = self.waits.get(robot)
+        return wait.waits_for if wait is not None and wait.told else ""
+
+    def jams(self) -> set[frozenset[str]]:
+        """Robots that wait in a ring, and those that wait for one that stands without waiting for anybody.
+
+        Who waits for one that drives, works or is out is in no jam: that one goes on, or is put out.
+        """
+        return {core for core in self._cores() if not any(self._stands_aside(robot) for robot in core)}
+
+    def _cores(self) -> set[frozenset[str]]:
+        """The robots of all jams, of those too in which one stands aside for now."""
+        found = set()
+        for robot in self.waits:
+            chain = [robot]
+            while (wait := self.waits.get(chain[-1])) is not None and wait.waits_for not in chain:
+                chain.append(wait.waits_for)
+            if wait is not None:
+                found.add(frozenset(chain[chain.index(wait.waits_for) :]))
+            elif self._stands(chain[-1]):
+                found.add(frozenset(chain[-2:]))
+        return found
+
+    def members(self, jam: Collection[str]) -> list[Progress]:
+        """How those of a jam get on who wait, by their ids."""
+        return [self.progress[robot] for robot in sorted(jam) if robot in self.waits]
+
+    def _note_progress(self, state: RobotState, now: float) -> None:
+        robot, target = state.robot.id, state.route[0] if state.route else ""
+        if robot not in self.progress or self.progress[robot].target != target:
+            self.progress[robot] = Progress(robot, target, since_s=now)
+        if _under_way(state):
+            self.progress[robot].note(state.way_left_m, now)
+
+    def _over(self, robot: str, wait: TrafficWait) -> Iterator[tuple[str, dict[str, Any]]]:
+        del self.waits[robot]
+        if wait.told:
+            self.account.add(robot, wait.seconds, wait.place)
+            yield "goes_on", _ended(robot, wait)
+
+    def _stands(self, robot: str) -> bool:
+        """Whether a robot stands and does nothing that ends by itself; one of which nothing is known may."""
+        state = self._crew.get(robot)
+        if state is None or state.out:
+            return state is None
+        return state.activity is Activity.WAITING or (state.activity is Activity.IDLE and not state.route)
+
+    def _stands_aside(self, robot: str) -> bool:
+        return robot in self._crew and self._crew[robot].aside_until_s > self._looked_s
+
+    def _held_up_by(self, state: RobotState, now: float) -> str:
+        if now < state.aside_until_s and not state.out and state.robot.id in self.waits:
+            return self.waits[state.robot.id].waits_for
+        hardly = self._hardly_gets_on(state, now)
+        said = state.telemetry
+        if said is None or not _under_way(state):
+            return ""
+        if said.waits_for is not None:
+            return said.waits_for
+        return self._in_its_way(state) if hardly and _has_way(state) else ""
+
+    def _hardly_gets_on(self, state: RobotState, now: float) -> bool:
+        """Whether its way has not grown shorter since the last look by more than a tenth of what it could have."""
+        robot, left_m = state.robot, state.way_left_m
+        order, before_m = self._left_m.get(robot.id, (-1, 0.0))
+        self._left_m[robot.id] = state.order, left_m
+        return order == state.order and before_m - left_m < _HARDLY * robot.speed_mps * (now - self._looked_s)
+
+    def _in_its_way(self, state: RobotState) -> str:
+        """The nearest robot that another would touch on its way before it could stop; empty where there is none."""
+        robot, begin = state.robot, state.position
+        reach_m = robot.radius_m + _stopping_m(state)
+        found, nearest_m = "", math.inf
+        for other in self._crew.values():
+            body = other.robot
+            if other is state or not (body.radius_m > 0 and robot.radius_m > 0) or body.kind != robot.kind:
+                continue
+            apart_m = robot.radius_m + body.radius_m + _CLEAR_M
+            away_m = math.dist(other.position, begin)
+            if away_m < min(nearest_m, reach_m + apart_m) and any(
+                distance_to_piece(other.position, a, b) < min(apart_m, away_m) for a, b in _pieces(state, reach_m)
+            ):
+                found, nearest_m = body.id, away_m
+        return found
+
+
+def _under_way(state: RobotState) -> bool:
+    return not state.out and state.activity in MOVING
+
+
+def _has_way(state: RobotState) -> bool:
+    """Whether it is not yet where it is to be next; at work a robot stands as near to that as its body lets others."""
+    near_m = state.robot.radius_m if state.activity is Activity.WORKING else 0.0
+    return bool(state.points_left) and math.dist(state.position, state.points_left[0]) > near_m
+
+
+def _stopping_m(state: RobotState) -> float:
+    speed, most = state.robot.speed_mps, limits_of(state.robot).acceleration_mps2
+    return speed * speed / (2 * most)
+
+
+def _pieces(state: RobotState, reach_m: float) -> Iterator[tuple[Place, Place]]:
+    """The straight pieces of its way, as far as it reaches."""
+    begin = state.position
+    for end in state.points_left:
+        long = math.dist(begin, end)
+        if long > reach_m:
+            share = reach_m / long
+            x, y, z = (a + share * (b - a) for a, b in zip(begin, end, strict=True))
+            yield begin, (x, y, z)
+            return
+        yield begin, end
+        begin, reach_m = end, reach_m - long
+
+
+def _begun(robot: str, wait: TrafficWait) -> dict[str, Any]:
+    return {"robot": robot, "waits_for": wait.waits_for, "position": plain_place(wait.place), "since_s": wait.since_s}
+
+
+def _ended(robot: str, wait: TrafficWait) -> dict[str, Any]:
+    waited_s = {other: round(seconds, 6) for other, seconds in wait.seconds.items() if seconds > 0}
+    return {"robot": robot, "until_s": wait.until_s, "waited_s": waited_s, "position": plain_place(wait.place)}
+
+
+def plain_place(place: Place) -> list[float]:
+    """A place to the millimetre, as events have it: two coordinates on the ground."""
+    return [round(c, 3) for c in (place if place[2] else place[:2])]

@@ -1,0 +1,126 @@
+"""The study: which method of avoidance jams least in narrow places, with both kinematics.
+
+Nothing but the method keeps robots apart and lets them through: no paths in space and time are planned.
+"""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from muster.execution.record import ExecutionEvent
+from muster.planning.solve import solve
+from muster.running.simulation import carry_out
+from muster_studies.effort import Effort
+from muster_studies.jams.scenes import KINEMATICS, SCENES
+from muster_studies.repetition import Repetition, Reproduction, one_by_one
+from muster_studies.tables import Cell, Table
+
+METHODS = ("orca", "rvo", "hrvo")
+SEEDS, QUICK_SEEDS = 5, 1
+_QUICK_SCENES = ("face to face, 2", "one-way door, 20")
+_NOTES = (
+    "done: tasks done in all runs, per cent; s: the median of the mission times, with the way back where there is one; "
+    "out: robots put out; jams: told as traffic_jam; touched: pairs of robots. Plans by greedy.",
+)
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run: a scene by its name, kinematics, a method and a seed."""
+
+    scene: str
+    kinematics: str
+    method: str
+    seed: int
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one run."""
+
+    tasks: int
+    done: int
+    out: int
+    jams: int
+    contacts: int
+    mission_time_s: float
+    waiting_s: float
+
+
+def outcome_of(job: Job) -> Outcome:
+    """Plan a scene and carry it out."""
+    mission = SCENES[job.scene](job.kinematics, job.seed)
+    events: list[ExecutionEvent] = []
+    plan = solve(mission, "greedy")
+    report = carry_out(mission, plan, avoidance=job.method, seed=job.seed, on_event=events.append)
+    kinds = [event.kind for event in events]
+    return Outcome(
+        tasks=len(mission.tasks),
+        done=len(report.tasks_done),
+        out=kinds.count("robot_stuck"),
+        jams=kinds.count("traffic_jam"),
+        contacts=report.contacts or 0,
+        mission_time_s=report.mission_time_s,
+        waiting_s=report.waiting_by_cause_s.get("traffic", 0.0),
+    )
+
+
+@dataclass(frozen=True)
+class Jams:
+    """A row for each scene, kinematics and method."""
+
+    number: str = "methods"
+    columns: tuple[str, ...] = ("scene", "kinematics", "method", "runs", "done %", "s", "out", "jams", "touched")
+
+    def jobs(self, effort: Effort) -> Iterator[Job]:
+        for scene, kinematics, method in self._rows(effort):
+            yield from self._runs(scene, kinematics, method, effort)
+
+    def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
+        rows = [
+            (
+                scene,
+                kinematics,
+                method,
+                *_figures([found[job] for job in self._runs(scene, kinematics, method, effort)]),
+            )
+            for scene, kinematics, method in self._rows(effort)
+        ]
+        for method in METHODS:
+            runs = [outcome for job, outcome in found.items() if job.method == method]
+            rows.append(("all", "", method, *_figures(runs)))
+        return Table(
+            self.number, "Methods of avoidance in narrow places", self.columns, tuple(rows), _NOTES, decimals=1
+        )
+
+    def _rows(self, effort: Effort) -> Iterator[tuple[str, str, str]]:
+        for scene in _QUICK_SCENES if effort.quick else SCENES:
+            for kinematics in KINEMATICS:
+                for method in METHODS:
+                    yield scene, kinematics, method
+
+    def _runs(self, scene: str, kinematics: str, method: str, effort: Effort) -> list[Job]:
+        seeds = effort.seeds or (QUICK_SEEDS if effort.quick else SEEDS)
+        return [Job(scene, kinematics, method, seed) for seed in range(seeds)]
+
+
+def _figures(runs: list[Outcome]) -> tuple[Cell, ...]:
+    done = 100 * sum(run.done for run in runs) / sum(run.tasks for run in runs)
+    median_s = statistics.median(run.mission_time_s for run in runs)
+    counts = (sum(getattr(run, name) for run in runs) for name in ("out", "jams", "contacts"))
+    return len(runs), done, median_s, *counts
+
+
+_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Jams(),)
+
+JAMS = Repetition(
+    name="jams",
+    summary="which method of avoidance jams least in narrow places",
+    document="no publication: the kinematic world, without planned traffic",
+    reproductions=_TABLES,
+    perform=one_by_one(outcome_of),
+    seeds=lambda effort: effort.seeds or (QUICK_SEEDS if effort.quick else SEEDS),
+    extras=("map",),
+)
