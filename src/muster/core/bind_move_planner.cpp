@@ -45,7 +45,7 @@ const char* name_of(MovePlan::Outcome outcome) {
   }
 }
 
-Planned planned(MovePlanner& planner, Team team, const MovePlanner::Limits& limits, std::uint64_t seed) {
+Planned planned(MovePlanner& planner, MovingTeam team, const MovePlanner::Limits& limits, std::uint64_t seed) {
   const MovePlan plan = [&] {
     const nb::gil_scoped_release unlocked;
     return planner.plan(std::move(team), limits, seed);

@@ -52,7 +52,7 @@ SingleMoves::Edges SingleMoves::found_way(int to) const {
 // The ways to the nearest places that are clear, the best for its own goal first.
 std::vector<SingleMoves::Edges> SingleMoves::ways_out(int robot) {
   const int at = places_[robot];
-  const auto* to_wish = wish(robot) == Team::kNoGoal ? nullptr : &to_go(wish(robot));
+  const auto* to_wish = wish(robot) == MovingTeam::kNoGoal ? nullptr : &to_go(wish(robot));
   std::vector<std::pair<double, Edges>> found;
   int points = 0;
   const auto visit = [&](int there, double cost) {
@@ -83,7 +83,7 @@ bool SingleMoves::passable(int robot, int edge) const {
 // The first edges of the shortest way from where a robot is to where it wants to be.
 SingleMoves::Edges SingleMoves::route(int robot, std::size_t most) {
   Edges way;
-  if (wish(robot) == Team::kNoGoal) return way;
+  if (wish(robot) == MovingTeam::kNoGoal) return way;
   const auto& left = to_go(wish(robot));
   for (int at = places_[robot]; left[at] > 0 && way.size() < most;) {
     int best = -1;
@@ -121,7 +121,7 @@ void SingleMoves::exchange(int robot, int edge) {
     if (team_.pinned[other] || errand.whose >= 0 || memo_->errands[robot].whose == other) continue;
     if (memo_->stalled[robot] < kPatience && gets_out(other, edge, robot)) continue;
     const auto side = this_side(robot, places_[other], team_.apart(robot, other));
-    int place = Team::kNoGoal;
+    int place = MovingTeam::kNoGoal;
     std::size_t steps = 0;
     search(
         places_[other], [&](int e) { return !meets_pinned(other, e); },
@@ -131,9 +131,9 @@ void SingleMoves::exchange(int robot, int edge) {
             place = there;
             steps = way.size();
           }
-          return place == Team::kNoGoal;
+          return place == MovingTeam::kNoGoal;
         });
-    if (place == Team::kNoGoal) continue;
+    if (place == MovingTeam::kNoGoal) continue;
     errand = {place, robot, 30 + 4 * static_cast<int>(steps)};
     memo_->priorities[other] = memo_->priorities[robot] + 1;
     return;
@@ -198,7 +198,7 @@ bool SingleMoves::gets_out(int robot, int edge, int other) {
   return found;
 }
 
-std::vector<Move> without_detours(const AnnotatedRoadmap& roadmap, const Team& team, std::vector<Move> moves) {
+std::vector<Move> without_detours(const AnnotatedRoadmap& roadmap, const MovingTeam& team, std::vector<Move> moves) {
   const auto needed = [&](int robot, int place, std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
       const auto [other, edge] = moves[k];

@@ -61,7 +61,7 @@ MovePlan::Outcome outcome(const Search& search, int last) {
 
 }  // namespace
 
-MovePlan MovePlanner::plan(const Team& team, const Limits& limits, std::uint64_t seed) {
+MovePlan MovePlanner::plan(const MovingTeam& team, const Limits& limits, std::uint64_t seed) {
   if (tables_.size() > kMostTables) tables_.clear();
   MovePlan best = tried(team, limits, seed);
   if (best.outcome == MovePlan::Outcome::kImpossible || limits.tries == 1) return best;
@@ -69,7 +69,7 @@ MovePlan MovePlanner::plan(const Team& team, const Limits& limits, std::uint64_t
   Random random(seed);
   std::vector<double> ahead(team.robots());
   for (int k = 1; k < limits.tries; ++k) {
-    Team other = team;
+    MovingTeam other = team;
     auto changed = ahead;
     for (double& rounds : changed) {
       if (random.uniform() < kChanged) rounds = kMostAhead * random.uniform();
@@ -89,7 +89,7 @@ MovePlan MovePlanner::plan(const Team& team, const Limits& limits, std::uint64_t
 // How long the plan takes at a metre a second, and on average until a robot has been at its goal: each move begins as
 // soon as all earlier moves of others near the same points have ended. Where a plan ends before, the rest of the way
 // counts.
-double MovePlanner::duration(const Team& team, const MovePlan& plan) {
+double MovePlanner::duration(const MovingTeam& team, const MovePlan& plan) {
   const DirectedGraph& graph = roadmap_->graph();
   std::vector<double> ready(team.robots()), arrived(team.robots(), -1);
   std::vector<LastMoves> last(graph.size());
@@ -103,7 +103,7 @@ double MovePlanner::duration(const Team& team, const MovePlan& plan) {
   }
   double most = 0, sum = 0;
   for (int i = 0; i < team.robots(); ++i) {
-    if (team.goals[i] == Team::kNoGoal || team.pinned[i] || team.starts[i] == team.goals[i]) continue;
+    if (team.goals[i] == MovingTeam::kNoGoal || team.pinned[i] || team.starts[i] == team.goals[i]) continue;
     const auto& left = tables_.to(team.goals[i], [&](int goal) { return graph.costs_to(goal); });
     const double time = arrived[i] >= 0 ? arrived[i] : ready[i] + left[plan.places[i]];
     most = std::max(most, time);
@@ -112,7 +112,7 @@ double MovePlanner::duration(const Team& team, const MovePlan& plan) {
   return most + sum / std::max(1, team.robots());
 }
 
-MovePlan MovePlanner::tried(Team team, const Limits& limits, std::uint64_t seed) {
+MovePlan MovePlanner::tried(MovingTeam team, const Limits& limits, std::uint64_t seed) {
   MovePlan plan{MovePlan::Outcome::kUnfinished, {}, {}, {}};
   do {
     go_on(team, limits, seed, plan);
@@ -124,7 +124,7 @@ MovePlan MovePlanner::tried(Team team, const Limits& limits, std::uint64_t seed)
 }
 
 // As far as all come together.
-void MovePlanner::go_on(Team& team, const Limits& limits, std::uint64_t seed, MovePlan& plan) {
+void MovePlanner::go_on(MovingTeam& team, const Limits& limits, std::uint64_t seed, MovePlan& plan) {
   const int left = limits.horizon - static_cast<int>(plan.moves.size());
   Search search(SingleMoves(roadmap_, team, &tables_, left, limits.settle), seed, false);
   const bool cut_off = search.generator().cut_off();
@@ -146,11 +146,11 @@ void MovePlanner::go_on(Team& team, const Limits& limits, std::uint64_t seed, Mo
 }
 
 // The first robot that comes to its goal if nobody else has one.
-bool MovePlanner::lead(Team& team, const Limits& limits, std::uint64_t seed, MovePlan& plan) {
+bool MovePlanner::lead(MovingTeam& team, const Limits& limits, std::uint64_t seed, MovePlan& plan) {
   for (int leader = 0; leader < team.robots(); ++leader) {
     if (team.arrived[leader]) continue;
-    Team alone = team;
-    std::fill(alone.goals.begin(), alone.goals.end(), Team::kNoGoal);
+    MovingTeam alone = team;
+    std::fill(alone.goals.begin(), alone.goals.end(), MovingTeam::kNoGoal);
     alone.goals[leader] = team.goals[leader];
     MovePlan led{MovePlan::Outcome::kUnfinished, plan.moves, {}, {}};
     go_on(alone, limits, seed, led);

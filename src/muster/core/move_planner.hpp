@@ -32,17 +32,17 @@ class MovePlanner {
   explicit MovePlanner(std::shared_ptr<const AnnotatedRoadmap> roadmap) : roadmap_(std::move(roadmap)) {}
 
   // The first try has the priorities of the team; the others add to them by chance.
-  MovePlan plan(const Team& team, const Limits& limits, std::uint64_t seed);
+  MovePlan plan(const MovingTeam& team, const Limits& limits, std::uint64_t seed);
   std::size_t tables() const { return tables_.size(); }
   const AnnotatedRoadmap& roadmap() const { return *roadmap_; }
 
  private:
   static constexpr std::size_t kMostTables = 2000;
 
-  MovePlan tried(Team team, const Limits& limits, std::uint64_t seed);
-  double duration(const Team& team, const MovePlan& plan);
-  void go_on(Team& team, const Limits& limits, std::uint64_t seed, MovePlan& plan);
-  bool lead(Team& team, const Limits& limits, std::uint64_t seed, MovePlan& plan);
+  MovePlan tried(MovingTeam team, const Limits& limits, std::uint64_t seed);
+  double duration(const MovingTeam& team, const MovePlan& plan);
+  void go_on(MovingTeam& team, const Limits& limits, std::uint64_t seed, MovePlan& plan);
+  bool lead(MovingTeam& team, const Limits& limits, std::uint64_t seed, MovePlan& plan);
 
   std::shared_ptr<const AnnotatedRoadmap> roadmap_;
   SingleMoves::Tables tables_;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMostIdle = 10;  // rounds in which nobody moves
 
-void check(const Team& team, int points) {
+void check(const MovingTeam& team, int points) {
   const auto robots = team.starts.size();
   if (team.goals.size() != robots || team.radii.size() != robots || team.priorities.size() != robots ||
       team.pinned.size() != robots || team.arrived.size() != robots) {
@@ -22,7 +22,7 @@ void check(const Team& team, int points) {
   std::vector<char> taken(points);
   for (std::size_t i = 0; i < robots; ++i) {
     const int start = team.starts[i], goal = team.goals[i];
-    if (start < 0 || start >= points || goal < Team::kNoGoal || goal >= points) {
+    if (start < 0 || start >= points || goal < MovingTeam::kNoGoal || goal >= points) {
       throw std::invalid_argument("a start or goal is no point");
     }
     if (std::exchange(taken[start], 1)) throw std::invalid_argument("two robots start at one point");
@@ -34,7 +34,7 @@ void check(const Team& team, int points) {
 
 }  // namespace
 
-SingleMoves::SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, Team team, Tables* tables, int horizon,
+SingleMoves::SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, MovingTeam team, Tables* tables, int horizon,
                          bool settle)
     : roadmap_(std::move(roadmap)),
       graph_(roadmap_->graph()),
@@ -46,7 +46,7 @@ SingleMoves::SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, Team t
   pace_ = 0;
   for (int e = 0; e < graph_.edges(); ++e) pace_ += graph_.cost(e) / graph_.edges();
   most_radius_ = team_.radii.empty() ? 0 : *std::max_element(team_.radii.begin(), team_.radii.end());
-  for (const int goal : team_.goals) goal_tables_.push_back(goal == Team::kNoGoal ? nullptr : &to_go(goal));
+  for (const int goal : team_.goals) goal_tables_.push_back(goal == MovingTeam::kNoGoal ? nullptr : &to_go(goal));
   standing_.assign(graph_.size(), -1);
   pending_.assign(team_.robots(), 0);
   tried_.assign(team_.robots(), 0);
@@ -60,7 +60,7 @@ Configuration SingleMoves::start() const {
   Configuration start;
   for (int i = 0; i < team_.robots(); ++i) {
     const bool there =
-        team_.arrived[i] || team_.pinned[i] || team_.goals[i] == Team::kNoGoal || team_.goals[i] == team_.starts[i];
+        team_.arrived[i] || team_.pinned[i] || team_.goals[i] == MovingTeam::kNoGoal || team_.goals[i] == team_.starts[i];
     start.push_back(2 * team_.starts[i] + there);
   }
   return start;
@@ -95,7 +95,7 @@ bool SingleMoves::finished(const Configuration& configuration, const Memo& memo)
 bool SingleMoves::all_arrived(const Configuration& configuration) const {
   for (int i = 0; i < team_.robots(); ++i) {
     const bool away =
-        settle_ && !team_.pinned[i] && team_.goals[i] != Team::kNoGoal && point(configuration[i]) != team_.goals[i];
+        settle_ && !team_.pinned[i] && team_.goals[i] != MovingTeam::kNoGoal && point(configuration[i]) != team_.goals[i];
     if (away || !visited(configuration[i])) return false;
   }
   return true;
@@ -202,7 +202,7 @@ bool SingleMoves::let_time_pass() {
 
 int SingleMoves::wish(int robot) const {
   const Errand& errand = memo_->errands[robot];
-  if (team_.pinned[robot]) return Team::kNoGoal;
+  if (team_.pinned[robot]) return MovingTeam::kNoGoal;
   return errand.whose >= 0 ? errand.place : team_.goals[robot];
 }
 
@@ -224,7 +224,7 @@ void SingleMoves::advance(int robot) {
 
 void SingleMoves::ways_ahead(int robot, Edges& found) {
   const int at = places_[robot], last = memo_->edges[robot];
-  if (wish(robot) == Team::kNoGoal) return;
+  if (wish(robot) == MovingTeam::kNoGoal) return;
   const auto& to_wish = to_go(wish(robot));
   std::vector<std::pair<double, int>> keys;
   for (int e = graph_.begin(at); e < graph_.end(at); ++e) {
@@ -323,7 +323,7 @@ void SingleMoves::grow() {
   }
   for (int i = 0; i < team_.robots(); ++i) {
     double& priority = memo_->priorities[i];
-    const bool rests = wish(i) == Team::kNoGoal || places_[i] == wish(i);
+    const bool rests = wish(i) == MovingTeam::kNoGoal || places_[i] == wish(i);
     priority = rests ? priority - std::floor(priority) : priority + 1;
   }
 }

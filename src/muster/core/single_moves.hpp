@@ -20,7 +20,7 @@ struct Move {
   int edge;
 };
 
-struct Team {
+struct MovingTeam {
   static constexpr int kNoGoal = -1;
 
   Configuration starts;
@@ -44,7 +44,7 @@ class SingleMoves {
   using Tables = GoalTables<std::vector<double>>;
   // Where a robot is sent so that another can pass.
   struct Errand {
-    int place = Team::kNoGoal;
+    int place = MovingTeam::kNoGoal;
     int whose = -1;
     int rounds = 0;
   };
@@ -61,7 +61,7 @@ class SingleMoves {
 
   // Ends when each robot has been at its goal, with `settle` when all are there at once, or after `horizon` moves.
   // `tables` outlives it. Throws std::invalid_argument where the team does not fit the roadmap.
-  SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, Team team, Tables* tables, int horizon, bool settle);
+  SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, MovingTeam team, Tables* tables, int horizon, bool settle);
 
   Configuration start() const;
   Memo memo() const;
@@ -77,7 +77,7 @@ class SingleMoves {
 
   static int point(int where) { return where / 2; }
   static bool visited(int where) { return where % 2 != 0; }
-  const Team& team() const { return team_; }
+  const MovingTeam& team() const { return team_; }
   const AnnotatedRoadmap& roadmap() const { return *roadmap_; }
   bool all_arrived(const Configuration& configuration) const;
   // Whether a robot has no way to its goal, even alone.
@@ -124,7 +124,7 @@ class SingleMoves {
 
   std::shared_ptr<const AnnotatedRoadmap> roadmap_;
   const DirectedGraph& graph_;
-  Team team_;
+  MovingTeam team_;
   Tables* tables_;
   int horizon_;
   bool settle_;
@@ -165,6 +165,6 @@ class SingleMoves {
 };
 
 // The moves without those that take a robot away from a point and back to it while nobody needed that.
-std::vector<Move> without_detours(const AnnotatedRoadmap& roadmap, const Team& team, std::vector<Move> moves);
+std::vector<Move> without_detours(const AnnotatedRoadmap& roadmap, const MovingTeam& team, std::vector<Move> moves);
 
 }  // namespace muster

@@ -129,7 +129,6 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
         reach_start=start,
         reach_point=point,
         reach_m=metres,
-        capacity=np.append(roadmap.capacity, np.zeros(more, dtype=np.int64))[order],
         speed_mps=np.append(roadmap.speed_mps, np.full(more, np.inf))[order],
     )
 
