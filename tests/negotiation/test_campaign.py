@@ -3,6 +3,8 @@
 from collections import Counter
 
 import pytest
+from tests.negotiation.campaign.calm import calm, like_the_centre
+from tests.negotiation.campaign.carried_out import carried_out
 from tests.negotiation.campaign.mutants import plant
 from tests.negotiation.campaign.trial import trial
 from tests.negotiation.networks import line_mission, settled_team
@@ -66,6 +68,10 @@ def test_an_error_is_a_failure(monkeypatch):
     assert "ZeroDivisionError" in trial(0).failures[0]
 
 
+def timed(seed):
+    return trial(seed, timed=True)
+
+
 PLANTED = {  # from which seed on a few runs find the fault, and what it is: module, right, wrong
     "half of the team is enough": (0, "epoch_base", "len(self.robots) // 2 + 1", "(len(self.robots) + 1) // 2"),
     "nobody need know what is begun": (
@@ -87,6 +93,60 @@ def test_a_fault_of_the_protocol_is_found(monkeypatch, fault):
     first, *where = PLANTED[fault]
     plant(monkeypatch, *where)
     assert any(trial(seed).failures for seed in range(first, first + 30))
+
+
+_SOLD = "self._auction = CoalitionAuction(problem, terms, routes)"
+
+
+def _with_tasks(**keys):
+    """The line that opens the sales, of tasks `t` with other keys."""
+    tasks = ", ".join(f"{key}={value}" for key, value in keys.items())
+    tasks = f"tuple(__import__('dataclasses').replace(t, {tasks}) for t in problem.tasks)"
+    problem = f"__import__('dataclasses').replace(problem, tasks={tasks}, known=problem.measured)"
+    return _SOLD.replace("(problem", f"({problem}")
+
+
+_LATER = "None if t.deadline_s is None else t.deadline_s + 1.0"
+PLANTED_IN_TIME = {  # which run finds the fault from which seed on, and what it is: module, right, wrong
+    "bids ignore windows": (like_the_centre, 0, "unit_sales", _SOLD, _with_tasks(window_s="()")),
+    "bids ignore deadlines": (like_the_centre, 0, "unit_sales", _SOLD, _with_tasks(deadline_s="None")),
+    "deadlines are off by one": (timed, 10, "unit_sales", _SOLD, _with_tasks(deadline_s=_LATER)),
+    "bids ignore lags": (like_the_centre, 0, "unit_sales", _SOLD, _with_tasks(lags="{}")),
+    "the worst bid wins": (like_the_centre, 0, "unit_sales", "sorted(alone, key", "sorted(alone, reverse=True, key"),
+    "a team begins when its first robot could": (
+        calm,
+        0,
+        "joint_statements",
+        "max(presence.from_s for",
+        "min(presence.from_s for",
+    ),
+    "who learns of a begin too late begins too": (
+        carried_out,
+        4,
+        "joint_starts",
+        "if now > begin(start.from_s)",
+        "if False",
+    ),
+    "what was lost is not told again": (
+        carried_out,
+        0,
+        "repairs",
+        "if message.known != known.digest and",
+        "if False and",
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", PLANTED_IN_TIME)
+def test_a_fault_in_time_is_found(monkeypatch, fault):
+    tried, first, *where = PLANTED_IN_TIME[fault]
+    plant(monkeypatch, *where)
+    assert any(tried(seed).failures for seed in range(first, first + 20))
+
+
+@pytest.mark.parametrize("tried", [like_the_centre, calm, carried_out], ids=lambda tried: tried.__name__)
+def test_nothing_fails_of_teams_at_work(tried):
+    assert {seed: what for seed in range(12) if (what := tried(seed).failures)} == {}
 
 
 def test_scenes_have_everything():

@@ -12,8 +12,9 @@ or one that was sold before, ends too late for the tasks that wait for it (`late
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -113,21 +114,16 @@ class CoalitionAuction:
             self.sales.append(sale)
 
     def _sold(self, offers: Sequence[CoalitionSale]) -> CoalitionSale | None:
-        """Assign the first unit that can be, the winner rule's choice first.
+        """Assign the first unit that can be, by the winner rule's choice.
 
-        A robot does not bid for what does not hold, so that its next bid counts; a coalition that does not hold ends
-        the offer.
+        A robot does not bid for what does not hold, and of what a coalition cannot hold the next one has it.
         """
         contested = self._terms.winner_rule == "least-contested"
-        left = {offer.won.unit: self._held(offer.bids) if contested else offer.bids for offer in offers}
-        while any(left.values()):
-            ranks = {unit: (rank([bid.key for bid in bids], self._terms), unit) for unit, bids in left.items() if bids}
-            unit = min(ranks, key=ranks.__getitem__)
-            won, *others = left[unit]
+        bids_for = {offer.won.unit: offer.bids for offer in offers}
+        for unit, won in in_turn({u: self._held(b) if contested else b for u, b in bids_for.items()}, self._terms):
             if self.assign(won):
-                (bids,) = (offer.bids for offer in offers if offer.won.unit == unit)
-                return CoalitionSale(len(self.sales) + 1, [won, *(bid for bid in bids if bid is not won)])
-            left[unit] = others if self.is_alone(unit) else []
+                others = [bid for bid in bids_for[unit] if bid is not won]
+                return CoalitionSale(len(self.sales) + 1, [won, *others])
         return None
 
     def _held(self, bids: list[CoalitionBid]) -> list[CoalitionBid]:
@@ -221,6 +217,28 @@ class CoalitionAuction:
 
 def _team(bid: CoalitionBid) -> frozenset[tuple[int, int]]:
     return frozenset((task, robot) for task, robot, _ in bid.insertion.members)
+
+
+class Keyed(Protocol):
+    """What is offered for a unit."""
+
+    @property
+    def key(self) -> tuple[bool, float]: ...
+
+
+KeyedT = TypeVar("KeyedT", bound=Keyed)
+
+
+def in_turn(bids: Mapping[int, Sequence[KeyedT]], terms: Terms) -> Iterator[tuple[int, KeyedT]]:
+    """The bids for units, each unit's best first, in the order in which a winner rule chooses them.
+
+    Whoever goes on has found that the last one does not hold: then the unit's next bid is its best.
+    """
+    left = {unit: list(offered) for unit, offered in bids.items() if offered}
+    while left:
+        unit = min(left, key=lambda u: (rank([bid.key for bid in left[u]], terms), u))
+        yield unit, left[unit].pop(0)
+        left = {u: offered for u, offered in left.items() if offered}
 
 
 def rank(keys: Sequence[tuple[bool, float]], terms: Terms) -> tuple[bool, float]:

@@ -20,7 +20,7 @@ from muster.allocation.coalitions import (
     CoalitionSale,
     awards_of,
     bids_of_round,
-    rank,
+    in_turn,
 )
 from muster.allocation.problem import Problem
 from muster.mission.auction_book import Award
@@ -57,9 +57,9 @@ class UnitSales:
 
     def winner(self, bids: Sequence[RoundBids]) -> Sold | None:
         """The sale of a round with these bids of all members; None: there is none."""
-        offers = [offer for unit in self._for_sale() if (offer := self._offer(unit, bids)).bids]
-        ranked = sorted(offers, key=lambda offer: rank([bid.key for bid in offer.bids], self._terms))
-        return next((sold for offer in ranked if (sold := self._sold(offer)) is not None), None)
+        offers = {unit: self._offers(unit, bids) for unit in self._for_sale()}
+        ranked = (self._sold(unit, best) for unit, best in in_turn(offers, self._terms))
+        return next((sold for sold in ranked if sold is not None), None)
 
     def award(self, sold: Sold) -> None:
         """Put a unit into the routes of its winners."""
@@ -96,14 +96,14 @@ class UnitSales:
                 if self._problem.may(robot, task):
                     yield self._problem.tasks[task].id, self._auction.usage(robot)
 
-    def _offer(self, unit: int, bids: Sequence[RoundBids]) -> _Offer:
-        """The bids for a unit."""
+    def _offers(self, unit: int, bids: Sequence[RoundBids]) -> list[_Winners]:
+        """The bids for a unit, the best first."""
         heard = self._heard(unit, bids)
         if self._auction.is_alone(unit):
             alone = [_Winners((self._leaves_no_time(unit, robot), price), (robot,)) for robot, price in heard.items()]
-            return _Offer(unit, sorted(alone, key=lambda bid: (bid.key, bid.robots)))
+            return sorted(alone, key=lambda bid: (bid.key, bid.robots))
         coalitions = self._auction.bids(unit, sorted(heard)) if heard else []
-        return _Offer(unit, [_Winners(bid.key, _robots(bid)) for bid in coalitions])
+        return [_Winners(bid.key, _robots(bid)) for bid in coalitions]
 
     def _leaves_no_time(self, unit: int, robot: int) -> bool:
         """Whether by the bid of this robot something not sold yet could not be in time any more, as all compute it."""
@@ -115,12 +115,11 @@ class UnitSales:
         names, number = set(self._names(unit)), self._problem.robot_index
         return {number[said.robot]: price for said in bids for task, price in said.bids if task in names}
 
-    def _sold(self, offer: _Offer) -> Sold | None:
-        """The sale to the best bid for a unit; None: the schedule does not hold it."""
-        best = offer.bids[0]
-        if self._auction.is_alone(offer.unit):
-            return Sold(self._problem.robots[best.robots[0]].id, self._names(offer.unit)[0], best.key[1])
-        bid = self._auction.best_bid(offer.unit, best.robots)
+    def _sold(self, unit: int, best: _Winners) -> Sold | None:
+        """The sale of a unit by a bid; None: the schedule does not hold it."""
+        if self._auction.is_alone(unit):
+            return Sold(self._problem.robots[best.robots[0]].id, self._names(unit)[0], best.key[1])
+        bid = self._auction.best_bid(unit, best.robots)
         if bid is None or not self._auction.holds(bid):
             return None
         (robot, task), *others = self._assignments(bid)
@@ -154,14 +153,6 @@ class _Winners:
 
     key: tuple[bool, float]
     robots: tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class _Offer:
-    """A unit and the bids for it, the best first."""
-
-    unit: int
-    bids: list[_Winners]
 
 
 def _robots(bid: CoalitionBid) -> tuple[int, ...]:

@@ -98,7 +98,7 @@ class Run:
                 if begun is None:
                     yield f"{name} was done by {members}, who did not begin at one moment"
                 else:
-                    yield from self._wrong_times(task, begun, done)
+                    yield from self._wrong_times(task, members, begun, done)
             if len(teams) > 1 and self.may_do_once:
                 yield f"{name} was done twice: {teams}"
         for task in self.tasks.values():
@@ -107,14 +107,20 @@ class Run:
                 if len(begins) == 2 and None not in begins and abs(begins[0] - begins[1]) > MOMENT_S:
                     yield f"{task.id} and {other} began at {begins}"
 
-    def _wrong_times(self, task, begun, done):
+    def _lasts_s(self, name, members):
+        """How long a task takes these robots: as long as the slowest."""
+        return max(self.tasks[name].duration_s / self._robot(one).efficiency for one in members)
+
+    def _wrong_times(self, task, members, begun, done):
         if task.window_s and not any(opens - MOMENT_S <= begun <= closes + MOMENT_S for opens, closes in windows(task)):
             yield f"{task.id} began at {begun:.1f} s, outside of {task.window_s}"
-        if task.deadline_s is not None and begun + task.duration_s > task.deadline_s + MOMENT_S:
-            yield f"{task.id} began at {begun:.1f} s and lasts {task.duration_s:.1f} s, due at {task.deadline_s:.1f} s"
+        lasts_s = self._lasts_s(task.id, members)
+        if task.deadline_s is not None and begun + lasts_s > task.deadline_s + MOMENT_S:
+            yield f"{task.id} began at {begun:.1f} s and lasts {lasts_s:.1f} s, due at {task.deadline_s:.1f} s"
         for before in task.prerequisites:
             lag = task.lags.get(before)
-            ends = [at_s + self.tasks[before].duration_s for at_s in done.get(before, {}).values() if at_s is not None]
+            did = done.get(before, {}).items()
+            ends = [at_s + self._lasts_s(before, team) for team, at_s in did if at_s is not None]
             if not ends or min(ends) + (lag.after_s if lag else 0.0) > begun + MOMENT_S:
                 yield f"{task.id} began at {begun:.1f} s, before the lag after {before} ({ends})"
             elif lag and lag.within_s is not None and max(ends) + lag.within_s < begun - MOMENT_S:
