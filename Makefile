@@ -7,7 +7,9 @@ CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 
-.PHONY: demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances disturbances-timed help check format stub sanitize study bench clean prerequisites test-packages
+unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
+
+.PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances disturbances-timed help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -57,6 +59,9 @@ disturbances: $(VENV)/developed
 disturbances-timed: $(VENV)/developed
 	$(BIN)/python -m tests.disturbances.timed $(or $(DISTURBANCES_FLAGS),2000)
 
+standing: $(VENV)/developed
+	$(BIN)/muster bench --only standing,standing-live
+
 help:
 	@echo "make demo       plan, draw and simulate a mission (DEMO_MISSION=$(DEMO_MISSION))"
 	@echo "make test       run all tests"
@@ -77,6 +82,7 @@ help:
 	@echo "make stub       make the type stub of the core anew"
 	@echo "make sanitize   run the core's tests under the address and undefined-behaviour sanitizers"
 	@echo "make study      repeat section 3.3 of the TCF thesis, 10 seeds a case"
+	@echo "make standing   an hour of a standing fleet, simulated, and ten minutes in real time"
 	@echo "make bench      measure speed on this machine"
 	@echo "make clean      remove what make has made"
 

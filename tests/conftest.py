@@ -20,6 +20,13 @@ def pytest_configure():
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_make_parametrize_id(val, argname):
+    """A long text is named by its length: names go between all processes of xdist, and some had millions of letters."""
+    if isinstance(val, str | bytes) and len(val) > 300:
+        return f"{argname} of {len(val)}"
+    return None
+
+
 @pytest.fixture(autouse=True)
 def log_level():
     """What `-q` of a verb does to the log of this process ends with the test."""

@@ -133,6 +133,15 @@ def test_no_tasks():
     assert look(mission([robot()], [])) == Together()
 
 
+def test_the_same_robots_cannot_be_one_and_two():
+    robots = [robot("r_0", abilities={"lift": 1.0}), robot("r_1", 9, 0, abilities={"lift": 1.0})]
+    lift = task("lift", 1, 1, robots_needed=2, same_robot_as=("look",))
+    found = look(mission(robots, [lift, task("look", 2, 1)])).conflict
+    assert (found.tasks, found.minimal) == (("lift", "look"), True)
+    assert found.detail == "the same robots must do lift and look; lift needs 2 robots, look 1 robot"
+    assert look(mission(robots, [lift, task("look", 2, 1, needs={"lift": 1.0})])) == Together()
+
+
 # --- against all plans there are -------------------------------------------------------------------------------------
 
 

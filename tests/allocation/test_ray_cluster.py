@@ -73,6 +73,15 @@ def address(cluster):
     return cluster.address
 
 
+@pytest.fixture(scope="class")
+def workers(address):
+    """The cluster, joined once for all tests of a class, as its workers take seconds to start."""
+    before = signal.getsignal(signal.SIGTERM)
+    with joined(address) as workers:
+        yield workers
+    assert signal.getsignal(signal.SIGTERM) is before  # Ray's own does not stay
+
+
 def test_the_plan_is_that_of_threads(address):
     by_threads, by_ray = (
         muster.solve(MISSION, "search", iterations=2_000, seed=3, parts=4, **where) for where in ({}, {"ray": address})
@@ -135,13 +144,13 @@ def used_s(process):
 
 
 @contextmanager
-def once_both_work(cluster, act, monkeypatch):
+def once(both_work, act, monkeypatch):
     """Act while both nodes work on a part, or after two minutes; not if the block ends before. Workers may be slow."""
     monkeypatch.setattr("muster.allocation.ray_cluster._RETURNED_WITHIN_S", 60.0)
     over, until = threading.Event(), time.monotonic() + 120
 
     def wait():
-        while at_work(cluster) < 2 and time.monotonic() < until:
+        while not both_work() and time.monotonic() < until:
             if over.wait(0.1):
                 return
         act()
@@ -164,7 +173,7 @@ def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(cluster, address
     mission.write_text(yaml_text(MISSION))
     muster.solve(MISSION, "greedy").save(start)
     words = f"solve {mission} --ray {address} --set parts=2 --iterations 1000000000 --start {start} -o {plan}"
-    with once_both_work(cluster, ctrl_c, monkeypatch):
+    with once(lambda: at_work(cluster) == 2, ctrl_c, monkeypatch):
         assert run(words.split()) == 130
     written = read_plan(plan)
     assert muster.verify(muster.load(mission), written).violations == ()
@@ -190,86 +199,76 @@ def jobs(improve):
     return [Job(part, k, [[]], Limits(None, 100), improve) for k, part in enumerate(parts)]
 
 
-def test_a_worker_that_dies_is_replaced(address, tmp_path):
-    mark = tmp_path / "died"
+class TestOfOneWhoHasJoined:
+    """First what leaves workers alive: a later test has them without a start."""
 
-    def die_once(seed):
-        if seed == 2 and not mark.exists():
-            mark.touch()
-            os.kill(os.getpid(), signal.SIGKILL)
+    def test_jobs_end_when_it_is_time(self, workers, tmp_path, monkeypatch):
+        """Those at work return the best they have; those that have not begun, nothing."""
+        begin = improvement(lambda seed: tmp_path.joinpath(str(seed)).touch())
+        endless = [replace(job, limits=Limits(None, 10**9)) for job in jobs(begin)]
+        stop = Stop()
+        with once(lambda: len(list(tmp_path.iterdir())) >= 2, stop.interrupt, monkeypatch):
+            assert workers.count == 2
+            offers = list(workers.map(endless, stop))
+        held = [offer for offer in offers if offer is not None]
+        assert len(held) >= 2  # a worker that has returned one may begin another before that is cancelled
+        assert all(sorted(offer.routes[0]) == list(range(20)) for offer in held)
 
-    with joined(address) as workers:
-        offers = list(workers.map(jobs(improvement(die_once)), Stop()))
-    assert mark.exists()
-    alone = Threads(1).map(jobs(improvement(lambda seed: None)), Stop())
-    assert [offer.routes for offer in offers] == [offer.routes for offer in alone]
-
-
-def test_a_part_whose_workers_die_keeps_its_routes(address, caplog):
-    def die(seed):
-        if seed == 2:
-            os.kill(os.getpid(), signal.SIGKILL)
-
-    problem = Problem.compile(MISSION)
-    start = greedy.allocate(problem, Stop(), 0, greedy.Parameters(), None).routes
-    with joined(address) as workers:
-        better = improve_in_parts(problem, Stop(iterations=800), 0, 4, workers, start, improvement(die))
-    assert caplog.messages == ["ray: a worker was lost (WorkerCrashedError); its part keeps the routes it had"] * 4
-    assert sorted(j for route in better for j in route) == list(range(600))
-    assert problem.value(better)[1] < problem.value(start)[1]
-
-
-def test_where_the_head_is_lost_parts_keep_their_routes(address, caplog):
-    start = [[i] for i in range(24)]
-    problem = Problem.compile(MISSION)
-    with joined(address) as workers:
+    def test_where_the_head_is_lost_parts_keep_their_routes(self, address, workers, caplog):
+        start = [[i] for i in range(24)]
+        problem = Problem.compile(MISSION)
         headless = replace(workers, head=f"127.0.0.1:{free_port()}")
         offers = list(headless.map(jobs(improvement(lambda seed: None)), Stop()))
         better = improve_in_parts(problem, Stop(iterations=80), 0, 4, headless, start, improvement(lambda seed: None))
-    assert offers == [None] * 4
-    assert caplog.messages[0].startswith(f"ray: {address}: the head was lost ([Errno 111] Connection refused)")
-    assert [route[0] for route in better] == list(range(24))
-    assert sorted(j for route in better for j in route) == list(range(600))
+        assert offers == [None] * 4
+        assert caplog.messages[0].startswith(f"ray: {address}: the head was lost ([Errno 111] Connection refused)")
+        assert [route[0] for route in better] == list(range(24))
+        assert sorted(j for route in better for j in route) == list(range(600))
 
+    def test_a_worker_that_cannot_do_the_work_is_named(self, address, workers):
+        def lack(seed):
+            raise ModuleNotFoundError("No module named 'muster'")
 
-def test_jobs_end_when_it_is_time(cluster, address, monkeypatch):
-    """Those at work return the best they have; those that have not begun, nothing."""
-    endless = [replace(job, limits=Limits(None, 10**9)) for job in jobs(improvement(lambda seed: None))]
-    stop = Stop()
-    with joined(address) as workers, once_both_work(cluster, stop.interrupt, monkeypatch):
-        assert workers.count == 2
-        offers = list(workers.map(endless, stop))
-    held = [offer for offer in offers if offer is not None]
-    assert len(held) >= 2  # a worker that has returned one may begin another before that is cancelled
-    assert all(sorted(offer.routes[0]) == list(range(20)) for offer in held)
+        with pytest.raises(MusterError) as failed:
+            list(workers.map(jobs(improvement(lack)), Stop()))
+        assert str(failed.value) == (
+            f"ray: {address}: a worker fails (ModuleNotFoundError: No module named 'muster'); "
+            "expected Muster of this version on every machine"
+        )
 
-
-def test_a_worker_that_cannot_do_the_work_is_named(address):
-    def lack(seed):
-        raise ModuleNotFoundError("No module named 'muster'")
-
-    with joined(address) as workers, pytest.raises(MusterError) as failed:
-        list(workers.map(jobs(improvement(lack)), Stop()))
-    assert str(failed.value) == (
-        f"ray: {address}: a worker fails (ModuleNotFoundError: No module named 'muster'); "
-        "expected Muster of this version on every machine"
-    )
-
-
-def test_a_process_that_has_joined_one_stays_there(address):
-    with joined(address):
-        with joined("auto") as workers:
-            assert workers.count == 2
+    def test_a_process_that_has_joined_one_stays_there(self, address, workers):
+        with joined("auto") as again:
+            assert again.count == 2
         assert ray.is_initialized()
         with pytest.raises(ParameterError, match="in a process that has joined a cluster; expected auto"):
             muster.solve(MISSION, "search", parts=4, ray=address)
 
+    def test_a_worker_that_dies_is_replaced(self, workers, tmp_path):
+        mark = tmp_path / "died"
 
-def test_rays_handler_of_sigterm_does_not_stay(address):
-    before = signal.getsignal(signal.SIGTERM)
-    with joined(address):
-        pass
-    assert signal.getsignal(signal.SIGTERM) is before
+        def die_once(seed):
+            if seed == 2 and not mark.exists():
+                mark.touch()
+                os.kill(os.getpid(), signal.SIGKILL)
+
+        offers = list(workers.map(jobs(improvement(die_once)), Stop()))
+        assert mark.exists()
+        alone = Threads(1).map(jobs(improvement(lambda seed: None)), Stop())
+        assert [offer.routes for offer in offers] == [offer.routes for offer in alone]
+
+    def test_a_part_whose_workers_die_keeps_its_routes(self, workers, caplog, monkeypatch):
+        monkeypatch.setattr("muster.allocation.partition._DIVISIONS", 2)  # in each of which two workers die and start
+
+        def die(seed):
+            if seed == 2:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+        problem = Problem.compile(MISSION)
+        start = greedy.allocate(problem, Stop(), 0, greedy.Parameters(), None).routes
+        better = improve_in_parts(problem, Stop(iterations=400), 0, 4, workers, start, improvement(die))
+        assert caplog.messages == ["ray: a worker was lost (WorkerCrashedError); its part keeps the routes it had"] * 2
+        assert sorted(j for route in better for j in route) == list(range(600))
+        assert problem.value(better)[1] < problem.value(start)[1]
 
 
 @pytest.mark.parametrize(

@@ -77,6 +77,7 @@ def test_in_json(muster):
         },
         "unknown": False,
         "unseen": [],
+        "blocked": [],
     }
 
 
@@ -96,7 +97,8 @@ def test_when_all_can_be_done(muster):
         "",
     )
     answer = json.loads(muster("check", "m.yaml", "--format", "json")[1])
-    assert answer == {"errors": [], "impossible": [], "conflict": None, "unknown": False, "unseen": []}
+    nothing = {"errors": [], "impossible": [], "conflict": None, "unknown": False, "unseen": [], "blocked": []}
+    assert answer == nothing
 
 
 @pytest.mark.parametrize(("capacity", "code"), [(60, 3), (120, 0)])
@@ -122,7 +124,7 @@ def test_no_time(muster):
 def test_errors_in_json_have_all_keys(muster):
     code, out, err = muster("check", write("schema: muster/1\n"), "--format", "json")
     assert (code, err) == (2, "")
-    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown", "unseen"]
+    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown", "unseen", "blocked"]
 
 
 SEARCH = """\
@@ -198,3 +200,82 @@ def test_a_robot_that_would_have_to_do_more_tasks_than_there_are_is_a_warning(mu
     assert "no errors" in out
     assert err.splitlines() == ["warning: robot r_0: min_tasks 4, and the mission has 3 tasks: it does none"]
     assert "min_tasks" not in muster("check", "two.yaml", "--ignore", "min-tasks")[2]
+
+
+SWAP = """\
+schema: muster/1
+name: swap
+map: {boundary: [[0, 0], [10, 0], [10, 0.9], [0, 0.9]]}
+robots:
+  - {id: r_3, position: [1, 0.45], radius_m: 0.3}
+  - {id: r_7, position: [9, 0.45], radius_m: 0.3}
+tasks:
+  - {id: a, position: [8, 0.45], only_robots: [r_3]}
+  - {id: b, position: [0.4, 0.45], only_robots: [r_7]}
+  - {id: c, position: [5, 0.45]}
+"""
+BAY = "[[0, 0], [10, 0], [10, 0.9], [6, 0.9], [6, 2.5], [4, 2.5], [4, 0.9], [0, 0.9]]"
+ENDS = """\
+schema: muster/1
+name: ends
+map: {boundary: [[0, 0], [10, 0], [10, 0.9], [0, 0.9]]}
+rules: {return_to_start: false}
+robots:
+  - {id: r_3, position: [1, 0.45], radius_m: 0.3, end_position: [8, 0.45]}
+  - {id: r_7, position: [9, 0.45], radius_m: 0.3, end_position: [1.5, 0.45]}
+tasks:
+  - {id: a, position: [2, 0.45], only_robots: [r_3]}
+  - {id: b, position: [8, 0.45], only_robots: [r_7]}
+"""
+LANES = """\
+schema: muster/1
+name: lanes
+lanes:
+  nodes: {dock: [0, 0], gate: [5, 0], rack_1: [9, 3], rack_2: [9, -3]}
+  edges:
+    - {from: dock, to: gate, both_ways: true}
+    - {from: gate, to: rack_1}
+    - {from: rack_1, to: rack_2, capacity: 1}
+    - {from: rack_2, to: gate, width_m: 0.5}
+robots:
+  - {id: r_0, position: [0, 0], radius_m: 0.3}
+  - {id: r_1, position: [5, 0], radius_m: 0.3, return_to_start: true}
+tasks: [{id: 1, position: [9, 3]}, {id: 2, position: [9, -3], only_robots: [r_1]}]
+"""
+
+
+def blocked(muster, text):
+    return json.loads(muster("check", write(text), "--format", "json")[1])["blocked"]
+
+
+def test_robots_that_must_swap_in_a_dead_end_are_named(muster):
+    (one,) = blocked(muster, SWAP)
+    assert (one["task"], one["robots"]) == ("b", ["r_7", "r_3"])
+    assert one["detail"].startswith("r_7 and r_3 must swap in a dead end: r_7 cannot get to task b (")
+    out = muster("check", "m.yaml")[1]
+    assert "No traffic can get these done (proven on the roadmap)" in out
+    assert " b " in out
+    assert muster("check", "m.yaml", "--require-complete")[0] == 3
+
+
+def test_a_bay_lets_them_pass(muster):
+    assert blocked(muster, SWAP.replace("[[0, 0], [10, 0], [10, 0.9], [0, 0.9]]", BAY)) == []
+
+
+def test_a_task_that_another_robot_can_do_as_well_is_not_named(muster):
+    assert blocked(muster, SWAP.replace(", only_robots: [r_7]", "")) == []
+
+
+def test_robots_that_cannot_be_at_their_ends_both_are_named(muster):
+    """Each could be at its own end, were the other one elsewhere."""
+    (one,) = blocked(muster, ENDS)
+    assert (one["task"], sorted(one["robots"])) == (None, ["r_3", "r_7"])
+    assert "they cannot be at the ends of their routes both" in one["detail"]
+    assert blocked(muster, ENDS.replace("[8, 0.45]}", "[5, 0.45]}").replace("[1.5, 0.45]", "[9, 0.45]")) == []
+
+
+def test_lanes_that_do_not_lead_where_robots_must_go_are_named(muster):
+    (one,) = blocked(muster, LANES)
+    assert (one["task"], one["robots"]) == ("2", ["r_1"])
+    assert one["detail"] == "no lanes lead r_1 to task 2 and to the end of its route"
+    assert blocked(muster, LANES.replace(", width_m: 0.5", "")) == []

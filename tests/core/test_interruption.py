@@ -18,5 +18,5 @@ def test_while_a_graph_is_built():
     press = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
     press.start()
     with pytest.raises(KeyboardInterrupt):
-        finder.lengths(np.array([[3.5, 3.5], [700.5, 700.5]]))
+        finder.lengths(np.random.default_rng(2).uniform(0, 1500, (200, 2)))
     press.join()

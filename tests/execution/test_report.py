@@ -51,6 +51,8 @@ def test_it_prints_what_the_command_promises():
         "within_exceeded_s",
         "shifts_exceeded_s",
         "traffic",
+        "orders",
+        "tasks_forgotten",
         "remarks",
     ]
     assert (data["done_twice"], data["found"], data["remarks"]) == ({}, [], [])

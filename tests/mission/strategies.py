@@ -3,6 +3,7 @@
 """
 
 import math
+from itertools import combinations
 
 from hypothesis import settings
 from hypothesis import strategies as st
@@ -14,6 +15,8 @@ from muster.mission.model import (
     DelayedTask,
     Event,
     Lag,
+    Lane,
+    Lanes,
     Map,
     Mission,
     MovedTask,
@@ -204,6 +207,15 @@ TASK_KEYS = {
     for dimensions, point in POINTS.items()
 }
 flags = st.booleans()
+LANE_KEYS = st.fixed_dictionaries(
+    {},
+    optional={
+        "both_ways": flags,
+        "capacity": st.none() | st.integers(1, 5),
+        "speed_mps": maybe_positive,
+        "width_m": maybe_positive,
+    },
+)
 dimension = st.sampled_from([2, 2, 3])
 seldom = st.sampled_from([False, False, False, True])
 robot_ids = {kind: st.lists(names, min_size=1, max_size=4, unique=True) for kind, names in WORDS.items()}
@@ -234,6 +246,7 @@ def missions(draw) -> Mission:
         starts_at=draw(moments),
         rules=draw(all_rules),
         map=draw(maps) if draw(seldom) else None,
+        lanes=draw(lane_graphs()) if draw(seldom) else None,
         suitability=suitability,
         robots=tuple(Robot(id=name, type=robot_type(), **draw(ROBOT_KEYS[size])) for name in robots),
         tasks=tuple(work if draw(flags) else work[::-1]),
@@ -241,6 +254,26 @@ def missions(draw) -> Mission:
             draw(events(size, robots, tasks, robot_type, task_type, k)) for k in range(3 if draw(seldom) else 0)
         ),
     )
+
+
+@st.composite
+def lane_graphs(draw) -> Lanes:
+    """Lanes between a few nodes, each way once at most."""
+    nodes = draw(st.dictionaries(words, st.tuples(numbers, numbers), min_size=2, max_size=4).filter(apart))
+    ends = list(combinations(nodes, 2))
+    some = draw(st.lists(st.sampled_from(ends), min_size=1, unique=True))
+    ids = draw(st.lists(words, min_size=len(some), max_size=len(some), unique=True))
+    return Lanes(
+        nodes=nodes,
+        edges=tuple(
+            Lane(start=a, end=b, **draw(LANE_KEYS), id=name if draw(flags) else None)
+            for (a, b), name in zip(some, ids, strict=True)
+        ),
+    )
+
+
+def apart(nodes) -> bool:
+    return len(set(nodes.values())) == len(nodes)
 
 
 def types_of(draw, suitability, names):

@@ -44,6 +44,25 @@ def test_it_ends_where_the_record_breaks_off(recorded, drawn):
     assert bars(drawn(ax, "travel-ada"))[-1][0] + bars(drawn(ax, "travel-ada"))[-1][1] == pytest.approx(10.0)
 
 
+def test_tasks_that_were_added_have_marks(recorded, drawn):
+    recording = recorded(until=10.0)
+    task = {"id": "new", "position": [0, 0], "window_s": [[4, 8]], "deadline_s": 9, "due_s": 5, "prerequisites": ["a"]}
+    added = (
+        ExecutionEvent(2.0, "new_task", {"task": task}),
+        ExecutionEvent(3.0, "sets_out", {"robot": "idle", "task": "new"}),
+        ExecutionEvent(7.5, "starts", {"robot": "idle", "task": "new"}),
+        ExecutionEvent(9.0, "ends", {"robot": "idle", "task": "new"}),
+    )
+    events = sorted([*recording.events, *added], key=lambda event: event.time_s)
+    ax = plot_flown_gantt(replace(recording, events=tuple(events)))
+    (window,) = drawn(ax, "window-new")
+    (box,) = [path.get_extents() for path in window.get_paths()]
+    assert (box.x0, box.x1, (box.y0 + box.y1) / 2) == pytest.approx((4, 8, 2))
+    assert [list(line.get_xdata()) for line in (*drawn(ax, "deadline"), *drawn(ax, "due"))] == [[9, 9], [5, 5]]
+    assert drawn(ax, "late-new")
+    assert drawn(ax, "prerequisite-a-new")
+
+
 def test_robots_that_joined_have_rows(recorded, drawn):
     recording = recorded(until=10.0)
     joins = (

@@ -323,10 +323,28 @@ def _however(possible, conflict, until):
 _BREAKS = r"(?:be too late|need more than its capacity|be too late or need more than its capacity)"
 _UNTIL = rf"(?:; all must begin or end by {SECONDS})?"
 _USES = r"would use at least ([\d.]+) (m|s), of ([\d.]+) (m|s)"
+
+
+def _of_sizes(possible, conflict, a, b, first, few, then, many):
+    """Each task is done by as many robots at least as is said, in every plan, and one of them by never more."""
+    least = {first: int(few), then: int(many)}
+    fewest = min(least, key=least.get)
+    teams = {
+        name: {sum(possible.number[name] in route for route in plan) for plan in possible.every.admissible} - {0}
+        for name in (a, b)
+    }
+    return (
+        (a, b) == (first, then)
+        and all(min(teams[name], default=least[name]) >= least[name] for name in least)
+        and (max(teams[fewest], default=0) < max(least.values()))
+    )
+
+
 TOGETHER = (
     (rf"only (\S+) can do them, and {_USES}", _together_usage),
     (rf"together (.+) {_USES}", _together_usage),
     (r"the same robot must do (\S+) and (\S+); (\S+) only (.+) can do, (\S+) only (.+)", _by_the_same),
+    (r"the same robots must do (\S+) and (\S+); (\S+) needs (\d+) robots?, (\S+) (\d+) robots?", _of_sizes),
     (r"different robots must do (\S+) and (\S+), and only (\S+) can do them", _by_others),
     (rf"only .+ can do them, and in every order it would {_BREAKS}{_UNTIL}", _however),
     (r"only (\S+) can do them: (.+)", _one_after_the_other),

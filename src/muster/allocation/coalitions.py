@@ -4,6 +4,9 @@ Sequential single-item auction with bids of coalitions, as coalitions are formed
 [vig2006]: in each round every coalition that is worth a look bids for every unit, and one unit is sold. A bid is what
 the schedule allows: the unit is put where its windows, deadlines, lags and what waits for it leave a place. Of a team's
 task the coalition that costs least bids, and beside it, for each of its members, the one that costs least without it.
+
+An auction never takes a task back. So bids that leave time for what is not sold yet come first: those by which a unit,
+or one that was sold before, ends too late for the tasks that wait for it (`latest_ends`) win only where no others are.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ import numpy as np
 from muster import core
 from muster.allocation.auction_terms import Terms
 from muster.allocation.bids import lack_penalty
+from muster.allocation.latest_ends import LatestEnds
 from muster.allocation.problem import Problem
 from muster.allocation.skill_quality import skill_quality
 from muster.allocation.stop import Stop
@@ -28,10 +32,16 @@ from muster.mission.plan import tie_order
 
 @dataclass(frozen=True)
 class CoalitionBid:
-    """What a coalition would take a unit for."""
+    """What a coalition would take a unit for; whether by that something not sold yet could not be in time any more."""
 
     insertion: core.UnitInsertion
     price: float
+    leaves_no_time: bool = False
+
+    @property
+    def key(self) -> tuple[bool, float]:
+        """By this bids are ordered, the best first."""
+        return self.leaves_no_time, self.price
 
     @property
     def unit(self) -> int:
@@ -78,7 +88,8 @@ class CoalitionAuction:
         bid = bid_of(problem, terms)
         self._problem = problem if bid == problem.objective else replace(problem, objective=bid)
         self._terms = terms
-        self._roster = WorkingRoster(self._problem, start)
+        self._latest_ends = LatestEnds(self._problem)
+        self._go_on_from(start)
         self._quality = skill_quality(problem) if terms.quality_weight else np.empty((0, 0))
         self.sales: list[CoalitionSale] = []
 
@@ -98,28 +109,55 @@ class CoalitionAuction:
             if sale is None:
                 break
             if on_bids is not None:
-                on_bids(len(self.sales), offers)
+                on_bids(len(self.sales), [sale if offer.won.unit == sale.won.unit else offer for offer in offers])
             self.sales.append(sale)
 
-    def _sold(self, offers: list[CoalitionSale]) -> CoalitionSale | None:
-        """Assign the first unit that can be, the winner rule's choice first."""
-        ranked = sorted(offers, key=lambda sale: rank([bid.price for bid in sale.bids], self._terms))
-        return next((sale for sale in ranked if self.assign(sale.won)), None)
+    def _sold(self, offers: Sequence[CoalitionSale]) -> CoalitionSale | None:
+        """Assign the first unit that can be, the winner rule's choice first.
+
+        A robot does not bid for what does not hold, so that its next bid counts; a coalition that does not hold ends
+        the offer.
+        """
+        contested = self._terms.winner_rule == "least-contested"
+        left = {offer.won.unit: self._held(offer.bids) if contested else offer.bids for offer in offers}
+        while any(left.values()):
+            ranks = {unit: (rank([bid.key for bid in bids], self._terms), unit) for unit, bids in left.items() if bids}
+            unit = min(ranks, key=ranks.__getitem__)
+            won, *others = left[unit]
+            if self.assign(won):
+                (bids,) = (offer.bids for offer in offers if offer.won.unit == unit)
+                return CoalitionSale(len(self.sales) + 1, [won, *(bid for bid in bids if bid is not won)])
+            left[unit] = others if self.is_alone(unit) else []
+        return None
+
+    def _held(self, bids: list[CoalitionBid]) -> list[CoalitionBid]:
+        """The bids for one unit of which its gap to the second one follows: of single robots those that hold."""
+        return [bid for bid in bids if self.holds(bid)] if self.is_alone(bids[0].unit) else bids
 
     def bids(self, unit: int, robots: Sequence[int] | None = None) -> list[CoalitionBid]:
         """All bids of these robots (of all by default) for a unit, the best first."""
         robots = range(len(self._problem.robots)) if robots is None else robots
-        insertions = self._of_robots(unit, robots) if self.is_alone(unit) else self._of_coalitions(unit, robots)
-        return sorted((CoalitionBid(found, self._price(found)) for found in insertions), key=lambda bid: bid.price)
+        return sorted(
+            self._of_robots(unit, robots) if self.is_alone(unit) else self._of_coalitions(unit, robots),
+            key=lambda bid: bid.key,
+        )
 
     def best_bid(self, unit: int, robots: Sequence[int]) -> CoalitionBid | None:
         """The best bid for a unit that these robots can make; None: none."""
-        found = self._best(unit, robots)
-        return None if found is None else CoalitionBid(found, self._price(found))
+        for roster in self._rosters:
+            found = roster.best(unit, robots, append_only=self._terms.placement == "append")
+            if found is not None:
+                return CoalitionBid(found, self._price(found), roster is not self._rosters[0])
+        return None
 
     def usage(self, robot: int) -> float:
         """What a robot's route uses so far."""
         return self._roster.core.usage(robot)
+
+    def spans(self) -> dict[int, tuple[float, float]]:
+        """For each task sold when it begins and ends in the earliest schedule, seconds."""
+        stops = core.Inspection(self._problem.core, self.routes).stops or []
+        return {task: (begin, end) for route in stops for task, _, begin, end in route}
 
     def holds(self, bid: CoalitionBid) -> bool:
         """Whether the routes with what is bid for are admissible."""
@@ -132,34 +170,37 @@ class CoalitionAuction:
         """
         holds = self._roster.put(bid.insertion)
         if holds:
-            self._roster = WorkingRoster(self._problem, self._roster.routes)
+            self._go_on_from(self.routes)
         return holds
+
+    def _go_on_from(self, routes: Routes | None) -> None:
+        self._roster = WorkingRoster(self._problem, routes)
+        self._rosters = [self._roster]
+        if self._latest_ends.any:
+            self._rosters.insert(0, WorkingRoster(self._latest_ends.binding(self.routes), self.routes))
 
     def is_alone(self, unit: int) -> bool:
         """Whether a unit is one task for one robot."""
         rules = self._problem.timed_rules
         return len(rules.units[unit]) == 1 and not rules.is_for_team(rules.units[unit][0])
 
-    def _of_robots(self, unit: int, robots: Sequence[int]) -> Iterator[core.UnitInsertion]:
+    def _of_robots(self, unit: int, robots: Sequence[int]) -> Iterator[CoalitionBid]:
         (task,) = self._problem.timed_rules.units[unit]
         for robot in robots:
-            if self._problem.may(robot, task) and (found := self._best(unit, [robot])) is not None:
+            if self._problem.may(robot, task) and (found := self.best_bid(unit, [robot])) is not None:
                 yield found
 
-    def _of_coalitions(self, unit: int, others: Sequence[int]) -> Iterator[core.UnitInsertion]:
-        best = self._best(unit, others)
+    def _of_coalitions(self, unit: int, others: Sequence[int]) -> Iterator[CoalitionBid]:
+        best = self.best_bid(unit, others)
         if best is None:
             return
         yield best
         known = {_team(best)}
-        for without in sorted({robot for _, robot, _ in best.members}):
-            found = self._best(unit, [robot for robot in others if robot != without])
+        for without in sorted({robot for _, robot, _ in best.insertion.members}):
+            found = self.best_bid(unit, [robot for robot in others if robot != without])
             if found is not None and _team(found) not in known:
                 known.add(_team(found))
                 yield found
-
-    def _best(self, unit: int, robots: Sequence[int]) -> core.UnitInsertion | None:
-        return self._roster.best(unit, robots, append_only=self._terms.placement == "append")
 
     def _price(self, insertion: core.UnitInsertion) -> float:
         """What the objective grows by, made worse by the mean penalty of the members."""
@@ -178,18 +219,21 @@ class CoalitionAuction:
         return penalty
 
 
-def _team(insertion: core.UnitInsertion) -> frozenset[tuple[int, int]]:
-    return frozenset((task, robot) for task, robot, _ in insertion.members)
+def _team(bid: CoalitionBid) -> frozenset[tuple[int, int]]:
+    return frozenset((task, robot) for task, robot, _ in bid.insertion.members)
 
 
-def rank(prices: Sequence[float], terms: Terms) -> float:
-    """By what a winner rule ranks a unit with these bids, the best first; the least wins.
+def rank(keys: Sequence[tuple[bool, float]], terms: Terms) -> tuple[bool, float]:
+    """By what a winner rule ranks a unit with bids of these keys, the best first; the least wins.
 
-    It is the best bid, or the gap to the second one, the widest first; nobody contests a single one.
+    It is the best bid, or the gap to the second one, the widest first; nobody contests a single one. Units without
+    a bid that leaves time for what is not sold yet come last.
     """
+    leaves_no_time, best = keys[0]
     if terms.winner_rule != "least-contested":
-        return prices[0]
-    return prices[0] - prices[1] if len(prices) > 1 else -math.inf
+        return leaves_no_time, best
+    contesting = [price for late, price in keys[1:2] if late == leaves_no_time]
+    return leaves_no_time, best - contesting[0] if contesting else -math.inf
 
 
 def coalition_book(problem: Problem, sales: list[CoalitionSale], hold: Callable[[OnBids], None]) -> Book:

@@ -106,7 +106,8 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
     way = searches[0].mean_way or 1.0
     few = problem.objective == "max" or (problem.objective == "makespan" and _on_schedule(problem))
     hot = max(params.cold, params.hot or (1.0 if few else 5.0))
-    exchanged, known = 0, None
+    exchanged, weight = 0, 0.0
+    known: tuple[float, float, float] | None = None
     with ThreadPoolExecutor(params.threads) as pool:
         for steps in stop.batches(_steps_at_once(problem)):
             temperature = way * hot * (params.cold / hot) ** stop.share
@@ -115,8 +116,10 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
                 one.result()
             best = _best(searches)
             if _rank(best) != known:
+                if known is None or best.best_weight_left_out != known[0]:
+                    weight = _weight(problem, best)
                 known = _rank(best)
-                stop.improved(_weight(problem, best), best.best_objective)
+                stop.improved(weight, best.best_objective)
             if stop.share * _EXCHANGES >= exchanged + 1:
                 exchanged += 1
                 exchange(searches, best)

@@ -91,3 +91,10 @@ def tied_pairs(problem: Problem, tasks: Sequence[int]) -> list[tuple[int, int]]:
     rules, chosen = problem.timed_rules, set(tasks)
     tied = ({*rules.same_robot[j], *rules.other_robot[j], *rules.beginning_with(j)} for j in tasks)
     return [(j, k) for j, others in zip(tasks, tied, strict=True) for k in sorted(others & chosen) if j < k]
+
+
+def sizes_that_differ(problem: Problem, tasks: Sequence[int]) -> tuple[int, int] | None:
+    """Two of the tasks that the same robots must do, though one needs more of them; None: there are none."""
+    rules = problem.timed_rules
+    pairs = ((j, k) for j, k in tied_pairs(problem, tasks) if k in rules.same_robot[j] and rules.sizes_differ(j, k))
+    return next(pairs, None)

@@ -182,6 +182,13 @@ class TimedRules:
         seats = tuple(bool(fits[i]) for j in tasks if self.is_for_team(j) for _, fits in self.parts(j))
         return seats, tuple(sorted((robot.abilities or {}).items()))
 
+    def sizes_differ(self, j: int, k: int) -> bool:
+        """Whether no team is of the right size for both of two tasks."""
+        fewest = self.least_members(j), self.least_members(k)
+        return fewest[0] != fewest[1] and not any(
+            self.needed(few) for few, least in zip((j, k), fewest, strict=True) if least < max(fewest)
+        )
+
     def least_members(self, j: int) -> int:
         """How many robots a task needs at least."""
         if not self.is_for_team(j):

@@ -20,7 +20,14 @@ from muster.allocation.limits import Limits
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.spanning import spanning_tree
-from muster.allocation.subset_times import followers, keep_relations, least_ways, subset_ends, ways_of
+from muster.allocation.subset_times import (
+    followers,
+    keep_relations,
+    least_ways,
+    sizes_that_differ,
+    subset_ends,
+    ways_of,
+)
 from muster.allocation.witness_plans import closed
 
 FEW = 10  # tasks, up to which all subsets are looked at
@@ -71,6 +78,8 @@ class UsageBounds:
 
     def exceed(self, robots: list[int], tasks: list[int]) -> bool:
         """Whether it is proven that robots cannot do all the tasks, which no other robot does."""
+        if sizes_that_differ(self.problem, tasks) is not None:
+            return True
         if self.is_few(tasks):
             return self.every_place(tasks) not in self.shares(robots, tasks)
         capacity = float(self.problem.capacity[robots].sum())

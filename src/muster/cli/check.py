@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from muster.allocation.conflicts import Together
     from muster.motion.actions.coverage import Unseen
     from muster.planning.explaining import Possible
+    from muster.planning.explaining.crossings import BlockedWay
 
 _MINIMAL = "without any one of them a plan was found that does the others"
 _NOT_MINIMAL = "some of them may already be too many: not without each of them a plan for the others was found"
@@ -95,11 +96,13 @@ def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[st
         if "min-tasks" not in ignored_rules(ignore):
             _print_never_used(mission)
         _print_unseen(found.unseen, errors)
+        _print_blocked(found.blocked)
         if len(lost) < len(mission.tasks):
             _print_together(all_others, "all other tasks" if lost else "all tasks")
     if errors:
         return BAD_INPUT
-    return INCOMPLETE if (lost or all_others.conflict) and require_complete else DONE
+    incomplete = lost or all_others.conflict or found.blocked
+    return INCOMPLETE if incomplete and require_complete else DONE
 
 
 def _print_checked(mission: Mission, lost: tuple[Unassigned, ...], errors: int) -> None:
@@ -111,6 +114,15 @@ def _print_checked(mission: Mission, lost: tuple[Unassigned, ...], errors: int) 
         rows = [(item.task, r.robot, r.reason, r.detail) for item in lost for r in item.reasons]
         title = f"{counted(len(lost), 'task')} that can never be done"
         print_table(("task", "robot", "reason", "detail"), rows, title=title)
+
+
+def _print_blocked(blocked: tuple[BlockedWay, ...]) -> None:
+    """Print what traffic cannot get done."""
+    from muster.cli.tables import print_table
+
+    if blocked:
+        rows = [(way.task or "-", ", ".join(way.robots), way.detail) for way in blocked]
+        print_table(("task", "robots", "detail"), rows, title="No traffic can get these done (proven on the roadmap)")
 
 
 def _print_unseen(unseen: tuple[Unseen, ...], errors: Sequence[Finding]) -> None:

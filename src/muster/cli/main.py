@@ -35,6 +35,7 @@ VERBS: Mapping[str, str] = MappingProxyType(
         "verify": "Judge a plan from scratch.",
         "explain": "Explain why a task is done by this robot, not by another, or left out.",
         "path": "Find a path on the map of a mission, from one point to another.",
+        "traffic": "Show the roadmap that the robots of a mission share: lanes, passages for one, holding places.",
         "simulate": "Carry a plan out in a simulated world, and report its cost.",
         "ros": "Carry a plan out with real robots on ROS 1.",
         "ros2": "Carry a plan out with real robots on ROS 2.",

@@ -47,6 +47,7 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
         rows = [(*row, _charge(of)) for row, of in zip(rows, report["robots"], strict=True)]
     print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
+    _print_orders(report.get("orders"))
     _print_lateness(report)
     _print_traffic(report)
     if report.get("reallocations"):
@@ -74,7 +75,9 @@ def _how(report: Report) -> str:
 
 
 def _print_figures(report: Report, mission: Mission, unit: str) -> None:
-    done, lost = len(report.get("tasks_done", ())), len(report.get("tasks_lost", ()))
+    forgotten = report.get("tasks_forgotten", {})
+    done = len(report.get("tasks_done", ())) + forgotten.get("done", 0)
+    lost = len(report.get("tasks_lost", ())) + forgotten.get("lost", 0) + forgotten.get("cancelled", 0)
     known = max(done + lost, len(mission.tasks))  # more than these two if it was interrupted
     for name, value in (
         ("mission time", f"{number(report.get('mission_time_s'))} s"),
@@ -85,6 +88,29 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
         ("planned again", counted(report.get("reallocations", 0), "time")),
     ):
         click.echo(f"{name:<17} {value}")
+
+
+def _print_orders(orders: Report | None) -> None:
+    """Print what became of tasks that came while the mission was carried out, and how fast."""
+    if not orders:
+        return
+    fates = {name: orders.get(name, 0) for name in ("done", "open", "cancelled", "lost", "refused")}
+    came_to = ", ".join(f"{count} {name}" for name, count in fates.items() if count)
+    rows = {
+        "orders": f"{orders['taken']}: {came_to or 'none done'}; {orders['done_per_hour']:g} done an hour",
+        "in a route after": _seconds(orders["until_in_route"]),
+        "done after": _seconds(orders["until_done"]),
+        "clock behind by": _seconds(orders["clock_lag"]) if orders.get("clock_lag") else "",
+    }
+    for name, value in rows.items():
+        if value:
+            click.echo(f"{name:<17} {value}")
+
+
+def _seconds(figures: Report) -> str:
+    """What half of all, 95 % of them, and the longest took."""
+    median, p95, most = (number(figures[key]) for key in ("median_s", "p95_s", "most_s"))
+    return f"{median} s (median), {p95} s (95 %), {most} s (at most)"
 
 
 def _waiting(report: Report) -> str:

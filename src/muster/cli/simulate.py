@@ -13,6 +13,7 @@ from click.core import ParameterSource
 from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
 from muster.cli.drone_options import IN_THIS_PROCESS, conditions_of, drone_options
+from muster.cli.duty_options import duty_options, standing_of
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
 _FILE = click.Path(path_type=Path)
 _OF_A_PLAN = (
     *("plan", "ignore", "time_limit", "iterations", "allocator", "objective", "threads", "ray"),
-    *("bound", "start", "fixed", "rewire"),
+    *("bound", "start", "fixed", "rewire", "stay", "until", "orders"),
 )
 _OF_A_NEGOTIATION = ("method", "transport")
 _IN_THIS_PROCESS = (
@@ -63,6 +64,7 @@ _IN_THIS_PROCESS = (
     "film_speed",
     "still",
     "foxglove",
+    "orders",
     *IN_THIS_PROCESS,
 )
 
@@ -105,6 +107,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="KIND=AMOUNT",
     help="Noise of motion and telemetry; see docs/simulation.md.",
 )
+@duty_options
 @drone_options
 @pose_options
 @record_option
@@ -138,6 +141,9 @@ def command(
     dt: float,
     speed: float | None,
     noises: tuple[str, ...],
+    stay: bool,
+    until: float | None,
+    orders: Path | None,
     wind: str | None,
     gusts: float | None,
     rotors: bool,
@@ -165,6 +171,8 @@ def command(
 
     Robots keep their speeds and avoid each other. The mission's events happen, and the tasks left are planned again.
 
+    With --stay a fleet stays on duty when its tasks are done, for orders that come: see docs/standing-fleets.md.
+
     With --negotiate there is no plan and no centre: robots agree as in `muster auction`, over the same network, and
     each decides for itself what to do next. They exchange messages in real time.
     """
@@ -174,6 +182,7 @@ def command(
     require_filmable(world, film, film_speed, still)
     noise, localise = noise_of(noises), localise_of(sensors)
     conditions = conditions_of(wind, gusts, batteries, rotors=rotors)
+    standing = standing_of(orders, until, stay=stay)
     speed = 1.0 if foxglove is not None and speed is None else speed
     loaded = mission.load(verbose=verbose)
     if localise is not None:
@@ -189,7 +198,7 @@ def command(
     else:
         planned = _plan(backend, request_of(options, loaded, start, fixed), quiet=quiet)
     footage = footage_of(loaded) if film is not None or still is not None else None
-    rules = {} if negotiate else {"ignore": options.ignore, "planning": options}
+    rules = {} if negotiate else {"ignore": options.ignore, "planning": options, "standing": standing}
     with kept_record(record, html, plot, gantt) as file, shown_live(loaded, foxglove, quiet=quiet) as observers:
         report, interrupted_s = backend.simulate(
             loaded,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -26,7 +27,7 @@ from muster.planning.request import Request
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
-    from muster.execution import Report
+    from muster.execution import Report, Standing
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
     from muster.planning.solving import Solution
@@ -115,6 +116,7 @@ class ServerBackend:
         on_line: Callable[[float, str], None] | None,
         ignore: Sequence[str] = (),
         planning: PlanningOptions | None = None,
+        standing: Standing | None = None,
         **in_this_process: Any,
     ) -> tuple[Report, float | None]:
         if not isinstance(plan, Plan):
@@ -125,6 +127,10 @@ class ServerBackend:
             settings["planning"] = replanning
         if amounts := {kind: amount for kind, amount in asdict(noise).items() if amount}:
             settings["noise"] = amounts
+        if standing is not None:
+            settings["stay"] = True
+            if standing.until_s < math.inf:
+                settings["until_s"] = standing.until_s
         if pose is not None:
             settings["pose"] = pose
         if localise is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from muster.client.connection import Connection
@@ -11,6 +11,8 @@ from muster.client.reading import read
 from muster.client.server_plan import ServerPlan
 from muster.exchange.mission_control import JOB_OVER, OVER, Action, Entry, Job, Run
 from muster.mission.errors import MusterError
+from muster.mission.model import Task
+from muster.mission.yaml_writer import plain
 
 if TYPE_CHECKING:
     from muster.execution import Report
@@ -133,8 +135,13 @@ class RunningRun:
             after = found[-1]["seq"]
 
     def act(self, verb: str, **data: Any) -> Action:
-        """Send a command: pause, resume, speed, cancel, event."""
+        """Send a command: pause, resume, speed, cancel, event, orders."""
         return read(Action, self._connection.post(f"/runs/{self.id}/actions", {"verb": verb, "data": data}))
+
+    def order(self, *tasks: Task, cancel: Iterable[str] = ()) -> Action:
+        """Order tasks, and cancel others; they are planned for together. `events` tells the outcome."""
+        orders = [{"new_task": plain(task)} for task in tasks] + [{"cancel_task": task} for task in cancel]
+        return read(Action, self._connection.post(f"/runs/{self.id}/orders", {"orders": orders}))
 
     def pause(self) -> Action:
         return self.act("pause")

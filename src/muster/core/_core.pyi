@@ -507,11 +507,20 @@ class Ways:
 
     def build(self, most: int, threads: int) -> None:
         """
-        Find what the next `most` corners see; until all are `built`, each search looks for itself, where it comes by.
+        Find what the next `most` corners see. Until all are `built` there are no `lengths`, and each `way` looks for itself, where it comes by.
+        """
+
+    @property
+    def graph_pays(self) -> bool:
+        """
+        Whether ways have looked around as many corners as there are, so that to build pays.
         """
 
     @property
     def built(self) -> bool: ...
+
+    @property
+    def looks(self) -> int: ...
 
     @property
     def corners(self) -> int: ...
@@ -526,6 +535,11 @@ class Ways:
 
     def way(self, start: tuple[float, float], goal: tuple[float, float]) -> NDArray[numpy.float64]:
         """The shortest way with its ends, (k, 2); empty if there is none."""
+
+    def lengths_alone(self, exits: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], entries: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, mutual: bool) -> NDArray[numpy.float64] | None:
+        """
+        All `lengths`, way by way without the graph; None if it comes to pay before the end.
+        """
 
     def lengths(self, exits: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], entries: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, mutual: bool, first: int, last: int, threads: int) -> NDArray[numpy.float64]:
         """
@@ -782,3 +796,187 @@ class CrowdWorld:
     def headings(self) -> NDArray[numpy.float64]: ...
 
     def travelled(self) -> NDArray[numpy.float64]: ...
+
+class Grant:
+    """How far a robot may go along its moves."""
+
+    @property
+    def points(self) -> list[tuple[float, float]]:
+        """Ends of moves, in metres; the last may lie within a move."""
+
+    @property
+    def ended(self) -> int:
+        """How many of these are ends of moves."""
+
+    @property
+    def metres(self) -> float:
+        """From where the robot is."""
+
+    @property
+    def waits_for(self) -> int:
+        """The robot that passes first; -1: none."""
+
+    @property
+    def last(self) -> bool:
+        """Whether all moves of the robot are granted."""
+
+class PassingOrder:
+    """
+    The order in which robots pass: one sequence of straight moves, by order and not by clock [hoenig2019]. Places are in metres.
+    """
+
+    def __init__(self, *, margin: float, ahead: float) -> None:
+        """
+        Metres that are left between robots, and for which a robot may have begun moves.
+        """
+
+    def add(self, place: tuple[float, float], radius: float) -> int:
+        """A robot that stands; returns its number."""
+
+    def put(self, robot: int, place: tuple[float, float]) -> None:
+        """A robot without moves is elsewhere."""
+
+    def append(self, robot: int, to: tuple[float, float]) -> bool:
+        """
+        A move from where the robot's moves end; False where another would stand in the way.
+        """
+
+    def drop_ahead(self) -> None:
+        """Drop all moves that have not begun."""
+
+    def cut(self) -> None:
+        """Let all moves end where robots have been let go to."""
+
+    def progress(self, robot: int, passed: int, near: tuple[float, float]) -> None:
+        """
+        A robot has passed the ends of so many of its moves in all, and is near a place.
+        """
+
+    def grant(self, robot: int) -> Grant:
+        """How far a robot may go now; what it is told it keeps."""
+
+    def end(self, robot: int) -> tuple[float, float]:
+        """Where a robot is after all its moves."""
+
+    def begun_end(self, robot: int) -> tuple[float, float]:
+        """Where a robot is after the moves that it has begun."""
+
+    def passed(self, robot: int) -> int:
+        """Moves that a robot has finished since it was added."""
+
+    def left(self, robot: int) -> int:
+        """Moves that a robot has not finished."""
+
+    def metres_left(self, robot: int) -> float:
+        """Metres that a robot has still to go."""
+
+    def places_left(self, robot: int) -> list[tuple[float, float]]:
+        """The ends of the moves that are not finished."""
+
+class SharedLanes:
+    """Straight lanes between points, with the points that each comes near."""
+
+    def __init__(self, *, places: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], ends: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], lengths: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], clearances: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reach_first: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], reach_points: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], reach_gaps: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    def metres_to(self, goal: int, radius: float) -> list[float]:
+        """
+        Metres to a point from each, for robots of a radius; inf where there is no way.
+        """
+
+class Traveller:
+    """A robot for which a path over lanes is sought."""
+
+    def __init__(self, *, lanes: SharedLanes, start: int, stops: Sequence[tuple[int, float]], radius: float, speed: float, heading: float, yaw_rate: float, acceleration: float, ready: float, fixed: bool, stays: bool) -> None: ...
+
+def paths_by_safe_intervals(*, lanes: SharedLanes, rests: Sequence[bool], travellers: Sequence[Traveller], order: Sequence[int], margin: float, tries: int, seed: int) -> tuple[list[tuple[float, int, int]], list[float], list[int]]:
+    """
+    Moves (seconds, traveller, lane) in order; when each has held at its last stop, inf where it finds no path; and the order of travellers in which these were found, the best of several from the one given on [phillips2011].
+    """
+
+class DirectedGraph:
+    """A directed graph in compressed rows."""
+
+    def __init__(self, first: Sequence[int], heads: Sequence[int], costs: Sequence[float]) -> None:
+        """
+        The edges of vertex u are those from first[u] to first[u + 1]. Raises ValueError if they are not, or if a cost is not above 0.
+        """
+
+    @property
+    def size(self) -> int: ...
+
+    @property
+    def edges(self) -> int: ...
+
+    def costs_to(self, goal: int) -> list[float]:
+        """
+        What it costs to come to a vertex from each; infinite where there is no way.
+        """
+
+class Lacam:
+    """
+    Search over configurations of robots that take a step on a graph at once.
+    """
+
+    def __init__(self, graph: DirectedGraph, starts: Sequence[int], goals: Sequence[int], *, samples: int = 1, seed: int = 0, anytime: bool = False) -> None:
+        """
+        Raises ValueError where starts or goals are no vertices, or not of the same number.
+        """
+
+    def advance(self, expansions: int) -> None: ...
+
+    @property
+    def connected(self) -> bool:
+        """Whether each robot alone comes to its goal."""
+
+    @property
+    def state(self) -> str:
+        """
+        searching, solved, optimal (solved, and nothing is better), or unsolvable: the space is exhausted.
+        """
+
+    @property
+    def nodes(self) -> int:
+        """The number of configurations that it knows."""
+
+    @property
+    def cost(self) -> float:
+        """
+        Steps in which robots do not rest at their goals, of the best solution.
+        """
+
+    def solution(self) -> list[list[int]]:
+        """The vertex of each robot, step by step. Only after it is solved."""
+
+class JointRefinement:
+    """Large neighbourhood search over the paths of robots."""
+
+    def __init__(self, graph: DirectedGraph, steps: Sequence[Sequence[int]], seed: int) -> None:
+        """Raises ValueError where `steps` are no paths."""
+
+    def advance(self, neighbourhoods: int) -> None: ...
+
+    @property
+    def cost(self) -> int:
+        """Steps until each robot rests at its goal for good, summed up."""
+
+    def solution(self) -> list[list[int]]:
+        """The vertex of each robot, step by step."""
+
+class MovePlanner:
+    """
+    Sequences of single moves of a team on a roadmap with annotated conflicts.
+    """
+
+    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], first: Sequence[int], heads: Sequence[int], costs: Sequence[float], near_first: Sequence[int], near_points: Sequence[int], near_metres: Sequence[float]) -> None:
+        """
+        `points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not fit.
+        """
+
+    def planned(self, starts: Sequence[int], goals: Sequence[int], radii: Sequence[float], priorities: Sequence[float], pinned: Sequence[bool], *, margin: float, turn_cost: float, horizon: int, settle: bool, expansions: int, tries: int, seed: int) -> tuple[str, list[tuple[int, int]], list[int], list[bool]]:
+        """
+        The outcome (arrived, horizon, unfinished, impossible), the moves (robot, edge), where all stand in the end, and who has been at its goal.
+        """
+
+    @property
+    def tables(self) -> int:
+        """The number of goals to which it knows the ways."""

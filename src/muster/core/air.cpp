@@ -71,6 +71,27 @@ bool Rings::beside(Point a, Point d, double off) const {
   return std::abs(middle) > half + off;
 }
 
+// What of the piece is deeper than kTouch in a convex whole: it is clipped at each side.
+bool Rings::enters_convex(Point a, Point b, double from, double to) const {
+  const Point d = minus(b, a);
+  const double least = Air::kTouch / std::max(std::sqrt(dot(d, d)), Air::kTouch);
+  const std::vector<Point>& ring = rings_.front();
+  for (std::size_t k = 0, before = ring.size() - 1; k < ring.size(); before = k++) {
+    const Point side = minus(ring[k], ring[before]);
+    const double depth = cross(side, minus(a, ring[before])) - Air::kTouch * std::sqrt(dot(side, side));
+    const double rate = cross(side, d);
+    if (rate > 0.0) {
+      from = std::max(from, -depth / rate);
+    } else if (rate < 0.0) {
+      to = std::min(to, -depth / rate);
+    } else if (depth < 0.0) {
+      return false;
+    }
+    if (to - from <= least) return false;
+  }
+  return true;
+}
+
 // The border cuts the piece; the middle of each part says where the part is.
 bool Rings::enters(Point a, Point b, double from, double to, bool inner) const {
   const Point first = along(a, b, from), last = along(a, b, to), d = minus(b, a);
@@ -80,6 +101,7 @@ bool Rings::enters(Point a, Point b, double from, double to, bool inner) const {
   }
   const double length = std::sqrt(dot(d, d));
   if (inner && beside(a, d, Air::kTouch * length)) return false;
+  if (inner && convex_ && length * (to - from) > Air::kTouch) return enters_convex(a, b, from, to);
   // What joins two points of a convex whole is in it.
   const auto in = [&](Point p) { return inside(p) || distance_to_border(p) <= Air::kTouch; };
   if (!inner && convex_ && in(first) && in(last)) return false;
@@ -114,40 +136,164 @@ bool AirEdge::taut(Spot direction) const {
   return in * out >= -1e-12;
 }
 
-Air::Air(Rings region, std::vector<PrismShape> prisms, double lowest, double top)
-    : region_(std::move(region)), prisms_(std::move(prisms)), lowest_(lowest) {
-  add_upright(region_, lowest, std::max(top, lowest), false);
-  for (const PrismShape& prism : prisms_) {
-    const double from = std::max(prism.floor, lowest);
-    if (prism.ceiling <= from) continue;
-    add_upright(prism.base, from, std::isfinite(prism.ceiling) ? prism.ceiling : std::max(top, from), true);
-    if (std::isfinite(prism.ceiling)) add_level(prism, prism.ceiling, true);
-    if (prism.floor > lowest) add_level(prism, prism.floor, false);
-  }
-}
+namespace {
 
 // Rings have the inside of their polygon on the left, so an obstacle inside is convex at a turn to the left.
-void Air::add_upright(const Rings& rings, double from, double to, bool obstacle_inside) {
-  for (const auto& ring : rings.rings()) {
-    const std::size_t count = ring.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      const Point at = ring[k], back = minus(ring[(k + count - 1) % count], at), on = minus(ring[(k + 1) % count], at);
-      const double turn = cross(on, back);
-      if (obstacle_inside ? turn <= 0.0 : turn >= 0.0) continue;
-      AirEdge edge{
-          .from = {at.x, at.y, from}, .to = {at.x, at.y, to}, .upright = true, .inward = back, .other_wall = on};
-      edges_.push_back(edge);
-    }
+void add_upright(const std::vector<Point>& ring, double from, double to, bool obstacle_inside,
+                 std::vector<AirEdge>& edges) {
+  const std::size_t count = ring.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Point at = ring[k], back = minus(ring[(k + count - 1) % count], at), on = minus(ring[(k + 1) % count], at);
+    const double turn = cross(on, back);
+    if (obstacle_inside ? turn <= 0.0 : turn >= 0.0) continue;
+    edges.push_back(
+        {.from = {at.x, at.y, from}, .to = {at.x, at.y, to}, .upright = true, .inward = back, .other_wall = on});
   }
 }
 
-void Air::add_level(const PrismShape& prism, double z, bool top) {
-  for_sides(prism.base.rings(), [&](Point a, Point b) {
+void add_level(const std::vector<Point>& ring, double z, bool top, std::vector<AirEdge>& edges) {
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Point a = ring[k], b = ring[(k + 1) % ring.size()];
     const double length = distance(a, b);
-    if (length == 0.0) return;
+    if (length == 0.0) continue;
     const Point inward{-(b.y - a.y) / length, (b.x - a.x) / length};
-    edges_.push_back({.from = {a.x, a.y, z}, .to = {b.x, b.y, z}, .top = top, .inward = inward, .other_wall = {}});
+    edges.push_back({.from = {a.x, a.y, z}, .to = {b.x, b.y, z}, .top = top, .inward = inward, .other_wall = {}});
+  }
+}
+
+// The edges of a prism over one ring, above `lowest`.
+void add_prism(const std::vector<Point>& ring, const PrismShape& prism, double lowest, double top,
+               std::vector<AirEdge>& edges) {
+  const double from = std::max(prism.floor, lowest);
+  if (prism.ceiling <= from) return;
+  add_upright(ring, from, std::isfinite(prism.ceiling) ? prism.ceiling : std::max(top, from), true, edges);
+  if (std::isfinite(prism.ceiling)) add_level(ring, prism.ceiling, true, edges);
+  if (prism.floor > lowest) add_level(ring, prism.floor, false, edges);
+}
+
+Point where_lines_meet(Point a, Point along_a, Point b, Point along_b) {
+  return along(a, {a.x + along_a.x, a.y + along_a.y}, cross(minus(b, a), along_b) / cross(along_a, along_b));
+}
+
+}  // namespace
+
+Air::Air(Rings region, std::vector<PrismShape> prisms, double lowest, double top)
+    : region_(std::move(region)), prisms_(std::move(prisms)), lowest_(lowest), top_(top), first_edge_{0} {
+  for (const auto& ring : region_.rings()) add_upright(ring, lowest, std::max(top, lowest), false, edges_);
+  for (const PrismShape& prism : prisms_) {
+    first_edge_.push_back(edges_.size());
+    for (const auto& ring : prism.base.rings()) add_prism(ring, prism, lowest, top, edges_);
+  }
+  first_edge_.push_back(edges_.size());
+}
+
+std::vector<AirEdge> Air::loose_edges(double off) const {
+  std::vector<AirEdge> edges(edges_.begin(), edges_.begin() + static_cast<std::ptrdiff_t>(first_edge_[1]));
+  for (const PrismShape& prism : prisms_) {
+    for (const auto& ring : prism.base.rings()) add_prism(loosened(ring, prism, off), prism, lowest_, top_, edges);
+  }
+  return edges;
+}
+
+// Whether a point is free at all heights of a prism, but for the prism itself.
+bool Air::clear(Point p, const PrismShape& but) const {
+  if (!region_.inside(p)) return false;
+  return std::none_of(prisms_.begin(), prisms_.end(), [&](const PrismShape& prism) {
+    return &prism != &but && prism.floor < but.ceiling && prism.ceiling > but.floor &&
+           (prism.base.inside(p) || prism.base.distance_to_border(p) <= kTouch);
   });
+}
+
+// Of the sides that turn to the left, one after the other, some are left out, and those beside them made longer until
+// they meet: outside, for the ring is convex there.
+std::vector<Point> Air::loosened(const std::vector<Point>& ring, const PrismShape& prism, double off) const {
+  constexpr double kSteepest = 0.8;  // a little over 45 degrees
+  const std::size_t count = ring.size();
+  const auto at = [&](std::size_t k) { return ring[k % count]; };
+  const auto side = [&](std::size_t k) { return minus(at(k + 1), at(k)); };  // from ring[k] to ring[k + 1]
+  const auto angle = [](Point a, Point b) { return std::atan2(cross(a, b), dot(a, b)); };
+  std::size_t longest = 0;
+  for (std::size_t k = 1; k < count; ++k) {
+    if (dot(side(k), side(k)) > dot(side(longest), side(longest))) longest = k;
+  }
+  std::vector<Point> loose;
+  for (std::size_t here = longest; here < longest + count;) {
+    // The side after which ones are left out, up to `next`, and the point where the two meet.
+    std::size_t next = here + 1;
+    Point corner = at(next);
+    double turned = angle(side(here), side(next));
+    for (std::size_t k = next + 1; k <= longest + count && turned > 0.0; ++k) {
+      const double more = angle(side(k - 1), side(k));
+      turned += more;
+      if (more <= 0.0 || turned > kSteepest) break;
+      const Point meet = where_lines_meet(at(here), side(here), at(k), side(k));
+      double away = distance(meet, at(here + 1));
+      for (std::size_t j = here + 2; j <= k; ++j) away = std::min(away, distance(meet, at(j)));
+      if (away > off || !clear(meet, prism)) break;
+      next = k;
+      corner = meet;
+    }
+    loose.push_back(corner);
+    here = next;
+  }
+  return loose;
+}
+
+// In the plane of the triangle: `s` along a-b, `h` across. What comes from the obstacles has its corners where edges
+// pierce the triangle, so the way around them is the hull of these.
+std::vector<std::pair<Spot, int>> Air::tight_turns(Spot a, Spot corner, Spot b) const {
+  struct Turn {
+    double s, h;
+    Spot at;
+    int edge;
+  };
+  constexpr double kNear = 1e-9;
+  const Spot base = b - a, side = corner - a;
+  const double length = std::sqrt(dot(base, base));
+  const Spot along_base = (1.0 / length) * base, up = side - dot(side, along_base) * along_base;
+  const double height = std::sqrt(dot(up, up));
+  if (!(length > 0.0) || height <= kTouch) return {};
+  const Spot across = (1.0 / height) * up;
+  const Spot normal{along_base.y * across.z - along_base.z * across.y,
+                    along_base.z * across.x - along_base.x * across.z,
+                    along_base.x * across.y - along_base.y * across.x};
+  const double top_at = dot(side, along_base), slack = kNear * (length + height);
+  std::vector<Turn> turns;
+  const auto pierce = [&](std::size_t e) {
+    const AirEdge& edge = edges_[e];
+    const double from = dot(edge.from - a, normal), to = dot(edge.to - a, normal);
+    if (from * to > 0.0 && std::min(std::abs(from), std::abs(to)) > slack) return;
+    if (std::abs(from - to) <= slack) return;
+    const double t = std::clamp(from / (from - to), 0.0, 1.0);
+    const Spot at = edge.from + t * (edge.to - edge.from);
+    const double s = dot(at - a, along_base), h = dot(at - a, across);
+    // Under both sides of the triangle.
+    if (h <= slack || h * top_at > height * s + slack * length) return;
+    if (h * (length - top_at) > height * (length - s) + slack * length) return;
+    turns.push_back({s, h, at, static_cast<int>(e)});
+  };
+  const double low_x = std::min({a.x, b.x, corner.x}) - kTouch, high_x = std::max({a.x, b.x, corner.x}) + kTouch;
+  const double low_y = std::min({a.y, b.y, corner.y}) - kTouch, high_y = std::max({a.y, b.y, corner.y}) + kTouch;
+  for (std::size_t e = 0; e < first_edge_[1]; ++e) pierce(e);
+  for (std::size_t k = 0; k < prisms_.size(); ++k) {
+    const Point low = prisms_[k].base.low(), high = prisms_[k].base.high();
+    if (low.x > high_x || high.x < low_x || low.y > high_y || high.y < low_y) continue;
+    for (std::size_t e = first_edge_[k + 1]; e < first_edge_[k + 2]; ++e) pierce(e);
+  }
+  std::sort(turns.begin(), turns.end(), [](const Turn& l, const Turn& r) { return l.s < r.s; });
+  turns.push_back({length, 0.0, b, -1});
+  std::vector<Turn> hull{{0.0, 0.0, a, -1}};
+  for (const Turn& turn : turns) {
+    const auto below = [&] {
+      const Turn &q = hull[hull.size() - 1], &p = hull[hull.size() - 2];
+      return (q.s - p.s) * (turn.h - p.h) - (q.h - p.h) * (turn.s - p.s) >= 0.0;
+    };
+    while (hull.size() > 1 && below()) hull.pop_back();
+    hull.push_back(turn);
+  }
+  std::vector<std::pair<Spot, int>> found;
+  for (std::size_t k = 1; k + 1 < hull.size(); ++k) found.emplace_back(hull[k].at, hull[k].edge);
+  return found;
 }
 
 bool Air::free(Spot p) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "lattice.hpp"
@@ -28,6 +29,8 @@ class Rings {
   explicit Rings(std::vector<std::vector<Point>> rings);
 
   const std::vector<std::vector<Point>>& rings() const { return rings_; }
+  Point low() const { return low_; }
+  Point high() const { return high_; }
   bool inside(Point p) const;
   double distance_to_border(Point p) const;
   // Whether the part from t = `from` to `to` of the straight piece a-b runs through the inside (or, if not `inner`,
@@ -37,6 +40,7 @@ class Rings {
  private:
   std::vector<std::vector<Point>> rings_;
   bool beside(Point a, Point direction, double off) const;
+  bool enters_convex(Point a, Point b, double from, double to) const;
 
   Point low_, high_;
   bool convex_ = false;
@@ -68,6 +72,12 @@ class Air {
   Air(Rings region, std::vector<PrismShape> prisms, double lowest, double top);
 
   const std::vector<AirEdge>& edges() const { return edges_; }
+  // The edges once more, with fewer corners where prisms are round: they run outside, by `off` at most, and where they
+  // would run into something else they stay as they are.
+  std::vector<AirEdge> loose_edges(double off) const;
+  // Where edges pierce the triangle between two points and a free third one: the turns of the shortest way between the
+  // two that keeps to the side of the third, and on which edge each is.
+  std::vector<std::pair<Spot, int>> tight_turns(Spot a, Spot corner, Spot b) const;
   bool free(Spot p) const;
   bool sees(Spot a, Spot b) const {
     std::size_t none = prisms_.size();
@@ -78,13 +88,14 @@ class Air {
 
  private:
   static bool blocks(const PrismShape& prism, Spot a, Spot b);
-  void add_upright(const Rings& rings, double from, double to, bool obstacle_inside);
-  void add_level(const PrismShape& prism, double z, bool top);
+  bool clear(Point p, const PrismShape& but) const;
+  std::vector<Point> loosened(const std::vector<Point>& ring, const PrismShape& prism, double off) const;
 
   Rings region_;
   std::vector<PrismShape> prisms_;
-  double lowest_;
+  double lowest_, top_;
   std::vector<AirEdge> edges_;
+  std::vector<std::size_t> first_edge_;  // of the region, of each prism, and the end
 };
 
 }  // namespace muster

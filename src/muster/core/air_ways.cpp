@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "heap.hpp"
@@ -45,7 +46,9 @@ struct AirWays::Tree {
 };
 
 void AirWays::sample(double rise, double run) {
-  const auto& edges = air_->edges();
+  constexpr double kOff = 0.25;  // of the distance between samples
+  loose_ = air_->loose_edges(kOff * run);
+  const auto& edges = loose_;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const double length = distance(edges[e].from, edges[e].to);
     const int steps = std::max(1, static_cast<int>(std::ceil(length / (edges[e].upright ? rise : run))));
@@ -124,17 +127,14 @@ std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tre
   if (!from.free || !to.free) return {};
   if (air_->sees(from.at, to.at)) return {from.at, to.at};
   std::vector<Spot> shortest;
+  std::set<std::vector<int>> pulled;  // by their edges
   for (const int last : candidates(to, tree)) {
     std::vector<Spot> way{to.at};
-    std::vector<int> edges{-1};
-    for (int node = last; node >= 0; node = tree.parent[node]) {
-      way.push_back(nodes_[node].at);
-      edges.push_back(nodes_[node].edge);
-    }
+    for (int node = last; node >= 0; node = tree.parent[node]) way.push_back(nodes_[node].at);
     way.push_back(from.at);
-    edges.push_back(-1);
     std::reverse(way.begin(), way.end());
-    std::reverse(edges.begin(), edges.end());
+    std::vector<int> edges = tighten(way);
+    if (!pulled.insert(edges).second) continue;
     pull(way, edges);
     if (shortest.empty() || length_of(way) < length_of(shortest)) shortest = std::move(way);
   }
@@ -162,6 +162,22 @@ std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
   std::vector<int> nodes;
   for (std::size_t k = 0; k < std::min(kMost, order.size()); ++k) nodes.push_back(order[k].node);
   return nodes;
+}
+
+// Lays a way around the true edges, turn by turn; on which each turning point is then (the ends: -1).
+std::vector<int> AirWays::tighten(std::vector<Spot>& way) const {
+  std::vector<Spot> tight{way.front()};
+  std::vector<int> edges{-1};
+  for (std::size_t k = 1; k + 1 < way.size(); ++k) {
+    for (const auto& [at, edge] : air_->tight_turns(tight.back(), way[k], way[k + 1])) {
+      tight.push_back(at);
+      edges.push_back(edge);
+    }
+  }
+  tight.push_back(way.back());
+  edges.push_back(-1);
+  way = std::move(tight);
+  return edges;
 }
 
 // Slides and drops turning points as long as that helps. Where all at once would slide out of sight, one at a time.
@@ -225,11 +241,39 @@ void AirWays::turn_where_stuck(std::vector<Spot>& way, std::vector<int>& edges) 
 
 // One pass over the turning points; whether it has gained enough to go on.
 bool AirWays::slide(std::vector<Spot>& way, const std::vector<int>& edges) const {
+  const auto& all = air_->edges();
   const double before = length_of(way);
-  for (std::size_t k = 1; k + 1 < way.size(); ++k) {
-    way[k] = turning_point(air_->edges()[edges[k]], way[k - 1], way[k + 1]);
+  for (std::size_t k = 1; k + 1 < way.size();) {
+    std::size_t end = k;  // of the upright edges, one after the other
+    while (end + 1 < way.size() && all[edges[end]].upright) ++end;
+    if (end > k + 1 && lay_evenly(way, edges, k - 1, end)) {
+      k = end;
+      continue;
+    }
+    for (const std::size_t last = std::max(end, k + 1); k < last; ++k) {
+      way[k] = turning_point(all[edges[k]], way[k - 1], way[k + 1]);
+    }
   }
   return before - length_of(way) > 1e-10 * before;
+}
+
+// Between two points the turns around upright edges alone are the shortest where the way rises evenly; if the edges are
+// as high and as low as that.
+bool AirWays::lay_evenly(std::vector<Spot>& way, const std::vector<int>& edges, std::size_t first,
+                         std::size_t last) const {
+  const auto level = [&](std::size_t k) { return std::hypot(way[k + 1].x - way[k].x, way[k + 1].y - way[k].y); };
+  double whole = 0.0, gone = 0.0;
+  for (std::size_t k = first; k < last; ++k) whole += level(k);
+  if (whole == 0.0) return false;
+  std::vector<double> heights;
+  for (std::size_t k = first + 1; k < last; ++k) {
+    gone += level(k - 1);
+    const AirEdge& edge = air_->edges()[edges[k]];
+    heights.push_back(way[first].z + gone / whole * (way[last].z - way[first].z));
+    if (heights.back() < edge.from.z || heights.back() > edge.to.z) return false;
+  }
+  for (std::size_t k = first + 1; k < last; ++k) way[k].z = heights[k - first - 1];
+  return true;
 }
 
 bool AirWays::all_seen(const std::vector<Spot>& way) const {

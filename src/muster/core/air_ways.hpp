@@ -11,7 +11,8 @@ namespace muster {
 
 // The shortest way turns on edges of obstacles only. Edges are sampled, the samples that see each other make a graph,
 // and the way that is shortest there is pulled straight: its turning points slide along their edges to the minimum,
-// which is the only one, for the length is convex in them.
+// which is the only one, for the length is convex in them. Where obstacles are round the graph turns at fewer, looser
+// edges a little outside; before it is pulled straight a way is laid around the true ones.
 class AirWays {
  public:
   // Upright edges are sampled every `rise` metres, level ones every `run`, ends included.
@@ -45,19 +46,22 @@ class AirWays {
   struct Tree;
 
   void sample(double rise, double run);
-  bool taut(const Node& node, Spot direction) const { return node.corner || air_->edges()[node.edge].taut(direction); }
+  bool taut(const Node& node, Spot direction) const { return node.corner || loose_[node.edge].taut(direction); }
   Seat seat(Spot p) const;
   void grow(const Seat& from, Tree& tree) const;
   std::vector<Spot> way(const Seat& from, const Seat& to, const Tree& tree) const;
   std::vector<int> candidates(const Seat& to, const Tree& tree) const;
+  std::vector<int> tighten(std::vector<Spot>& way) const;
   void pull(std::vector<Spot>& way, std::vector<int>& edges) const;
   void slide_in_sight(std::vector<Spot>& way, const std::vector<int>& edges) const;
   void turn_where_stuck(std::vector<Spot>& way, std::vector<int>& edges) const;
   bool slide(std::vector<Spot>& way, const std::vector<int>& edges) const;
+  bool lay_evenly(std::vector<Spot>& way, const std::vector<int>& edges, std::size_t first, std::size_t last) const;
   bool all_seen(const std::vector<Spot>& way) const;
   void shorten(std::vector<Spot>& way, std::vector<int>& edges) const;
 
   std::shared_ptr<const Air> air_;
+  std::vector<AirEdge> loose_;  // of which nodes are samples
   std::vector<Node> nodes_;
   std::vector<std::vector<Piece>> pieces_;
 };

@@ -1,9 +1,11 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "bindings.hpp"
 #include "grid_sights.hpp"
 #include "polygon_sights.hpp"
+#include "signals.hpp"
 #include "ways.hpp"
 
 namespace nb = nanobind;
@@ -38,6 +41,18 @@ Table lengths(const Ways& ways, const PointArray& exits, const PointArray& entri
   return table_of(std::move(values), to.size());
 }
 
+std::optional<Table> lengths_alone(const Ways& ways, const PointArray& exits, const PointArray& entries, bool mutual) {
+  const auto from = points_of(exits), to = points_of(entries);
+  if (mutual && from.size() != to.size()) throw std::invalid_argument("the exits are not the entries");
+  std::optional<std::vector<double>> values;
+  {
+    const nb::gil_scoped_release unlocked;
+    values = ways.lengths_alone(from, to, mutual, hear_signals);
+  }
+  if (!values) return std::nullopt;
+  return table_of(std::move(*values), to.size());
+}
+
 }  // namespace
 
 void bind_ways(nb::module_& m) {
@@ -54,9 +69,13 @@ void bind_ways(nb::module_& m) {
           },
           "rings"_a, "Rings (k, 2) with the inside on their left. Raises ValueError if the region is empty.")
       .def("build", &Ways::build, "most"_a, "threads"_a, nb::call_guard<nb::gil_scoped_release>(),
-           "Find what the next `most` corners see; until all are `built`, each search looks for itself, where it comes "
-           "by.")
+           "Find what the next `most` corners see. Until all are `built` there are no `lengths`, and each `way` looks "
+           "for "
+           "itself, where it comes by.")
+      .def_prop_ro("graph_pays", &Ways::graph_pays,
+                   "Whether ways have looked around as many corners as there are, so that to build pays.")
       .def_prop_ro("built", &Ways::built)
+      .def_prop_ro("looks", &Ways::looks)
       .def_prop_ro("corners", &Ways::corners)
       .def_prop_ro("pieces", &Ways::pieces, "Straight pieces between corners, each counted from both ends.")
       .def(
@@ -74,6 +93,8 @@ void bind_ways(nb::module_& m) {
             return table_of(found);
           },
           "start"_a, "goal"_a, "The shortest way with its ends, (k, 2); empty if there is none.")
+      .def("lengths_alone", &lengths_alone, "exits"_a, "entries"_a, nb::kw_only(), "mutual"_a,
+           "All `lengths`, way by way without the graph; None if it comes to pay before the end.")
       .def(
           "lengths", &lengths, "exits"_a, "entries"_a, nb::kw_only(), "mutual"_a, "first"_a, "last"_a, "threads"_a,
           "Rows `first` to before `last` of the lengths from exits to entries; inf where there is no way. If `mutual`, "

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "buckets.hpp"
+#include "clearance.hpp"
 #include "heap.hpp"
 
 namespace muster {
@@ -34,10 +35,12 @@ constexpr std::array<Step, 8> kSteps{{{1, 0, 1.0},
                                       {-1, -1, std::numbers::sqrt2},
                                       {1, -1, std::numbers::sqrt2}}};
 
-// Theta* takes one cell at a time, the one with the least key.
+// Theta* takes one cell at a time, the one with the least key, and looks from cell to cell.
 class OneByOne {
  public:
-  explicit OneByOne(const GridMap&) {}
+  static constexpr bool kAnyAngle = true;
+  explicit OneByOne(const GridMap& map) : clearance_(map) {}
+  bool sees(Cell a, Cell b) const { return clearance_.sees(a, b); }
   bool empty() const { return heap_.empty(); }
   double least() const { return heap_.top().key; }
   void push(double key, int cell) { heap_.push({key, cell}); }
@@ -48,6 +51,7 @@ class OneByOne {
     double key;
     int cell;
   };
+  Clearance clearance_;
   Heap<Open> heap_;
 };
 
@@ -55,6 +59,7 @@ class OneByOne {
 // the octile estimate 2 - sqrt(2).
 class Bucketed : public Buckets {
  public:
+  static constexpr bool kAnyAngle = false;
   explicit Bucketed(const GridMap& map) : Buckets(0.5, map.rows() + map.columns()) {}
 };
 
@@ -104,6 +109,11 @@ class Searcher {
     std::int32_t parent;
     State state;
   };
+  struct Parent {
+    int cell;
+    Cell at;
+    double g;
+  };
   // A last cell, and from its centre to the goal.
   struct End {
     int cell, column, row;
@@ -116,16 +126,21 @@ class Searcher {
   int numbered(int cell) const { return (cell / map_.columns() + 1) * stride_ + cell % map_.columns() + 1; }
   int x(int cell) const { return cell % stride_ - 1; }
   int y(int cell) const { return cell / stride_ - 1; }
-  Point centre(int cell) const { return {x(cell) + 0.5, y(cell) + 0.5}; }
-  Lattice lattice(int cell) const { return GridMap::centre(x(cell), y(cell)); }
+  Point centre(int cell) const { return centre(Cell{x(cell), y(cell)}); }
+  static Point centre(Cell at) { return {at.column + 0.5, at.row + 0.5}; }
+  Parent parent_of(int cell) const {
+    const int parent = found_[cell].parent;
+    return {parent, {x(parent), y(parent)}, found_[parent].g};
+  }
 
   void expand(int cell) {
     const int column = x(cell), row = y(cell);
+    const Parent from = parent_of(cell);
     for (unsigned steps = steps_from(column, row); steps != 0; steps &= steps - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(steps));
       const int next = cell + offset_[k], to_column = column + kSteps[k].dx, to_row = row + kSteps[k].dy;
-      if (how_.any_angle) {
-        expand_any_angle(cell, next, to_column, to_row, kSteps[k].length);
+      if constexpr (Queue::kAnyAngle) {
+        expand_any_angle(cell, from, next, {to_column, to_row}, kSteps[k].length);
       } else {
         reach(next, to_column, to_row, found_[cell].g + kSteps[k].length, cell);
       }
@@ -143,13 +158,16 @@ class Searcher {
   }
 
   // Theta*: path 2 goes straight from the parent of the cell where that sees the next one; else path 1 goes through it.
-  void expand_any_angle(int cell, int next, int column, int row, double length) {
-    if (found_[next].state == kClosed) return;
-    const int from = found_[cell].parent;
-    if (from != cell && map_.sees(lattice(from), lattice(next))) {
-      reach(next, column, row, found_[from].g + distance(centre(from), centre(next)), from);
+  // Path 2 is never the longer one, so where even that gains nothing there is no need to look.
+  void expand_any_angle(int cell, const Parent& from, int next, Cell to, double length) {
+    const Found& before = found_[next];
+    if (before.state == kClosed) return;
+    const double straight = from.g + distance(centre(from.at), centre(to));
+    if (before.state != kUnseen && before.g <= straight) return;
+    if (from.cell != cell && open_.sees(from.at, to)) {
+      reach(next, to.column, to.row, straight, from.cell);
     } else {
-      reach(next, column, row, found_[cell].g + length, cell);
+      reach(next, to.column, to.row, found_[cell].g + length, cell);
     }
   }
 
@@ -163,7 +181,7 @@ class Searcher {
   // Theta*: the straight distance. Else the octile distance to the nearest of the last cells, and on to the goal.
   double estimate(int column, int row) const {
     if (!how_.heuristic) return 0.0;
-    if (how_.any_angle) return distance({column + 0.5, row + 0.5}, goal_);
+    if (Queue::kAnyAngle) return distance({column + 0.5, row + 0.5}, goal_);
     double least = kFar;
     for (const End& end : ends_) {
       const int dx = std::abs(column - end.column), dy = std::abs(row - end.row);

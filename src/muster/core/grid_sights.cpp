@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
+#include <utility>
+
+#include "grid_search.hpp"
 
 namespace muster {
 
@@ -15,6 +17,8 @@ constexpr int kSouthWest = GridMap::kSouthWest, kSouthEast = GridMap::kSouthEast
 // The four ways along the lines of the grid, each with the two cells that close it where both are blocked.
 struct Line {
   int dx, dy, ahead;
+
+  Lattice direction() const { return {dx, dy}; }
 };
 constexpr std::array<Line, 4> kLines{{{1, 0, kNorthEast | kSouthEast},
                                       {0, 1, kNorthEast | kNorthWest},
@@ -25,6 +29,10 @@ constexpr std::size_t kLinesOn = 2;  // the first, which go right and up
 bool north(int quarter) { return (quarter & (kNorthEast | kNorthWest)) != 0; }
 bool east(int quarter) { return (quarter & (kNorthEast | kSouthEast)) != 0; }
 bool rising(int quarter) { return (quarter & (kNorthEast | kSouthWest)) != 0; }
+
+constexpr Lattice kUp{0, 1}, kRight{1, 0};
+
+Point in_cells(Lattice p) { return {static_cast<double>(p.x) / kUnit, static_cast<double>(p.y) / kUnit}; }
 
 }  // namespace
 
@@ -48,6 +56,44 @@ struct GridSights::Cone {
   Lattice right;
 
   bool empty() const { return cross(right, left) <= 0; }
+};
+
+// The rectangle around an ellipse, row by row: no column of it is left out.
+class GridSights::Window {
+ public:
+  Window(Point here, Point goal, double length) : everything_(!std::isfinite(length)) {
+    const double apart = distance(here, goal);
+    middle_ = {(here.x + goal.x) / 2, (here.y + goal.y) / 2};
+    if (apart > 0.0) along_ = {(goal.x - here.x) / apart, (goal.y - here.y) / apart};
+    half_length_ = length / 2;
+    half_width_ = std::sqrt(std::max(0.0, length * length - apart * apart)) / 2;
+  }
+
+  // From where to where it reaches in a row of so many columns, in the unit of the lattice.
+  std::pair<std::int64_t, std::int64_t> columns(int row, int count) const {
+    if (everything_) return {0, count * kUnit};
+    double low = -1.0, high = count + 1.0;
+    const double below = row - middle_.y;
+    narrow(along_.x, along_.y, below, half_length_, low, high);
+    narrow(-along_.y, along_.x, below, half_width_, low, high);
+    const auto first = static_cast<std::int64_t>(std::floor(low)) - 1, end = static_cast<std::int64_t>(high) + 2;
+    return {std::max<std::int64_t>(first, 0) * kUnit, std::min<std::int64_t>(end, count) * kUnit};
+  }
+
+ private:
+  // To the x for which |u (x - middle) + v y| <= half for some y of the row.
+  void narrow(double u, double v, double below, double half, double& low, double& high) const {
+    constexpr double kLevel = 1e-6;  // a strip that is as level as that goes on through the whole row
+    if (std::abs(u) < kLevel) return;
+    const double one = -v * below / u, other = -v * (below + 1.0) / u, wide = half / std::abs(u);
+    low = std::max(low, middle_.x + std::min(one, other) - wide);
+    high = std::min(high, middle_.x + std::max(one, other) + wide);
+  }
+
+  bool everything_;
+  Point middle_;
+  Point along_{1.0, 0.0};
+  double half_length_, half_width_;
 };
 
 GridSights::GridSights(const GridMap& map) : map_(map) {
@@ -102,49 +148,94 @@ void GridSights::make_view(View& view, bool flips_x, bool flips_y) const {
   }
 }
 
-std::vector<int> GridSights::seen_from(Lattice p) const {
+Lattice GridSights::placed(const View& view, Lattice p) const {
+  return {view.flips_x ? map_.columns() * kUnit - p.x : p.x, view.flips_y ? map_.rows() * kUnit - p.y : p.y};
+}
+
+std::vector<int> GridSights::seen_from(Lattice p, const Ellipse& within) const {
   std::vector<int> found;
-  for (const View& each : views_) scan(each, p, found);
-  look_along_lines(p, kLines.size(), found);
+  for (const View& each : views_) scan(each, p, kUp, kRight, within, found);
+  for (std::size_t line = 0; line < kLines.size(); ++line) look_along(line, p, found);
   return found;
 }
 
-// Taut directions lie in the two quadrants beside the block, and along the lines. A pair is told once from its lower
-// or left corner.
-std::vector<int> GridSights::neighbours(int corner, Pairs pairs) const {
+// Taut directions lie in the two quadrants beside the block, and along the lines. A pair is told from its lower or left
+// corner.
+std::vector<int> GridSights::neighbours(int corner) const {
   std::vector<int> found;
   const Lattice at = corners_[corner].at;
   const bool block_rises = rising(map_.around(static_cast<int>(at.x / kUnit), static_cast<int>(at.y / kUnit)));
-  scan(view(block_rises, false), at, found);
-  if (pairs == Pairs::kTwice) scan(view(!block_rises, true), at, found);
-  look_along_lines(at, pairs == Pairs::kTwice ? kLines.size() : kLinesOn, found);
+  scan(view(block_rises, false), at, kUp, kRight, {}, found);
+  for (std::size_t line = 0; line < kLinesOn; ++line) look_along(line, at, found);
   return found;
+}
+
+// One who turns towards the block stays in the quadrant in which he came.
+std::vector<int> GridSights::onward(int c, Lattice coming, const Ellipse& within) const {
+  std::vector<int> found;
+  const Corner& corner = corners_[c];
+  const bool block_rises = corner.one_wall.x == corner.other_wall.y;
+  const View& ahead = view(block_rises, false).contains(coming) ? view(block_rises, false) : view(!block_rises, true);
+  const Lattice straight_on = ahead.turned(coming);
+  const bool block_above = ahead.turned(corner.other_wall).y > 0;
+  scan(ahead, corner.at, block_above ? kUp : straight_on, block_above ? straight_on : kRight, within, found);
+  for (std::size_t line = 0; line < kLines.size(); ++line) {
+    if (corner.taut(kLines[line].direction()) && corner.turns(coming, kLines[line].direction()))
+      look_along(line, corner.at, found);
+  }
+  return found;
+}
+
+// The shortest way between centres of cells with its string pulled. Among few corners to search those is cheaper.
+std::optional<double> GridSights::some_length(Point a, Point b) const {
+  constexpr std::size_t kFew = 256;
+  if (corners_.size() <= kFew) return std::numeric_limits<double>::infinity();
+  const std::vector<int> cells = search_grid(map_, a, b, {});
+  if (cells.empty()) return std::nullopt;
+  std::vector<Point> way{a};
+  double length = 0.0;
+  const auto go = [&](Point p) {
+    length += distance(way.back(), p);
+    way.push_back(p);
+  };
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const auto centre = [&](std::size_t cell) {
+      return Point{cells[cell] % map_.columns() + 0.5, cells[cell] / map_.columns() + 0.5};
+    };
+    const Point next = k + 1 < cells.size() ? centre(k + 1) : b;
+    if (!map_.sees(snap(way.back()), snap(next))) go(centre(k));
+  }
+  go(b);
+  return length;
 }
 
 // Row after row upwards, cones of free directions are split by the blocked cells that they meet. A cone without width
 // is dropped: it touches a corner on each side, and the way goes on from the second.
-void GridSights::scan(const View& view, Lattice origin, std::vector<int>& found) const {
-  const Lattice from{view.flips_x ? map_.columns() * kUnit - origin.x : origin.x,
-                     view.flips_y ? map_.rows() * kUnit - origin.y : origin.y};
-  std::vector<Cone> open{{static_cast<int>(from.y / kUnit), {0, 1}, {1, 0}}};
+void GridSights::scan(const View& view, Lattice origin, Lattice left, Lattice right, const Ellipse& within,
+                      std::vector<int>& found) const {
+  if (cross(right, left) <= 0) return;
+  const Lattice from = placed(view, origin);
+  const Window window(in_cells(from), in_cells(placed(view, snap(within.goal))), within.length);
+  std::vector<Cone> open{{static_cast<int>(from.y / kUnit), left, right}};
   while (!open.empty()) {
     const Cone cone = open.back();
     open.pop_back();
     if (cone.row >= map_.rows()) continue;
     const std::size_t before = open.size();
-    clip(view, from, cone, open);
-    for (std::size_t k = before; k < open.size(); ++k) collect(view, from, open[k], found);
+    clip(view, from, cone, window, open);
+    for (std::size_t k = before; k < open.size(); ++k) collect(view, from, open[k], window, found);
   }
 }
 
 // Adds the parts of a cone that get through its row.
-void GridSights::clip(const View& view, Lattice origin, const Cone& cone, std::vector<Cone>& open) const {
+void GridSights::clip(const View& view, Lattice origin, const Cone& cone, const Window& window,
+                      std::vector<Cone>& open) const {
   const std::int64_t low = std::max<std::int64_t>(cone.row * kUnit - origin.y, 0),
                      high = (cone.row + 1) * kUnit - origin.y;
-  const std::int64_t from = origin.x + floor_of(cone.left.x * low, cone.left.y);
-  std::int64_t to = map_.columns() * kUnit;
-  if (from >= to) return;
+  auto [from, to] = window.columns(cone.row, map_.columns());
+  from = std::max(from, origin.x + floor_of(cone.left.x * low, cone.left.y));
   if (cone.right.y > 0) to = std::min(to, origin.x + ceil_of(cone.right.x * high, cone.right.y));
+  if (from >= to) return;
   const auto end = static_cast<int>(ceil_of(to, kUnit));
   Lattice left = cone.left;
   for (int column = static_cast<int>(from / kUnit); column < end;) {
@@ -162,11 +253,12 @@ void GridSights::clip(const View& view, Lattice origin, const Cone& cone, std::v
 }
 
 // The corners on the lower side of a cone's row.
-void GridSights::collect(const View& view, Lattice origin, const Cone& cone, std::vector<int>& found) const {
+void GridSights::collect(const View& view, Lattice origin, const Cone& cone, const Window& window,
+                         std::vector<int>& found) const {
   const std::int64_t up = cone.row * kUnit - origin.y;
-  // Straight up is the matter of `look_along_lines`.
-  const std::int64_t from = origin.x + std::max<std::int64_t>(ceil_of(cone.left.x * up, cone.left.y), 1);
-  std::int64_t to = map_.columns() * kUnit;
+  auto [from, to] = window.columns(cone.row - 1, map_.columns());
+  // Straight up is the matter of `look_along`.
+  from = std::max(from, origin.x + std::max<std::int64_t>(ceil_of(cone.left.x * up, cone.left.y), 1));
   if (cone.right.y > 0) to = std::min(to, origin.x + floor_of(cone.right.x * up, cone.right.y));
   const auto end = static_cast<int>(to / kUnit) + 1;
   const int y = view.flips_y ? map_.rows() - cone.row : cone.row;
@@ -176,17 +268,16 @@ void GridSights::collect(const View& view, Lattice origin, const Cone& cone, std
 }
 
 // Along a line of the grid the way is free where a cell on either side is; the first corner on it is seen.
-void GridSights::look_along_lines(Lattice origin, std::size_t lines, std::vector<int>& found) const {
-  for (const Line& line : std::span(kLines).first(lines)) {
-    if ((line.dx != 0 ? origin.y : origin.x) % kUnit != 0) continue;
-    auto x = static_cast<int>(line.dx < 0 ? ceil_of(origin.x, kUnit) : origin.x / kUnit);
-    auto y = static_cast<int>(line.dy < 0 ? ceil_of(origin.y, kUnit) : origin.y / kUnit);
-    while ((map_.around(x, y) & line.ahead) != line.ahead) {
-      x += line.dx;
-      y += line.dy;
-      if (number(x, y) >= 0) found.push_back(number(x, y));
-      if (number(x, y) >= 0 || map_.pinched(x, y)) break;
-    }
+void GridSights::look_along(std::size_t number_of_line, Lattice origin, std::vector<int>& found) const {
+  const Line& line = kLines[number_of_line];
+  if ((line.dx != 0 ? origin.y : origin.x) % kUnit != 0) return;
+  auto x = static_cast<int>(line.dx < 0 ? ceil_of(origin.x, kUnit) : origin.x / kUnit);
+  auto y = static_cast<int>(line.dy < 0 ? ceil_of(origin.y, kUnit) : origin.y / kUnit);
+  while ((map_.around(x, y) & line.ahead) != line.ahead) {
+    x += line.dx;
+    y += line.dy;
+    if (number(x, y) >= 0) found.push_back(number(x, y));
+    if (number(x, y) >= 0 || map_.pinched(x, y)) return;
   }
 }
 

@@ -38,8 +38,11 @@ class GridSights : public Sights {
   Lattice snap(Point p) const override { return GridMap::snap(p); }
   bool free(Lattice p) const override { return map_.free(p); }
   bool sees(Lattice a, Lattice b) const override { return map_.sees(a, b); }
-  std::vector<int> seen_from(Lattice p) const override;
-  std::vector<int> neighbours(int corner, Pairs pairs) const override;
+  std::vector<int> seen_from(Lattice p, const Ellipse& within) const override;
+  std::vector<int> neighbours(int corner) const override;
+  std::vector<int> onward(int corner, Lattice coming, const Ellipse& within) const override;
+  bool may_be_blocked() const override { return false; }
+  std::optional<double> some_length(Point a, Point b) const override;
   double extent() const override { return std::hypot(map_.rows(), map_.columns()); }
 
  private:
@@ -49,18 +52,26 @@ class GridSights : public Sights {
     bool flips_y = false;
     BitRows blocked;  // rows x columns
     BitRows corners;  // grid points, of those corners alone that are taut towards the lower left
+
+    Lattice turned(Lattice direction) const {
+      return {flips_x ? -direction.x : direction.x, flips_y ? -direction.y : direction.y};
+    }
+    bool contains(Lattice direction) const { return turned(direction).x >= 0 && turned(direction).y >= 0; }
   };
   struct Cone;
+  class Window;
 
   void find_corners();
   void add_corner(int x, int y);
   void make_view(View& view, bool flips_x, bool flips_y) const;
   const View& view(bool flips_x, bool flips_y) const { return views_[2 * flips_y + flips_x]; }
   int number(int x, int y) const { return numbers_[static_cast<std::size_t>(y) * (map_.columns() + 1) + x]; }
-  void scan(const View& view, Lattice origin, std::vector<int>& found) const;
-  void clip(const View& view, Lattice origin, const Cone& cone, std::vector<Cone>& open) const;
-  void collect(const View& view, Lattice origin, const Cone& cone, std::vector<int>& found) const;
-  void look_along_lines(Lattice origin, std::size_t lines, std::vector<int>& found) const;
+  Lattice placed(const View& view, Lattice p) const;
+  void scan(const View& view, Lattice origin, Lattice left, Lattice right, const Ellipse& within,
+            std::vector<int>& found) const;
+  void clip(const View& view, Lattice origin, const Cone& cone, const Window& window, std::vector<Cone>& open) const;
+  void collect(const View& view, Lattice origin, const Cone& cone, const Window& window, std::vector<int>& found) const;
+  void look_along(std::size_t line, Lattice origin, std::vector<int>& found) const;
 
   GridMap map_;
   std::vector<int> numbers_;  // of grid points; -1: no corner

@@ -26,4 +26,8 @@ NB_MODULE(_core, m) {
   muster::bind_tree(m);
   muster::bind_avoidance(m);
   muster::bind_crowd_world(m);
+  muster::bind_passing_order(m);
+  muster::bind_safe_intervals(m);
+  muster::bind_lacam(m);
+  muster::bind_move_planner(m);
 }

@@ -10,7 +10,7 @@ namespace muster {
 namespace {
 
 // Up to this many tasks each is compared with each; beyond it tasks lie on a grid.
-constexpr int kMostCompared = 3000;
+constexpr int kMostCompared = 1000;
 
 // The nearest of candidates (distance, index), appended as one row.
 void append_nearest(std::vector<std::pair<double, int>>& candidates, int count, Rows& rows) {

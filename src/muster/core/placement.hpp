@@ -27,6 +27,12 @@ class Placement {
     int task;  // one of `tasks_of_unit`
     const Offer* offer;
   };
+  // Behind a unit; or, as the first of all, behind what must come before the one that is placed.
+  struct Cut {
+    double label;
+    int behind;  // -1: the first
+    bool tried;
+  };
 
   bool alone(int unit) const;
   void try_all(int unit);
@@ -46,7 +52,10 @@ class Placement {
   template <class Try>
   void walk_cuts(int unit, Try&& attempt);
   void gather_cuts(int unit);
-  void pass(std::size_t candidate, double cut);
+  bool seek_near(int unit);
+  void stand_at_first_cut();
+  void pass(int unit);
+  bool renew_offers(int unit);
   bool offered(std::size_t candidate) const;
   void make_offers(int unit, std::size_t candidate);
   bool may_join(Offer& offer, int task) const;
@@ -99,11 +108,14 @@ class Placement {
   // Of cuts.
   TeamChoice choice_;
   Rows teams_;
-  std::vector<double> cuts_, keys_, works_;
-  std::vector<double> next_label_;  // of the stop after a candidate's place
+  std::vector<Cut> cuts_;
+  std::vector<char> near_;  // by unit, whether the cut behind it is tried where not all are
+  std::vector<double> keys_, works_;
   std::vector<int> candidates_, at_, robots_;
-  std::vector<Offer> offers_;  // tasks of the unit x candidates
-  std::vector<Part> team_;     // the members that are judged
+  std::vector<int> candidate_of_;  // by robot; -1: it is none
+  std::vector<int> passed_;        // candidates whose places are others than those of their offers
+  std::vector<Offer> offers_;      // tasks of the unit x candidates
+  std::vector<Part> team_;         // the members that are judged
   // By key: of each candidate whether its place is another than when teams were last chosen, and how that ranked them.
   std::array<std::vector<char>, kKeys> moved_;
   std::array<TeamChoice::Ranking, kKeys> rankings_;

@@ -163,23 +163,34 @@ bool PolygonSights::passes(const Side& side, Lattice a, Lattice b) const {
   return !((between || side.at == b) && !inside(a));
 }
 
-std::vector<int> PolygonSights::seen_from(Lattice p) const {
+std::vector<int> PolygonSights::seen_from(Lattice p, const Ellipse& within) const {
   std::vector<int> found;
   for (std::size_t c = 0; c < corners_.size(); ++c) {
     const Lattice towards = corners_[c].at - p;
-    if (!(corners_[c].at == p) && corners_[c].taut(towards) && sees(p, corners_[c].at))
-      found.push_back(static_cast<int>(c));
+    if (towards == Lattice{} || !corners_[c].taut(towards) || !within.holds(corners_[c].place)) continue;
+    if (sees(p, corners_[c].at)) found.push_back(static_cast<int>(c));
   }
   return found;
 }
 
-std::vector<int> PolygonSights::neighbours(int corner, Pairs pairs) const {
+std::vector<int> PolygonSights::neighbours(int corner) const {
   const Corner& here = corners_[corner];
   std::vector<int> found;
-  for (std::size_t c = pairs == Pairs::kOnce ? static_cast<std::size_t>(corner) + 1 : 0; c < corners_.size(); ++c) {
+  for (std::size_t c = static_cast<std::size_t>(corner) + 1; c < corners_.size(); ++c) {
     const Lattice towards = corners_[c].at - here.at;
     if (towards == Lattice{} || !here.taut(towards) || !corners_[c].taut(towards)) continue;
     if (sees(here.at, corners_[c].at)) found.push_back(static_cast<int>(c));
+  }
+  return found;
+}
+
+std::vector<int> PolygonSights::onward(int corner, Lattice coming, const Ellipse& within) const {
+  const Corner& here = corners_[corner];
+  std::vector<int> found;
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    const Lattice leaving = corners_[c].at - here.at;
+    if (leaving == Lattice{} || !here.taut(leaving) || !corners_[c].taut(leaving)) continue;
+    if (here.turns(coming, leaving) && within.holds(corners_[c].place)) found.push_back(static_cast<int>(c));
   }
   return found;
 }

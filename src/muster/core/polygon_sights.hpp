@@ -17,8 +17,11 @@ class PolygonSights : public Sights {
   Lattice snap(Point p) const override;
   bool free(Lattice p) const override;
   bool sees(Lattice a, Lattice b) const override;
-  std::vector<int> seen_from(Lattice p) const override;
-  std::vector<int> neighbours(int corner, Pairs pairs) const override;
+  std::vector<int> seen_from(Lattice p, const Ellipse& within) const override;
+  std::vector<int> neighbours(int corner) const override;
+  std::vector<int> onward(int corner, Lattice coming, const Ellipse& within) const override;
+  bool may_be_blocked() const override { return true; }
+  std::optional<double> some_length(Point, Point) const override { return std::numeric_limits<double>::infinity(); }
   double extent() const override;
 
  private:

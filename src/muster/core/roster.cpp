@@ -9,6 +9,7 @@ namespace muster {
 Roster::Roster(const Problem& problem)
     : problem_(problem),
       timeline_(problem),
+      has_fixed_(false),
       weight_(problem.units(), 0.0),
       usage_(problem.robots(), 0.0),
       listed_(problem.units(), 0),
@@ -17,6 +18,7 @@ Roster::Roster(const Problem& problem)
     for (const int task : problem.tasks_of_unit(unit)) weight_[unit] += problem.priority(task);
     vanish(unit);
   }
+  for (int robot = 0; robot < problem.robots(); ++robot) has_fixed_ |= problem.fixed(robot) > 0;
   placement_ = std::make_unique<Placement>(*this);
 }
 
@@ -42,10 +44,10 @@ bool Roster::ready(int unit) const {
 }
 
 bool Roster::fixed(int unit) const {
-  return std::ranges::any_of(timeline_.visits_of(unit), [&](int number) {
-    const Visit& visit = timeline_.visit(number);
-    return visit.at <= problem_.fixed(visit.robot);
-  });
+  return has_fixed_ && std::ranges::any_of(timeline_.visits_of(unit), [&](int number) {
+           const Visit& visit = timeline_.visit(number);
+           return visit.at <= problem_.fixed(visit.robot);
+         });
 }
 
 const UnitInsertion* Roster::best_insertion(int unit, const Trial& trial) {

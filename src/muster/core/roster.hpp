@@ -113,6 +113,7 @@ class Roster {
 
   const Problem& problem_;
   Timeline timeline_;
+  bool has_fixed_;              // whether any robot has tasks that stay
   std::vector<double> weight_;  // by unit
   std::vector<double> usage_;   // by robot
   std::vector<int> absent_, listed_;

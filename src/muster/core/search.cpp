@@ -214,8 +214,8 @@ void Search::try_near(int task) {
 // Every place of the routes that may have room: where all near ones are full, there may be some far away.
 void Search::try_far(int task) {
   for (const int robot : problem_.robots_allowed(task)) {
-    const RouteCost& cost = team_.cost(robot);
-    if (problem_.fits(robot, cost.usage + problem_.work_usage(robot, task) - cost.longest)) try_route(robot, task);
+    const double least = team_.cost(robot).usage + problem_.work_usage(robot, task) - team_.longest_way(robot);
+    if (problem_.fits(robot, least)) try_route(robot, task);
   }
 }
 

@@ -1,6 +1,9 @@
 // What is seen from where: the corners around which shortest paths turn, and the straight pieces between them.
 #pragma once
 
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "lattice.hpp"
@@ -23,10 +26,22 @@ struct Corner {
   }
   // Whether the obstacle is to the left of one who passes in a taut direction.
   bool on_left(Lattice direction) const { return cross(direction, one_wall) + cross(direction, other_wall) > 0; }
+  // Whether one who comes here in a taut direction may leave in another: on the same side of the obstacle, turning
+  // towards it.
+  bool turns(Lattice coming, Lattice leaving) const {
+    const bool left = on_left(coming);
+    const std::int64_t to_left = cross(coming, leaving);
+    return on_left(leaving) == left && (left ? to_left >= 0 : to_left <= 0);
+  }
 };
 
-// Whether a pair of corners is told from each of its two corners, or from one alone.
-enum class Pairs { kTwice, kOnce };
+// The points through which a way from `here` to `goal` may lead that is no longer than `length`.
+struct Ellipse {
+  Point here, goal;
+  double length = std::numeric_limits<double>::infinity();
+
+  bool holds(Point p) const { return distance(here, p) + distance(p, goal) <= length; }
+};
 
 // A plane with obstacles. The corners have numbers from 0.
 class Sights {
@@ -39,10 +54,18 @@ class Sights {
   virtual bool free(Lattice p) const = 0;
   // Whether the straight piece between two free points is free.
   virtual bool sees(Lattice a, Lattice b) const = 0;
-  // The corners other than `p` itself that see it and are taut towards it.
-  virtual std::vector<int> seen_from(Lattice p) const = 0;
-  // The corners that a corner sees, taut at both ends. One corner may hide another that lies straight behind it.
-  virtual std::vector<int> neighbours(int corner, Pairs pairs) const = 0;
+  // The corners other than `p` itself that see it and are taut towards it; all of those in the ellipse.
+  virtual std::vector<int> seen_from(Lattice p, const Ellipse& within) const = 0;
+  // The corners that a corner sees, taut at both ends. Each pair is told from one of its corners alone. One corner may
+  // hide another that lies straight behind it.
+  virtual std::vector<int> neighbours(int corner) const = 0;
+  // Those to which a shortest way may go on that comes to a corner in this direction, taut at both ends; all of those
+  // in the ellipse. Where it only `may_be_blocked`, whether the corner sees them is left open.
+  virtual std::vector<int> onward(int corner, Lattice coming, const Ellipse& within) const = 0;
+  virtual bool may_be_blocked() const = 0;
+  // The length of some way, which bounds that of the shortest; nothing if there is none. Infinite where finding one is
+  // no easier than finding the shortest.
+  virtual std::optional<double> some_length(Point a, Point b) const = 0;
   // No two free points are further apart, in the places' unit.
   virtual double extent() const = 0;
 

@@ -122,14 +122,13 @@ void Team::measure(int robot, int from) {
   const int size = static_cast<int>(route.size());
   auto& legs = legs_[robot];
   legs.resize(size + 1);
-  if (from == 0) legs[0] = {0.0, 0.0, problem_.available_from(robot), 0.0, 0.0};
+  if (from == 0) legs[0] = {0.0, 0.0, problem_.available_from(robot), 0.0};
   const bool timed = problem_.objective() == Objective::makespan;
   int place = from ? route[from - 1] : problem_.start(robot);
   for (int at = from; at < size; ++at) {
     const int task = route[at];
     Leg& leg = legs[at];
     leg.way = problem_.travel_usage(robot, place, task);
-    leg.longest = std::max(at ? legs[at - 1].longest : 0.0, leg.way);
     const double arrival = leg.usage + leg.way;
     Leg& next = legs[at + 1];
     next.usage = arrival + problem_.work_usage(robot, task);
@@ -142,8 +141,7 @@ void Team::measure(int robot, int from) {
   }
   Leg& last = legs[size];
   last.way = size ? problem_.end_usage(robot, place) : 0.0;
-  costs_[robot] = {last.usage + last.way, last.arrivals, last.time,
-                   std::max(size ? legs[size - 1].longest : 0.0, last.way)};
+  costs_[robot] = {last.usage + last.way, last.arrivals, last.time};
 }
 
 double Team::later_arrivals(int robot, int task, int at, double growth) const {

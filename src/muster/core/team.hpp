@@ -15,7 +15,6 @@ struct RouteCost {
   double usage = 0.0;     // with the way to the end
   double arrivals = 0.0;  // sum of usages on arrival
   double done = 0.0;      // seconds, when the last task ends if nothing waits
-  double longest = 0.0;   // usage of a single leg
 };
 
 // A route on its way to one of its places: what it has come to before it sets out, and the way there.
@@ -24,7 +23,6 @@ struct Leg {
   double arrivals = 0.0;
   double time = 0.0;
   double way = 0.0;
-  double longest = 0.0;  // of the ways up to here, this one included
 };
 
 // Where a task could go, and what that adds to the route.
@@ -57,6 +55,7 @@ class Team {
 
   // The way to the task at a place, or from the last task to the robot's end.
   double way(int robot, int at) const { return legs_[robot][at].way; }
+  double longest_way(int robot) const { return std::ranges::max(legs_[robot], {}, &Leg::way).way; }
   // What is gained or lost by `task` at a place of the robot's route.
   double growth(int robot, int task, int at) const { return problem_.growth(robot, routes_[robot], task, at); }
   // What the objective `average` loses by it, and the time that the route takes more.

@@ -38,20 +38,10 @@ void Placement::try_cuts(int unit) {
 // Gives each robot its place at one cut after the other, and tries teams there.
 template <class Try>
 void Placement::walk_cuts(int unit, Try&& attempt) {
-  at_.assign(candidates_.size(), 0);
-  next_label_.assign(candidates_.size(), -kNever);
-  for (const double cut : cuts_) {
-    bool any_moved = false;
-    for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      if (next_label_[c] > cut) continue;
-      pass(c, cut);
-      const bool could = offered(c);
-      make_offers(unit, c);
-      if (!could && !offered(c)) continue;
-      any_moved = true;
-      for (auto& moved : moved_) moved[c] = 1;
-    }
-    if (any_moved && !overlooked()) attempt();
+  stand_at_first_cut();
+  for (const Cut& cut : cuts_) {
+    if (cut.behind >= 0) pass(cut.behind);
+    if (cut.tried && renew_offers(unit) && !overlooked()) attempt();
   }
 }
 
@@ -83,50 +73,81 @@ void Placement::try_key(int unit, int key, std::size_t first) {
   }
 }
 
-// The labels after which a cut may lie, in order: that of what comes before the unit, and those of all units between it
-// and what comes after.
+// All cuts between what comes before the unit and what comes after it, in order.
 void Placement::gather_cuts(int unit) {
-  cuts_.assign(1, labels_.low);
-  const auto add = [&](double label) {
-    if (label > labels_.low && label < labels_.high) cuts_.push_back(label);
-  };
-  long count = 0;
-  for (const int robot : candidates_) count += timeline_.tasks_in(robot);
-  if (trial_->append_only) {
-    for (const int robot : candidates_) add(timeline_.stop(robot, timeline_.tasks_in(robot)).label);
-  } else if (trial_->most_places > 0 && count > 4 * trial_->most_places) {
-    for (const int task : problem_.tasks_of_unit(unit)) {
-      int tried = 0;
-      for (const int near : trial_->neighbours->of(task)) {
-        const auto visits = timeline_.visits_of(problem_.unit(near));
-        if (visits.empty()) continue;
-        const Visit& visit = timeline_.visit(visits.front());
-        add(visit.label);
-        add(timeline_.stop(visit.robot, visit.at - 1).label);
-        if (++tried >= trial_->most_places / 2) break;
-      }
-    }
-    for (const int robot : candidates_) add(timeline_.stop(robot, timeline_.tasks_in(robot)).label);
-  } else {
-    for (int other = 0; other < problem_.units(); ++other) {
-      if (timeline_.present(other)) add(timeline_.label_of(other));
-    }
+  const bool all = !trial_->append_only && !seek_near(unit);
+  cuts_.assign(1, {labels_.low, -1, !trial_->append_only});
+  for (int other = 0; other < problem_.units(); ++other) {
+    const double label = timeline_.label_of(other);
+    if (!timeline_.present(other) || label <= labels_.low || label >= labels_.high) continue;
+    cuts_.push_back({label, other, all || near_[other]});
   }
-  std::ranges::sort(cuts_);
-  cuts_.erase(std::unique(cuts_.begin(), cuts_.end()), cuts_.end());
-  if (trial_->append_only) cuts_.erase(cuts_.begin(), cuts_.end() - 1);
+  std::ranges::sort(cuts_, {}, &Cut::label);
+  if (trial_->append_only) cuts_.back().tried = true;
+  for (std::size_t k = 1; k < cuts_.size(); ++k) {  // there is no cut between units of one label
+    if (cuts_[k - 1].label == cuts_[k].label) cuts_[k].tried |= std::exchange(cuts_[k - 1].tried, false);
+  }
 }
 
-// Moves a robot's place behind all that lies before the cut.
-void Placement::pass(std::size_t candidate, double cut) {
-  const auto& route = timeline_.route(candidates_[candidate]);
-  const auto label_after = [&](int at) {
-    const Visit& next = timeline_.visit(route[at + 1]);
-    return next.unit >= 0 ? next.label : kNever;
+// Marks the units behind and before those near ones, and the last of each route. False: all cuts are few enough.
+bool Placement::seek_near(int unit) {
+  long count = 0;
+  for (const int robot : candidates_) count += timeline_.tasks_in(robot);
+  if (trial_->most_places == 0 || count <= 4 * trial_->most_places) return false;
+  std::ranges::fill(near_, 0);
+  const auto mark = [&](const Visit& visit) {
+    if (visit.unit >= 0) near_[visit.unit] = 1;
   };
-  int& at = at_[candidate];
-  while (label_after(at) <= cut) ++at;
-  next_label_[candidate] = label_after(at);
+  for (const int task : problem_.tasks_of_unit(unit)) {
+    int tried = 0;
+    for (const int near : trial_->neighbours->of(task)) {
+      const auto visits = timeline_.visits_of(problem_.unit(near));
+      if (visits.empty()) continue;
+      const Visit& visit = timeline_.visit(visits.front());
+      mark(visit);
+      mark(timeline_.stop(visit.robot, visit.at - 1));
+      if (++tried >= trial_->most_places / 2) break;
+    }
+  }
+  for (const int robot : candidates_) mark(timeline_.stop(robot, timeline_.tasks_in(robot)));
+  return true;
+}
+
+void Placement::stand_at_first_cut() {
+  candidate_of_.assign(problem_.robots(), -1);
+  at_.resize(candidates_.size());
+  passed_.resize(candidates_.size());
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    const auto& route = timeline_.route(candidates_[c]);
+    const auto later = [&](int number) { return timeline_.visit(number).label > labels_.low; };
+    at_[c] = static_cast<int>(std::find_if(route.begin() + 1, route.end() - 1, later) - route.begin()) - 1;
+    candidate_of_[candidates_[c]] = passed_[c] = static_cast<int>(c);
+  }
+}
+
+// Moves the places of its robots behind a unit.
+void Placement::pass(int unit) {
+  for (const int number : timeline_.visits_of(unit)) {
+    const Visit& visit = timeline_.visit(number);
+    const int candidate = candidate_of_[visit.robot];
+    if (candidate < 0) continue;
+    at_[candidate] = visit.at;
+    passed_.push_back(candidate);
+  }
+}
+
+// What robots offer at their new places. False: nothing, as before.
+bool Placement::renew_offers(int unit) {
+  bool any_moved = false;
+  for (const int candidate : passed_) {
+    const bool could = offered(candidate);
+    make_offers(unit, candidate);
+    if (!could && !offered(candidate)) continue;
+    any_moved = true;
+    for (auto& moved : moved_) moved[candidate] = 1;
+  }
+  passed_.clear();
+  return any_moved;
 }
 
 // Whether a robot could do any task of the unit where it stands.

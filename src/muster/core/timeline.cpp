@@ -30,6 +30,8 @@ Timeline::Timeline(const Problem& problem)
       routes_(problem.robots()),
       nodes_(problem.units()),
       work_(problem.tasks(), 0.0),
+      ends_(problem.tasks(), -kNever),
+      tails_(problem.units(), -kNever),
       forward_(problem.units(), UnitQueue::Order::rising),
       backward_(problem.units(), UnitQueue::Order::falling),
       stamp_of_(problem.tasks(), 0) {
@@ -102,9 +104,7 @@ bool Timeline::begin(const Routes& routes) {
 
 double Timeline::ready(int unit) const {
   double ready = 0.0;
-  for (const Arc& arc : before_[unit]) {
-    if (present(arc.unit)) ready = std::max(ready, begin_of(arc.unit) + work_[arc.task] + arc.after);
-  }
+  for (const Arc& arc : before_[unit]) ready = std::max(ready, ends_[arc.task] + arc.after);
   return ready;
 }
 
@@ -127,9 +127,7 @@ double Timeline::latest_for(int unit, std::span<const double> work) const {
 double Timeline::tail_after(int unit, std::span<const double> work) const {
   double tail = 0.0;
   for (const double each : work) tail = std::max(tail, each);
-  for (const Arc& arc : behind_[unit]) {
-    if (present(arc.unit)) tail = std::max(tail, work[arc.own] + arc.after + tail_of(arc.unit));
-  }
+  for (const Arc& arc : behind_[unit]) tail = std::max(tail, work[arc.own] + arc.after + tails_[arc.unit]);
   return tail;
 }
 
@@ -244,7 +242,14 @@ void Timeline::remove(int unit) {
     take(number);
     taken_.push_back(number);
   }
-  node.visits.clear();
+  vanish(unit);
+}
+
+// What is absent bounds nothing.
+void Timeline::vanish(int unit) {
+  nodes_[unit].visits.clear();
+  tails_[unit] = -kNever;
+  for (const int task : problem_.tasks_of_unit(unit)) ends_[task] = -kNever;
 }
 
 void Timeline::save(int unit) {
@@ -271,9 +276,8 @@ void Timeline::rollback() {
     changes_.pop_back();
   }
   for (const Times& times : times_) {
-    Node& node = nodes_[times.unit];
-    set_latest(node, times.latest, times.tail);
-    set_begin(node, times.begin);
+    set_latest(times.unit, times.latest, times.tail);
+    set_begin(times.unit, times.begin);
   }
   taken_.clear();
   times_.clear();
@@ -287,8 +291,7 @@ void Timeline::restore(const Change& change) {
       take(*each);
       free_.push_back(*each);
     }
-    node.visits.clear();
-    return;
+    return vanish(change.unit);
   }
   node.visits.assign(taken_.begin() + change.first, taken_.end());
   taken_.resize(change.first);

@@ -15,7 +15,7 @@ namespace muster {
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // One robot at one task. Each route begins with a visit of the robot's start and closes with one of its end.
-struct Visit {
+struct alignas(64) Visit {  // a line of memory each, as propagation waits for little else
   int robot = -1;
   int place = -1;   // of the problem: a task, a start or an end
   int unit = -1;    // none: a start or an end
@@ -59,7 +59,8 @@ class Timeline {
 
   bool present(int unit) const { return !nodes_[unit].visits.empty(); }
   double begin_of(int unit) const { return nodes_[unit].begin; }
-  double end_of(int task) const { return nodes_[problem_.unit(task)].begin + work_[task]; }
+  // -inf where it is absent.
+  double end_of(int task) const { return ends_[task]; }
   double work_of(int task) const { return work_[task]; }
   double latest_of(int unit) const { return nodes_[unit].latest; }
   double tail_of(int unit) const { return nodes_[unit].tail; }
@@ -124,11 +125,11 @@ class Timeline {
       first.push_back(static_cast<int>(all.size()));
     }
   };
-  struct Node {
+  struct alignas(64) Node {
     std::vector<int> visits;
     int task = -1;  // its only one, if it has only one
-    double label = 0.0, begin = 0.0, latest = kNever, tail = 0.0;
     int saved = 0;  // the step in which its times were saved
+    double label = 0.0, begin = 0.0, latest = kNever, tail = 0.0;
   };
   struct Times {
     int unit;
@@ -154,6 +155,7 @@ class Timeline {
   int new_visit(const Member& member, int unit);
   void put(int number, int at);
   void take(int number);
+  void vanish(int unit);
   void measure_work(int unit);
   void restore(const Change& change);
 
@@ -177,8 +179,8 @@ class Timeline {
   double longest_tail(int unit);
   std::span<const double> works_of(int unit);
   bool keeps_bounds(int unit) const;
-  void set_begin(Node& node, double begin);
-  void set_latest(Node& node, double latest, double tail);
+  void set_begin(int unit, double begin);
+  void set_latest(int unit, double latest, double tail);
   int holder_of(int unit) const;
   void save(int unit);
 
@@ -191,6 +193,8 @@ class Timeline {
   std::vector<std::vector<int>> routes_;
   std::vector<Node> nodes_;
   std::vector<double> work_;  // by task, of its slowest member
+  // What prerequisites and dependants ask for: when a task ends, and the tail of a unit; -inf where they are absent.
+  std::vector<double> ends_, tails_;
   UnitQueue forward_, backward_;
   int budget_ = 0;  // units that `settle_cycles` still looks at, before it holds that bounds rise for ever
   std::vector<double> works_;

@@ -69,14 +69,19 @@ double Timeline::longest_tail(int unit) {
   return tail;
 }
 
-void Timeline::set_begin(Node& node, double begin) {
-  node.begin = begin;
-  for (const int number : node.visits) visits_[number].leave = begin + work_[visits_[number].place];
+void Timeline::set_begin(int unit, double begin) {
+  nodes_[unit].begin = begin;
+  for (const int number : nodes_[unit].visits) {
+    Visit& visit = visits_[number];
+    visit.leave = ends_[visit.place] = begin + work_[visit.place];
+  }
 }
 
-void Timeline::set_latest(Node& node, double latest, double tail) {
+void Timeline::set_latest(int unit, double latest, double tail) {
+  Node& node = nodes_[unit];
   node.latest = latest;
   node.tail = tail;
+  if (!node.visits.empty()) tails_[unit] = tail;
   for (const int number : node.visits) {
     visits_[number].latest = latest;
     visits_[number].tail = tail;
@@ -135,7 +140,7 @@ bool Timeline::forward() {
     const bool changed = begin != node.begin || first.leave != begin + work_[first.place];
     if (changed) {
       save(unit);
-      set_begin(node, begin);
+      set_begin(unit, begin);
       queue_later(unit);
     }
     possible = possible && keeps_bounds(unit);
@@ -154,7 +159,7 @@ void Timeline::backward() {
     const Visit& first = visits_[node.visits.front()];
     if (latest == first.latest && tail == first.tail) continue;
     save(unit);
-    set_latest(node, latest, tail);
+    set_latest(unit, latest, tail);
     queue_earlier(unit);
   }
 }
@@ -169,8 +174,8 @@ bool Timeline::settle_cycles() {
   for (std::size_t unit = 0; unit < nodes_.size(); ++unit) {
     if (nodes_[unit].visits.empty()) continue;
     save(static_cast<int>(unit));
-    set_begin(nodes_[unit], 0.0);
-    set_latest(nodes_[unit], kNever, 0.0);
+    set_begin(static_cast<int>(unit), 0.0);
+    set_latest(static_cast<int>(unit), kNever, 0.0);
   }
   queue_all();
   if (!forward()) return false;
@@ -222,7 +227,7 @@ int Timeline::holder_of(int unit) const {
     }
   }
   for (const Arc& arc : before_[unit]) {
-    if (!present(arc.unit) || end_of(arc.task) + arc.after <= bound) continue;
+    if (end_of(arc.task) + arc.after <= bound) continue;
     bound = end_of(arc.task) + arc.after;
     holder = arc.unit;
   }

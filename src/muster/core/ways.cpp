@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "buckets.hpp"
+#include "corner_search.hpp"
 #include "parallel.hpp"
 
 namespace muster {
@@ -85,7 +87,7 @@ void Ways::build(int most, int threads) {
   const std::size_t begin = seen_.size(), end = std::min(corners(), begin + static_cast<std::size_t>(most));
   seen_.resize(end);
   for_each_parallel(static_cast<int>(end - begin), threads, [&] {
-    return [&](int k) { seen_[begin + k] = sights_->neighbours(static_cast<int>(begin) + k, Pairs::kOnce); };
+    return [&](int k) { seen_[begin + k] = sights_->neighbours(static_cast<int>(begin) + k); };
   });
   if (end < corners()) return;
   join();
@@ -151,8 +153,7 @@ Ways::Seat Ways::seat(Point p) const {
   const Lattice at = sights_->snap(p);
   Seat seat{at, p, sights_->free(at), {}, {}};
   if (!seat.free) return seat;
-  seat.corners = sights_->seen_from(at);
-  if (!built()) return seat;
+  seat.corners = sights_->seen_from(at, {});
   for (const int corner : seat.corners) seat.parts.push_back(part_[corner]);
   std::sort(seat.parts.begin(), seat.parts.end());
   seat.parts.erase(std::unique(seat.parts.begin(), seat.parts.end()), seat.parts.end());
@@ -168,9 +169,7 @@ std::vector<Ways::Seat> Ways::seats(const std::vector<Point>& places, int first,
 
 // Whether there may be a way that turns.
 bool Ways::may_reach(const Seat& from, const Seat& to) const {
-  if (!from.free || !to.free) return false;
-  return !built() ||
-         std::find_first_of(from.parts.begin(), from.parts.end(), to.parts.begin(), to.parts.end()) != from.parts.end();
+  return std::find_first_of(from.parts.begin(), from.parts.end(), to.parts.begin(), to.parts.end()) != from.parts.end();
 }
 
 // A*, as far as some way may still become shorter.
@@ -194,12 +193,8 @@ void Ways::grow(const Seat& from, const Aims& aims, Tree& tree) const {
     }
     tree.open.take(tree.next);
     std::erase_if(tree.next, [&](int corner) { return !std::exchange(tree.nodes[corner].open, false); });
-    if (built()) {
-      for (const int corner : tree.next) fetch(corner, tree);
-      for (const int corner : tree.next) expand(corner, from, aims, tree);
-    } else {
-      for (const int corner : tree.next) look_around(corner, from, aims, tree);
-    }
+    for (const int corner : tree.next) fetch(corner, tree);
+    for (const int corner : tree.next) expand(corner, from, aims, tree);
   }
 }
 
@@ -224,19 +219,6 @@ void Ways::expand(int c, const Seat& from, const Aims& aims, Tree& tree) const {
   }
 }
 
-// The same where the graph is not built.
-void Ways::look_around(int c, const Seat& from, const Aims& aims, Tree& tree) const {
-  const Tree::Node node = tree.nodes[c];
-  const auto& corners = sights_->corners();
-  const Lattice coming = corners[c].at - (node.parent < 0 ? from.at : corners[node.parent].at);
-  for (const int o : sights_->neighbours(c, Pairs::kTwice)) {
-    const Lattice leaving = corners[o].at - corners[c].at;
-    if (corners[c].on_left(leaving) != node.on_left || turns_away(node.on_left, coming, leaving)) continue;
-    const double length = node.length + distance(corners[c].place, corners[o].place);
-    tree.reach(o, {length, c, corners[o].on_left(leaving)}, [&] { return aims.estimate(corners[o].place); });
-  }
-}
-
 Ways::Last Ways::last_piece(const Seat& to, const Tree& tree) const {
   Last best{kFar, -1};
   for (const int corner : to.corners) {
@@ -247,9 +229,19 @@ Ways::Last Ways::last_piece(const Seat& to, const Tree& tree) const {
 }
 
 std::vector<Point> Ways::way(Point a, Point b) const {
+  if (!free(a) || !free(b)) return {};
+  if (sees(a, b)) return {a, b};
+  return built() ? way_in_graph(a, b) : way_alone(a, b).points;
+}
+
+CornerWay Ways::way_alone(Point a, Point b) const {
+  CornerWay way = search_corners(*sights_, a, b);
+  looks_ += way.looks;
+  return way;
+}
+
+std::vector<Point> Ways::way_in_graph(Point a, Point b) const {
   const Seat from = seat(a), to = seat(b);
-  if (!from.free || !to.free) return {};
-  if (sights_->sees(from.at, to.at)) return {a, b};
   if (!may_reach(from, to)) return {};
   Tree tree(sights_->extent());
   grow(from, Aims({&to}), tree);
@@ -264,8 +256,28 @@ std::vector<Point> Ways::way(Point a, Point b) const {
   return way;
 }
 
+std::optional<std::vector<double>> Ways::lengths_alone(const std::vector<Point>& exits,
+                                                       const std::vector<Point>& entries, bool mutual,
+                                                       const Pause& pause) const {
+  std::vector<double> table(exits.size() * entries.size(), kFar);
+  Pauses pauses(pause);
+  for (std::size_t i = 0; i < exits.size(); ++i) {
+    if (!free(exits[i])) continue;
+    double* row = &table[i * entries.size()];
+    if (mutual) row[i] = 0.0;
+    for (std::size_t j = mutual ? i + 1 : 0; j < entries.size(); ++j) {
+      pauses.next();
+      if (graph_pays()) return std::nullopt;
+      if (!free(entries[j])) continue;
+      row[j] = sees(exits[i], entries[j]) ? distance(exits[i], entries[j]) : way_alone(exits[i], entries[j]).length;
+    }
+  }
+  return table;
+}
+
 std::vector<double> Ways::lengths(const std::vector<Point>& exits, const std::vector<Point>& entries, bool mutual,
                                   int first, int last, int threads) const {
+  if (!built()) throw std::logic_error("lengths of a table are found in the graph, which is not built");
   const std::vector<Seat> ends = seats(entries, mutual ? first : 0, threads);
   const std::size_t columns = entries.size();
   std::vector<double> table(static_cast<std::size_t>(last - first) * columns, kFar);

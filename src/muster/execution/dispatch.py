@@ -14,7 +14,7 @@ from muster.execution.monitor import exceeds
 from muster.execution.peers import Gathering, Peers
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
-from muster.execution.task_motion import MotionPlanner, Way, Work, path_length, travel_s, work_of
+from muster.execution.task_motion import MotionPlanner, Way, Work, along, path_length, travel_s, work_of
 from muster.execution.team_work import break_off
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
@@ -87,7 +87,7 @@ class Dispatch:
             if way is None:
                 self.end_here(state, now)
             else:
-                state.send(now, Activity.RETURNING, [Waypoint(point) for point in way])
+                state.send(now, Activity.RETURNING, along(way))
                 self._emit("returns", {"robot": state.robot.id})
 
     def goes_home(self, state: RobotState) -> bool:
@@ -159,7 +159,7 @@ class Dispatch:
         if way is None or home is None:
             yield from self.refuse(state, task, "unreachable: there is no way", now)
             return
-        there = [Waypoint(point, label=task) for point in way]
+        there = along(way, task)
         delay = self._ledger.delays_s.get(task, 0.0)
         lasts = work.lasts_s + delay
         home_usage, home_s = _usage_home(state, work, home)
@@ -332,7 +332,7 @@ class Dispatch:
         if state.home is None:
             return []
         way = self._way(state.robot, work.exit, state.home)
-        return None if way is None else [Waypoint(point) for point in way]
+        return None if way is None else along(way)
 
 
 def _names(robots: Sequence[str]) -> dict[str, Any]:

@@ -8,15 +8,19 @@ is to be done, and the rest is planned again (`reallocation`).
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from muster.execution.beginning import Beginning
-from muster.execution.changes import OUT, SILENT, STUCK, Change, Changes, may_bring_work, new_robot_state
+from muster.execution.changes import OUT, SILENT, STUCK, Change, Changes, new_robot_state
 from muster.execution.completed_work import CompletedWork
 from muster.execution.dispatch import Dispatch
 from muster.execution.forecast import Forecast
+from muster.execution.insertion import Insertion
 from muster.execution.monitor import Limits, moves_again
+from muster.execution.orders import IMPROVED, Orders
 from muster.execution.peers import Peers
 from muster.execution.punctuality import Punctuality
 from muster.execution.reallocation import Reallocation, Revision, reasons_in_one_line, usage_ahead
@@ -24,7 +28,9 @@ from muster.execution.record import ExecutionEvent, NoObserver, Observer
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.report import Account
 from muster.execution.robot_state import Activity, RobotState
+from muster.execution.script import Script
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
+from muster.execution.standing import KEPT_EVENTS, KEPT_REVISIONS, UNTIL_DONE, EventLog, Forgetting, Standing
 from muster.execution.supervision import Supervisor
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
@@ -67,6 +73,8 @@ class Executor:
     peers
         the other robots' say, where this is the executor of those alone that have a port: then the mission is not over
         when they have nothing to do.
+    standing
+        how long a fleet stays on duty when its tasks are done, and for which orders; None: not at all.
 
     Raises
     ------
@@ -89,22 +97,28 @@ class Executor:
         now: float = 0.0,
         past: CompletedWork | None = None,
         peers: Peers | None = None,
+        standing: Standing | None = None,
     ) -> None:
         self.mission = mission
         self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored, plan.ignored)
         own = [robot for robot in mission.robots if peers is None or robot.id in ports]
         self.crew = {robot.id: new_robot_state(mission, robot, ports, now, plan.ignored) for robot in own}
         self.ended_s: float | None = None
-        self.events: list[ExecutionEvent] = []
-        self.revisions: list[Revision] = []
+        self._standing = UNTIL_DONE if standing is None else standing
+        self.orders = Orders()
+        self.events = EventLog(KEPT_EVENTS if self._standing.forgets else None)
+        self.revisions: deque[Revision] = deque(maxlen=KEPT_REVISIONS if self._standing.forgets else None)
+        self._plans = self._plans_searched = 0
         self.planned = plan
         self._travel = travel_of(mission) if travel is None else travel
         self._replan = Reallocation(travel=self._travel) if replan is None else replan
+        self._insertion = Insertion(self._travel)
         self._observer = NoObserver() if observer is None else observer
         self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
-        self._beginning = Beginning(self.ledger, self.crew, self._forecast.hold_until_s, self._alone)
+        hold_until_s = self._forecast.hold_until_s if peers is None else peers.hold_until_s
+        self._beginning = Beginning(self.ledger, self.crew, hold_until_s, self._alone)
         self._punctuality = Punctuality(self.ledger, self.crew, self._beginning)
         self._dispatch = Dispatch(
             self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, peers
@@ -121,7 +135,8 @@ class Executor:
             self.emit,
             now,
         )
-        self._script = sorted(mission.events, key=lambda event: event.at_s)
+        self._forgetting = Forgetting(self.ledger, self.crew, self._forecast, self._standing.keep_s)
+        self._script = self._script_after(-math.inf if past is None else now)
         self._asked: list[Change] = []
         self._left_out = {item.task: reasons_in_one_line(item.reasons) for item in plan.unassigned if item.reasons}
         self.now_s = now
@@ -158,7 +173,8 @@ class Executor:
     def due_s(self) -> float:
         """When the clock alone brings something next: an event of the mission, a robot available; inf if nothing."""
         available = [state.robot.available_from_s for state in self._present if state.route]
-        times = [*(event.at_s for event in self._script[:1]), *available, *self._punctuality.times(self.now_s)]
+        standing = (self._script.next_s, self._improvement_due_s, self._standing.until_s)
+        times = [*standing, *available, *self._punctuality.times(self.now_s)]
         return min((time for time in times if time > self.now_s), default=math.inf)
 
     def report(self, event: Event, reason: str = "") -> None:
@@ -171,11 +187,18 @@ class Executor:
         ParameterError
             if the event does not fit (see `Changes.apply`).
         """
-        changes = list(self._changes.apply(event, self.now_s, reason))
+        changes = list(self._changes.apply(self._due_at_once(event), self.now_s, reason))
         self._ask(changes)
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
             self.emit("without_effect", plain(event))
+
+    def _due_at_once(self, event: Event) -> Event:
+        """An order to a standing fleet that says not when it is due is due when it comes, where lateness counts."""
+        task = event.new_task
+        if task is None or task.due_s is not None or not self._standing.forgets or self._objective != "lateness":
+            return event
+        return replace(event, new_task=replace(task, due_s=self.now_s))
 
     def pause(self) -> None:
         """Let robots stop where they are; nothing is to be asked of this until `resume`."""
@@ -224,7 +247,7 @@ class Executor:
 
         To be called once at the beginning and after each step of the world, or whenever telemetry may have come.
         """
-        first, before_s = len(self.events), self.now_s
+        first, before_s = self.events.total, self.now_s
         self.set_clock(now)
         self._punctuality.count_waits(now - before_s)
         self._hear()
@@ -236,8 +259,10 @@ class Executor:
         self._go_on()
         self._notice_standstill()
         self._plan_what_was_left_out()
+        self._improve()
+        self._forget()
         self._end_if_over()
-        return self.events[first:]
+        return self.events.since(first)
 
     def set_clock(self, now: float) -> None:
         """Advance the clock without reading telemetry: reports and orders that follow happen at this time."""
@@ -259,9 +284,20 @@ class Executor:
                     self._ask(self._changes.readmit(state, self.now_s, "it moves again"))
 
     def _follow_script(self) -> None:
-        """Let those events of the mission file happen that are due."""
-        while self._script and self._script[0].at_s <= self.now_s:
-            self.report_if_it_fits(self._script.pop(0))
+        """Let those events of the mission file, and orders, happen that are due."""
+        for event in self._script.due(self.now_s):
+            if event.new_task is not None:
+                self.orders.comes(event.new_task.id, event.at_s)
+            self.report_if_it_fits(event)
+
+    def _script_after(self, time_s: float) -> Script:
+        """What is to happen after a time: events of the mission file, and orders."""
+        standing = self._standing
+        return Script(self.mission.events, standing.orders, batch_s=standing.batch_s, after_s=time_s)
+
+    @property
+    def _objective(self) -> str:
+        return self.planned.objective or self.mission.rules.objective
 
     def _capacity(self, state: RobotState) -> float | None:
         return None if "capacity" in self.planned.ignored else state.capacity
@@ -272,7 +308,6 @@ class Executor:
         left = {task.id for task in self.ledger.open} - past.barred.keys()
         for state in self.crew.values():
             state.route = [] if state.out else [task for task in state.route if task in left]
-        self._script = [event for event in self._script if event.at_s > self.now_s]
 
     def _notice_standstill(self) -> None:
         """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
@@ -336,7 +371,10 @@ class Executor:
 
     def _plan_again(self) -> None:
         causes, self._asked = [{"kind": change.kind, **change.data} for change in self._asked], []
-        revision = self._replan(self._rest())
+        self._adopt(self._replan(self._rest()), causes)
+
+    def _adopt(self, revision: Revision, causes: Sequence[Mapping[str, Any]]) -> None:
+        """Go on by a new plan of the rest."""
         for state in self._present:
             self._dispatch.take_route(state, revision.routes.get(state.robot.id, ()), self.now_s)
         for state in self.crew.values():
@@ -347,10 +385,37 @@ class Executor:
         self._dispatch.ahead, self._left_out = revision.ahead, dict(revision.left_out)
         self._punctuality.expect(self._forecast, self.now_s)
         self.revisions.append(revision)
+        self._plans += 1
         self.emit("replanned", {"causes": causes, **revision.difference(), "left_out": left_out})
         self._observer.on_plan(self.now_s, self.plan)
 
+    @property
+    def _improvement_due_s(self) -> float:
+        return math.inf if self._standing.improver is None else self._standing.improver.due_s
+
+    def _improve(self) -> None:
+        """Take over routes that a search in the background has found, and let it search on if the plan has changed."""
+        improver = self._standing.improver
+        if improver is None:
+            return
+        found = improver.found(self.now_s)
+        better = None if found is None else self._insertion.merged(self._rest(), found)
+        if better is not None:
+            self._adopt(better, [{"kind": IMPROVED}])
+            self._go_on()
+        if improver.due_s == math.inf and self._plans != self._plans_searched and any(s.route for s in self._present):
+            self._plans_searched = self._plans
+            improver.begin(self._rest())
+
+    def _forget(self) -> None:
+        """Of a standing fleet what is long done is forgotten."""
+        if self._standing.forgets:
+            for task, reason in self._forgetting.look(self.now_s):
+                self.emit("lost", {"task": task, "reason": reason})
+
     def _end_if_over(self) -> None:
+        if self.now_s < self._standing.until_s:
+            return
         if self._alone and not self.done and self.idle and not self._may_bring_work:
             last = max((event.time_s for event in self.events), default=self.begun_s)
             self.ended_s = max([last, *(state.begun_s for state in self._present if state.done)])
@@ -360,20 +425,21 @@ class Executor:
 
     @property
     def _may_bring_work(self) -> bool:
-        return any(may_bring_work(event, open_tasks=bool(self.ledger.open)) for event in self._script)
+        return self._script.may_bring_work(open_tasks=bool(self.ledger.open))
 
     @property
     def account(self) -> Account:
         """What it took, so far or in all."""
         return Account(
-            objective=self.planned.objective or self.mission.rules.objective,
+            objective=self._objective,
             objective_planned=self.planned.objective_value,
             ledger=self.ledger,
             lost=self.lost(),
             used={name: state.used for name, state in self.crew.items()},
             usage_planned=self.usage_planned,
             mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
-            reallocations=len(self.revisions),
+            reallocations=self._plans,
+            orders=self.orders.report(self.now_s - self.begun_s),
             charges={name: state.charge for name, state in self.crew.items() if state.charge is not None},
             shifts_exceeded_s=self._shifts_exceeded(),
             traffic=self.traffic.account.with_waits(self.traffic.waits),
@@ -410,4 +476,5 @@ class Executor:
     def emit(self, kind: str, data: Mapping[str, Any]) -> None:
         """Keep, and tell the observer, that something happened now."""
         self.events.append(ExecutionEvent(self.now_s, kind, data))
+        self.orders.take(self.now_s, kind, data)
         self._observer.on_event(self.now_s, kind, data)

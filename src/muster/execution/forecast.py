@@ -40,6 +40,11 @@ class Forecast:
     _works: dict[tuple[str, str, Place | tuple[float, ...]], Work | None] = field(default_factory=dict)
     _legs_s: dict[tuple[str, Place, Place], float] = field(default_factory=dict)
 
+    def forget(self) -> None:
+        """Forget ways and works that were looked up: most were of tasks that are done."""
+        self._works.clear()
+        self._legs_s.clear()
+
     def begins(self, now: float, margin: float = 0.0) -> dict[str, float] | None:
         """When each task of the routes that has not begun begins; None if the routes have no schedule."""
         times = _Times(self, now, margin)

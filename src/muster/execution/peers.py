@@ -53,6 +53,10 @@ class Peers(Protocol):
         """
         ...
 
+    def hold_until_s(self, task: str, now: float) -> float:
+        """When a task should begin so that others can begin in time after it; `now` if it need not wait."""
+        ...
+
     def begin_together(self, task: str) -> None:
         """The executor's robot begins, as agreed by `gather`."""
         ...

@@ -110,12 +110,12 @@ class Reallocation:
         Without a crew nothing is done any more.
         """
         if not rest.crew:
-            return _nobody(rest)
+            return nobody(rest)
         what = remaining_problem(rest, self.travel)
         problem = what.problem.ready()
-        before = _routes_before(problem, rest)
-        forced = _torn(problem, rest, before)
-        start = admissible_part(problem, _without_units(problem, before, forced))
+        before = routes_before(problem, rest)
+        forced = torn(problem, rest, before)
+        start = admissible_part(problem, without_units(problem, before, forced))
         stable = rest.mission.rules.stability
         if stable is None:
             routes = self._searched(problem, start)
@@ -123,7 +123,7 @@ class Reallocation:
             routes, forced = self._stable(problem, start, _robots_of(problem, before), forced, stable)
         if self.fill_waiting:
             routes = rewired(problem, routes)
-        return _revision(rest, what, routes, forced)
+        return revision_of(rest, what, routes, forced)
 
     def _stable(
         self, problem: Problem, routes: Routes, robots_of: RobotsOf, forced: frozenset[int], most: int
@@ -149,7 +149,7 @@ class Reallocation:
         return self.allocator.outcome(problem, stop, self.seed, self.parameters, start).routes
 
 
-def _routes_before(problem: Problem, rest: RemainingMission) -> Routes:
+def routes_before(problem: Problem, rest: RemainingMission) -> Routes:
     """The plan so far, of the tasks that the problem has; each route begins with the robot's past."""
     routes: Routes = []
     for i, robot in enumerate(problem.robots):
@@ -158,11 +158,11 @@ def _routes_before(problem: Problem, rest: RemainingMission) -> Routes:
     return routes
 
 
-def _torn(problem: Problem, rest: RemainingMission, before: Routes) -> frozenset[int]:
+def torn(problem: Problem, rest: RemainingMission, before: Routes) -> frozenset[int]:
     """The tasks that not all robots can do any more that were to do them: one is out, refused, or may not."""
     still = _teams(_named(problem, rest, before))
-    torn = (name for name, robots in rest.former.items() if still.get(name) != robots)
-    return frozenset(problem.task_index[name] for name in torn if name in problem.task_index)
+    changed = (name for name, robots in rest.former.items() if still.get(name) != robots)
+    return frozenset(problem.task_index[name] for name in changed if name in problem.task_index)
 
 
 def _named(problem: Problem, rest: RemainingMission, routes: Routes) -> dict[str, tuple[str, ...]]:
@@ -178,7 +178,7 @@ def _teams(routes: Mapping[str, Sequence[str]]) -> dict[str, str]:
     return {task: ", ".join(team) for task, team in teams_of(routes.items()).items()}
 
 
-def _without_units(problem: Problem, routes: Routes, tasks: Iterable[int]) -> Routes:
+def without_units(problem: Problem, routes: Routes, tasks: Iterable[int]) -> Routes:
     """The routes without some tasks, and without those that begin with them."""
     gone = {other for j in tasks for other in (j, *problem.timed_rules.beginning_with(j))}
     return [[j for j in route if j not in gone] for route in routes]
@@ -239,11 +239,12 @@ def _ahead(problem: Problem, i: int, route: list[int]) -> dict[str, float]:
 def usage_ahead(rest: RemainingMission, travel: Travel) -> dict[str, dict[str, float]]:
     """What each robot will use after each task of the routes as they are; see `Revision.ahead`."""
     problem = remaining_problem(rest, travel).problem
-    routes = _routes_before(problem, rest)
+    routes = routes_before(problem, rest)
     return {robot.id: _ahead(problem, i, routes[i]) for i, robot in enumerate(problem.robots)}
 
 
-def _revision(rest: RemainingMission, what: RemainingProblem, routes: Routes, forced: Collection[int]) -> Revision:
+def revision_of(rest: RemainingMission, what: RemainingProblem, routes: Routes, forced: Collection[int]) -> Revision:
+    """Routes as the new plan of the rest."""
     problem = what.problem
     planned = _named(problem, rest, routes)
     now = _teams(planned)
@@ -262,7 +263,8 @@ def _revision(rest: RemainingMission, what: RemainingProblem, routes: Routes, fo
     )
 
 
-def _nobody(rest: RemainingMission) -> Revision:
+def nobody(rest: RemainingMission) -> Revision:
+    """The plan of a crew in which nobody is left."""
     names = [task.id for task in rest.tasks]
     return Revision(
         routes={},

@@ -85,6 +85,8 @@ class RemainingMission:
         for a task the robots that relations to tasks that have begun leave to it.
     expired
         tasks that can never begin any more, and why.
+    objective
+        of the plan; None: the mission's.
     """
 
     mission: Mission
@@ -99,6 +101,18 @@ class RemainingMission:
     former: Mapping[str, str]
     bindings: Mapping[str, Binding] = field(default_factory=dict)
     expired: Mapping[str, str] = field(default_factory=dict)
+    objective: str | None = None
+
+
+def frozen(rest: RemainingMission) -> RemainingMission:
+    """The same, without anything that changes while the mission goes on: for another thread."""
+    return replace(
+        rest,
+        ended=frozenset(rest.ended),
+        delays_s=dict(rest.delays_s),
+        refusals={task: dict(why) for task, why in rest.refusals.items()},
+        expired=dict(rest.expired),
+    )
 
 
 @dataclass(frozen=True)
@@ -124,7 +138,7 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     past = _past(rest)
     mission = _mission(rest, [*past.values(), *tasks])
     others = tuple(rule for rule in rest.ignored if rule != "lock")  # the tasks are without it already
-    problem = Problem.compile(mission, ignored=others)
+    problem = Problem.compile(mission, rest.objective, ignored=others)
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
@@ -186,7 +200,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
         elif robots is not None and not robots:
             hopeless[task.id] = why
         else:
-            hopeful[task.id] = replace(task.waiting_for(_open_prerequisites(rest, task)), only_robots=robots)
+            hopeful[task.id] = _for_robots(task.waiting_for(_open_prerequisites(rest, task)), robots)
     _drop_units_without_hope(rest, hopeful, hopeless)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
     waiting = dict(hopeful)
@@ -200,6 +214,10 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     hopeful = {name: task for name, task in hopeful.items() if name in sure}
     _drop_units_without_hope(rest, hopeful, hopeless)
     return [_related_to(task, hopeful) for task in hopeful.values()], hopeless
+
+
+def _for_robots(task: Task, robots: tuple[str, ...] | None) -> Task:
+    return task if task.only_robots == robots else replace(task, only_robots=robots)
 
 
 def _open_prerequisites(rest: RemainingMission, task: Task) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
+from muster.execution.orders import OrdersReport
 from muster.execution.task_ledger import Ledger
 from muster.execution.traffic_waits import TrafficAccount
 from muster.mission.data_frames import data_frame
@@ -38,6 +39,8 @@ class Account:
         when robots were back, where that counts for the makespan.
     traffic
         who held up whom in traffic.
+    orders
+        of a mission in which tasks came on the way.
     """
 
     objective: str
@@ -53,6 +56,7 @@ class Account:
     shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
+    orders: OrdersReport | None = None
 
 
 @dataclass(frozen=True)
@@ -189,6 +193,11 @@ class Report:
         by task that several robots have begun, as they could not hear each other, these robots.
     found
         what cameras found, in order of time.
+    orders
+        figures of tasks that came while it was carried out; None: none did.
+    tasks_forgotten
+        how many tasks done, cancelled and lost are not listed, as a standing fleet keeps its last ones alone; sums
+        such as `waiting_s`, and the objective, are of all.
     remarks
         what else a person should hear of.
     """
@@ -214,6 +223,8 @@ class Report:
     within_exceeded_s: dict[str, float] = field(default_factory=dict)
     shifts_exceeded_s: dict[str, float] = field(default_factory=dict)
     traffic: tuple[TrafficReport, ...] = ()
+    orders: OrdersReport | None = None
+    tasks_forgotten: dict[str, int] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
@@ -282,12 +293,14 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         tasks=tuple(_task(ledger, task) for task in done),
         waiting_by_cause_s=_waiting_by_cause(account),
         traffic=_traffic(account.traffic),
-        lateness_s=sum(ledger.late_s(task) for task in done),
+        lateness_s=ledger.retired.lateness_s + sum(ledger.late_s(task) for task in done),
         missed=tuple(MissedReport(one.task, one.at_s, one.reason, one.next_s) for one in ledger.missed),
         deadlines_missed_s={task: ledger.overdue_s(task) for task in done if ledger.overdue_s(task) > 0},
         within_exceeded_s={task: ledger.begun_too_late_s(task) for task in done if ledger.begun_too_late_s(task) > 0},
         shifts_exceeded_s=dict(account.shifts_exceeded_s),
         done_twice=dict(account.done_twice),
+        orders=account.orders,
+        tasks_forgotten=_forgotten(ledger),
     )
 
 
@@ -318,16 +331,27 @@ def _traffic(account: TrafficAccount) -> tuple[TrafficReport, ...]:
 
 
 def _waiting_by_cause(account: Account) -> dict[str, float]:
-    causes = {"traffic": account.traffic.waiting_s} if account.traffic.pairs else {}
-    for by_cause in account.ledger.waits_s.values():
+    ledger = account.ledger
+    causes = dict(ledger.retired.waits_s)
+    if account.traffic.pairs:
+        causes["traffic"] = account.traffic.waiting_s
+    for by_cause in ledger.waits_s.values():
         for cause, seconds in by_cause.items():
             causes[cause] = causes.get(cause, 0.0) + seconds
     return dict(sorted(causes.items()))
 
 
+def _forgotten(ledger: Ledger) -> dict[str, int]:
+    sums = ledger.retired
+    return {name: count for name in ("done", "cancelled", "lost") if (count := getattr(sums, name))}
+
+
 def _objective(account: Account) -> ObjectiveReport:
-    ledger = account.ledger
+    ledger, sums = account.ledger, account.ledger.retired
     arrivals = [ledger.arrival_usage[task] for task in ledger.ends_s]
     late = lateness((ledger.tasks[task].priority, end, ledger.tasks[task].due_s) for task, end in ledger.ends_s.items())
-    flown = objective_values(account.used.values(), arrivals, [*ledger.ends_s.values(), *account.back_s], late)
+    ends_s = [*ledger.ends_s.values(), sums.last_end_s, *account.back_s]
+    flown = objective_values(account.used.values(), arrivals, ends_s, late + sums.lateness)
+    if sums.done:
+        flown["average"] = (sum(arrivals) + sums.arrival_usage) / (len(arrivals) + sums.done)
     return ObjectiveReport(account.objective, account.objective_planned, flown[account.objective])

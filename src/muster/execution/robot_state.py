@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from itertools import takewhile
 
 from muster.execution.task_motion import Work, path_length, place
 from muster.mission.model import Robot
@@ -183,8 +184,13 @@ class RobotState:
 
     @property
     def way_left_m(self) -> float:
-        """Metres of the last order that it has not travelled."""
-        return path_length(self.position, self._waypoints[self.passed :])
+        """Metres of the last order that it has not travelled, by its own navigation where that tells them."""
+        left = self._waypoints[self.passed :]
+        told = None if self.telemetry is None or self.telemetry.order != self._order else self.telemetry.left_m
+        if told is None or not left:
+            return path_length(self.position, left)
+        marks = sum(1 for _ in takewhile(lambda waypoint: waypoint.via, left))
+        return told + path_length(left[marks].position, left[marks + 1 :])
 
     @property
     def used(self) -> float:

@@ -13,7 +13,7 @@ from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger, task_as_it_holds
 from muster.execution.travel import Spot
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Robot
 from muster.mission.plan import Plan, Reason, Route, Unassigned
 from muster.mission.value_types import shown
 
@@ -63,6 +63,7 @@ def remaining_mission_of(
         former={name: ", ".join(robots) for name, robots in _former(crew, under_way).items()},
         bindings=bindings,
         expired=ledger.expired,
+        objective=plan.objective,
     )
 
 
@@ -82,7 +83,7 @@ def _snapshot(state: RobotState, now: float) -> RobotSnapshot:
     at_task = state.activity in (Activity.WORKING, Activity.DRIVING, Activity.WAITING)
     before = state.done[-1] if state.done and not state.at_home else state.robot.id
     return RobotSnapshot(
-        robot=replace(state.robot, work_capacity=state.capacity),
+        robot=_with_capacity(state.robot, state.capacity),
         home=state.home,
         spot=Spot(point, state.route[0] if at_task else before, point if works else state.refuge),
         free_s=now + state.work_left_s(now),
@@ -90,6 +91,10 @@ def _snapshot(state: RobotState, now: float) -> RobotSnapshot:
         task=state.route[0] if works else None,
         charge=_charge(state),
     )
+
+
+def _with_capacity(robot: Robot, capacity: float | None) -> Robot:
+    return robot if robot.work_capacity == capacity else replace(robot, work_capacity=capacity)
 
 
 def _charge(state: RobotState) -> Charge | None:

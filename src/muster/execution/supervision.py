@@ -103,6 +103,8 @@ class Supervisor:
             lasted_s, held_s = (min(getattr(one, key) for one in members) for key in ("jammed_s", "held_s"))
             if lasted_s >= self.limits.jam_after_s and not all(one.told for one in members):
                 self._tell_jam(jam, members, now - lasted_s)
+            if self._steered(members):  # who steers them lets them pass
+                continue
             if lasted_s >= GIVES_UP_AFTER * self.limits.jam_after_s:
                 for one in members:
                     one.jammed_s = self.limits.jam_after_s
@@ -115,6 +117,14 @@ class Supervisor:
     def _is_ring(self, jam: Collection[str]) -> bool:
         """Whether all of a jam want to get on, as far as is known; else one that stands is to make room."""
         return all(robot in self.traffic.waits or robot not in self.crew for robot in jam)
+
+    def _steered(self, members: Sequence[Progress]) -> bool:
+        """Whether traffic decides who passes first of these robots: then it tells how far each has to go.
+
+        That one waits for another says the collision avoidance of a robot by itself, too.
+        """
+        said = [self.crew[one.robot].telemetry for one in members]
+        return any(one is not None and one.left_m is not None for one in said)
 
     def _turn(self, jam: Collection[str], members: Sequence[Progress]) -> int:
         """Which of a jam is the next to stand aside, from 1, as far as its robots do not know of each other.

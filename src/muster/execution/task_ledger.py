@@ -1,4 +1,7 @@
-"""The task ledger: all tasks, the progress of each, and why one is lost. Entries are never removed."""
+"""The task ledger: all tasks, the progress of each, and why one is lost.
+
+Entries are removed only of standing fleets, and live on in sums (`Retired`).
+"""
 
 from __future__ import annotations
 
@@ -24,6 +27,35 @@ class MissedTask:
     at_s: float
     reason: str
     next_s: float | None
+
+
+@dataclass
+class Retired:
+    """What tasks came to that a standing fleet has forgotten, all together.
+
+    Parameters
+    ----------
+    done, cancelled, lost
+        how many.
+    waiting_s, waits_s
+        as `Ledger.waiting_s`, and by cause.
+    lateness_s, lateness
+        after due times, and weighed by priority.
+    arrival_usage
+        the sum over tasks done.
+    last_end_s
+        when the last of them ended.
+    """
+
+    done: int = 0
+    cancelled: int = 0
+    lost: int = 0
+    waiting_s: float = 0.0
+    waits_s: dict[str, float] = field(default_factory=dict)
+    lateness_s: float = 0.0
+    lateness: float = 0.0
+    arrival_usage: float = 0.0
+    last_end_s: float = 0.0
 
 
 @dataclass
@@ -58,6 +90,7 @@ class Ledger:
     waits_s: dict[str, dict[str, float]] = field(default_factory=dict)  # task, cause: seconds that robots waited
     missed: list[MissedTask] = field(default_factory=list)
     expired: dict[str, str] = field(default_factory=dict)  # tasks that can never begin any more, and why
+    retired: Retired = field(default_factory=Retired)
     _units: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     @classmethod
@@ -135,7 +168,7 @@ class Ledger:
     @property
     def waiting_s(self) -> float:
         """Seconds that robots waited at tasks that were begun."""
-        return sum(map(self.waited_s, self.starts_s))
+        return self.retired.waiting_s + sum(map(self.waited_s, self.starts_s))
 
     def waited_s(self, task: str) -> float:
         """Seconds that a robot waited at a task that was begun; all robots of a team together."""
@@ -218,6 +251,50 @@ class Ledger:
     def withdraw(self, task: str, now: float) -> None:
         self.cancelled[task] = now
         self.give_up(task)
+
+    def settled(self, before_s: float) -> set[str]:
+        """Tasks done or cancelled before a time, or that can never begin, to which no other task refers."""
+        over = {name for times in (self.ends_s, self.cancelled) for name, at_s in times.items() if at_s < before_s}
+        over |= {name for name in self.expired if name not in self.ends_s and name not in self.cancelled}
+        needed = {name for task in self.tasks.values() if task.id not in over for name in _referred_to(task)}
+        return over - needed
+
+    def retire(self, tasks: Collection[str]) -> None:
+        """Forget settled tasks, but for sums."""
+        for name in tasks:
+            self._sum_up(name)
+        self.missed = [one for one in self.missed if one.task not in tasks]
+        by_task: tuple[dict[str, Any], ...] = (
+            *(self.tasks, self.delays_s, self.arrivals_s, self.arrival_usage, self.starts_s, self.ends_s, self.done_by),
+            *(self.usage, self.cancelled, self.refusals, self.blocked_by, self.teams, self.team_waits_s, self.waits_s),
+            self.expired,
+        )
+        for entries in by_task:
+            for name in tasks:
+                entries.pop(name, None)
+        self._units = {}
+
+    def _sum_up(self, task: str) -> None:
+        sums = self.retired
+        for cause, seconds in self.waits_s.get(task, {}).items():
+            sums.waits_s[cause] = sums.waits_s.get(cause, 0.0) + seconds
+        if task in self.starts_s:
+            sums.waiting_s += self.waited_s(task)
+        if task in self.ends_s:
+            sums.done += 1
+            sums.lateness_s += self.late_s(task)
+            sums.lateness += self.tasks[task].priority * self.late_s(task)
+            sums.arrival_usage += self.arrival_usage[task]
+            sums.last_end_s = max(sums.last_end_s, self.ends_s[task])
+        elif task in self.cancelled:
+            sums.cancelled += 1
+        else:
+            sums.lost += 1
+
+
+def _referred_to(task: Task) -> tuple[str, ...]:
+    """The tasks that a task names."""
+    return (*task.prerequisites, *task.same_robot_as, *task.other_robot_than, *task.starts_with)
 
 
 def _out(task: Task, gone: Mapping[str, str]) -> str:

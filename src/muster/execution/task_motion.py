@@ -76,7 +76,7 @@ def work_of(task: Task, robot: Robot, plan_motion: MotionPlanner, way: Way, time
         places = way(robot, before.position, waypoint.position)
         if places is None:
             return Impossible(f"unreachable: there is no way from {_told(before)} to {_told(waypoint)}")
-        passed = [*map(Waypoint, places[:-1]), waypoint]
+        passed = [*(Waypoint(point, via=True) for point in places[:-1]), waypoint]
         metres.append(path_length(before.position, passed))
         waypoints += passed
     driven_s = times.work_seconds([waypoint.position for waypoint in found.waypoints], metres)
@@ -101,6 +101,11 @@ def _told(waypoint: Waypoint) -> str:
 def straight(robot: Robot, start: Place, goal: Place) -> Sequence[Place] | None:
     """The way without a map."""
     return (goal,)
+
+
+def along(way: Sequence[Place], label: str = "") -> list[Waypoint]:
+    """Way points along a way, all but the last of which only mark it."""
+    return [Waypoint(point, label=label, via=k + 1 < len(way)) for k, point in enumerate(way)]
 
 
 def place(point: Point) -> Place:

@@ -1,13 +1,13 @@
 """Converts places that a file gives in degrees to metres in the map frame, before the mission is read.
 
-A robot, a task, a tag and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit` and
-`pickup` may be `{lat_lon: [lat, lon]}`. With an altitude a place has three coordinates, without it two: it is taken at
-the altitude of the origin, and its height over the plane of the map frame is dropped.
+A robot, a task, a tag and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit`,
+`pickup` and the nodes of lanes may be `{lat_lon: [lat, lon]}`. With an altitude a place has three coordinates, without
+it two: it is taken at the altitude of the origin, and its height over the plane of the map frame is dropped.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -70,10 +70,19 @@ def _places(data: object) -> Iterator[InDegrees]:
     for at, record in _records(data):
         if "lat_lon" in record:
             yield InDegrees(record["lat_lon"], (*at, "lat_lon"), (*at, "position"), record)
-        for key in (*_OTHER_PLACES, *_own_places(record)):
-            value = record.get(key)
-            if isinstance(value, dict) and list(value) == ["lat_lon"]:
-                yield InDegrees(value["lat_lon"], (*at, key, "lat_lon"), (*at, key), record)
+        yield from _by_key(at, record, (*_OTHER_PLACES, *_own_places(record)))
+    lanes = data.get("lanes") if isinstance(data, dict) else None
+    nodes = lanes.get("nodes") if isinstance(lanes, dict) else None
+    if isinstance(nodes, dict):
+        yield from _by_key(("lanes", "nodes"), nodes, nodes)
+
+
+def _by_key(at: Path, record: dict[str, Any], keys: Iterable[str]) -> Iterator[InDegrees]:
+    """The places of a record, by these of its keys."""
+    for key in keys:
+        value = record.get(key)
+        if isinstance(value, dict) and list(value) == ["lat_lon"]:
+            yield InDegrees(value["lat_lon"], (*at, key, "lat_lon"), (*at, key), record)
 
 
 def _own_places(record: Mapping[str, Any]) -> list[str]:

@@ -15,7 +15,7 @@ from typing import Any
 from muster.mission.action_keys import ACTION_KEYS, ActionKeys
 from muster.mission.cooperation import Prerequisite, PrerequisiteOrId
 from muster.mission.model import SCHEMA, Action, Mission
-from muster.mission.records import Record, required, specified
+from muster.mission.records import Record, key_of, required, specified
 from muster.mission.value_types import JsonSchema, Kind, Many
 
 
@@ -52,8 +52,8 @@ def _records(kind: Kind) -> Iterator[Record]:
 
 def _definition(of: type[Any]) -> JsonSchema:
     own = specified(of)
-    properties = {f.name: _schema(f) | _described(f) for f in own}
-    need = [f.name for f in own if required(f) and "instead" not in f.metadata]
+    properties = {key_of(f): _schema(f) | _described(f) for f in own}
+    need = [key_of(f) for f in own if required(f) and "instead" not in f.metadata]
     rules: list[JsonSchema] = []
     for f in own:
         if "instead" in f.metadata:

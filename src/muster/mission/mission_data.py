@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import field
 
 from muster.mission.events import Event
+from muster.mission.lanes import Lanes
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.robots import Robot
 from muster.mission.rules import Rules
@@ -28,6 +29,7 @@ class MissionData(Checked):
     starts_at: str | None = spec(Moment(), "date and time at which it begins, for clock times", default=None)
     rules: Rules = spec(Record(Rules, "rules"), "what counts, and how", default=Rules())
     map: Map | None = spec(Record(Map, "a map"), "walls and zones", default=None)
+    lanes: Lanes | None = spec(Record(Lanes, "lanes"), "the ways on which robots drive", default=None)
     travel: Mapping[str, str] | None = spec(
         Table(Text(), "a mapping from robot types to CSV files"),
         "travel tables, with rules.travel: matrix",

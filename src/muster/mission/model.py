@@ -16,6 +16,7 @@ from muster.mission.data_frames import frame_of_records
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
 from muster.mission.html_tables import html_line, html_table
+from muster.mission.lanes import Lane, Lanes
 from muster.mission.mission_data import SCHEMA, MissionData
 from muster.mission.records import findings, record, shown_if_used
 from muster.mission.robots import Camera, Robot
@@ -38,6 +39,8 @@ __all__ = [
     "Found",
     "Lag",
     "Landmark",
+    "Lane",
+    "Lanes",
     "Map",
     "Mission",
     "MovedTask",

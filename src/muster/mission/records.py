@@ -31,6 +31,7 @@ from muster.mission.value_types import (
 )
 
 C = TypeVar("C")
+_SPECIFIED: dict[type[Any], tuple[Field[Any], ...]] = {}
 
 
 def spec(
@@ -41,6 +42,7 @@ def spec(
     unit: str = "",
     instead: tuple[str, Kind, str] | None = None,
     if_used: bool = False,
+    key: str = "",
 ) -> Any:
     """A dataclass field whose values are of `kind`; without `default` it is required.
 
@@ -53,8 +55,11 @@ def spec(
         replaced before; `Record` never gets to read the key.
     if_used
         whether tables show it only where some record has it.
+    key
+        what files call it, where Python keeps the word for itself (`from`); by default the field's name.
     """
     metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit, "if_used": if_used}
+    metadata |= {"key": key} if key else {}
     metadata |= {"instead": instead} if instead else {}
     hashed = False if isinstance(kind, Table) else None  # a mapping has no hash
     if default is MISSING:
@@ -85,7 +90,14 @@ def _naming_unknown_fields(init: Callable[..., None], cls: type[Any]) -> Callabl
 
 def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
     """The fields of a model class that a file may hold, in order."""
-    return tuple(f for f in fields(cls) if "kind" in f.metadata)
+    if cls not in _SPECIFIED:  # looked up for each record that is made
+        _SPECIFIED[cls] = tuple(f for f in fields(cls) if "kind" in f.metadata)
+    return _SPECIFIED[cls]
+
+
+def key_of(f: Field[Any]) -> str:
+    """What files call a field."""
+    return str(f.metadata.get("key", f.name))
 
 
 def shown_if_used(cls: type[Any]) -> tuple[str, ...]:
@@ -109,7 +121,7 @@ class Checked:
             value = getattr(self, f.name)
             if value is None and f.default is None:
                 continue
-            object.__setattr__(self, f.name, f.metadata["kind"].read(value, (f.name,), faults))
+            object.__setattr__(self, f.name, f.metadata["kind"].read(value, (key_of(f),), faults))
         if not faults:
             for name, value in self.settled(self.__dict__).items():
                 object.__setattr__(self, name, value)
@@ -156,10 +168,10 @@ class Record:
 
     @property
     def expected(self) -> str:
-        keys = [f.name for f in specified(self.of) if required(f)]
+        keys = [key_of(f) for f in specified(self.of) if required(f)]
         if keys:
             return f"{self.what} with the keys {', '.join(keys)}"
-        return f"{self.what} with some of the keys {', '.join(f.name for f in specified(self.of))}"
+        return f"{self.what} with some of the keys {', '.join(map(key_of, specified(self.of)))}"
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, self.of):
@@ -168,7 +180,7 @@ class Record:
             refuse(self, value, at, faults)
             return self._instance({})
         before = len(faults)
-        known = {f.name: f for f in specified(self.of)}
+        known = {key_of(f): f for f in specified(self.of)}
         further = {key: one.kind for key, one in self.of.further_keys(value).items()}
         names = (*known, *further)
         hints = (*names, *(f.metadata["instead"][0] for f in known.values() if "instead" in f.metadata))
@@ -177,7 +189,8 @@ class Record:
         for name, f in known.items():
             item = value.get(name, INVALID)
             if name in value and not (item is None and f.default is None):
-                values[name] = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
+                read = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
+                values[f.name] = read
             elif required(f):
                 faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
         if len(faults) == before and not any(item is INVALID for item in values.values()):

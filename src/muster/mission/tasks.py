@@ -169,6 +169,8 @@ class Work(Checked):
     def waiting_for(self, prerequisites: Iterable[str]) -> Self:
         """The same work with only those prerequisites, and their lags."""
         kept = tuple(prerequisites)
+        if kept == self.prerequisites:
+            return self
         return replace(self, prerequisites=kept, lags={name: lag for name, lag in self.lags.items() if name in kept})
 
     @classmethod

@@ -18,7 +18,7 @@ Path = tuple[str | int, ...]
 JsonSchema = dict[str, Any]
 
 RESERVED_NAMES = frozenset(
-    {"load", "delivers", "relay", "load_capacity", "load_at_start", "battery", "stations", "lanes", "recharge"}
+    {"load", "delivers", "relay", "load_capacity", "load_at_start", "battery", "stations", "recharge"}
 )
 """Keys that a later version will give a meaning; until then they are refused, not ignored."""
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from muster.mission.mission_data import MissionData
-from muster.mission.records import specified
+from muster.mission.records import key_of, specified
 from muster.mission.source import IN_PYTHON
 from muster.mission.value_types import FileForm
 
@@ -59,7 +59,7 @@ def plain(value: Any) -> Any:
         return {key: plain(item) for key, item in value.items()}
     if hasattr(value, "__dataclass_fields__"):
         fields = specified(type(value))
-        given = {f.name: _file_form(f, value) for f in fields if getattr(value, f.name) != f.default}
+        given = {key_of(f): _file_form(f, value) for f in fields if getattr(value, f.name) != f.default}
         return given | plain(getattr(value, "extra", {}))
     return value
 

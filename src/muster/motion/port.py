@@ -24,12 +24,15 @@ class Waypoint:
         seconds for which it stays.
     label
         returned by telemetry when the way point is passed; it has a meaning for the sender only.
+    via
+        whether it only marks the way to the next one, so that who steers the robot may choose another way.
     """
 
     position: Place
     heading: float | None = None
     hold_s: float = 0.0
     label: str = ""
+    via: bool = False
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,9 @@ class Telemetry:
         why it cannot reach the next way point of this order, by its own navigation; empty while it goes on.
     waits_for
         the robot that it waits for in traffic; empty while it waits for nobody, None where it does not tell.
+    left_m
+        metres that it has still to go to the next way point that is no `via`, by its own navigation; None where that
+        does not say.
     """
 
     time_s: float
@@ -87,6 +93,7 @@ class Telemetry:
     charge: float | None = None
     refused: str = ""
     waits_for: str | None = None
+    left_m: float | None = None
 
 
 class RobotPort(Protocol):

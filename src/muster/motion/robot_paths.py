@@ -20,6 +20,8 @@ from muster.motion.unreachable_places import checked_world, why_blocked
 
 Floats = npt.NDArray[np.float64]
 
+_MOST_LEGS = 100_000  # that are kept: a standing fleet is asked for new ones for ever
+
 
 @dataclass(frozen=True, eq=False)
 class RobotPaths:
@@ -63,6 +65,8 @@ class RobotPaths:
         """The length of the shortest path, metres; inf where there is none. Cached: actions ask for legs repeatedly."""
         leg = (body, start, goal)
         if leg not in self._legs:
+            if len(self._legs) >= _MOST_LEGS:
+                self._legs.clear()
             found = self.path(body, start, goal)
             self._legs[leg] = math.inf if isinstance(found, NoPath) else found.length_m
         return self._legs[leg]

@@ -6,7 +6,7 @@ or `tick` returns.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Task
@@ -98,6 +98,11 @@ class Negotiator(Participant):
     def owners(self, tasks: Collection[str]) -> Members:
         """The members that own one of these tasks, each with its task; none unless an auction with it has ended."""
         return self.epoch.owners(tasks) if self.stage.ended and self.epochs and not self.superseded else ()
+
+    @property
+    def spans(self) -> Mapping[str, tuple[float, float]]:
+        """When tasks begin and end by what was agreed, in mission time; none unless an auction with times has ended."""
+        return self.valuer.spans() if self.stage.ended and self.epochs and not self.superseded else {}
 
     def finish(self, task: str) -> None:
         """State that the robot has done a task; of one that several begin all have stated their parts before."""

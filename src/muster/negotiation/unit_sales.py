@@ -39,12 +39,16 @@ class UnitSales:
     def routes(self) -> Routes:
         return self._auction.routes
 
+    def spans(self) -> dict[str, tuple[float, float]]:
+        """For each task sold when it begins and ends in the earliest schedule of all routes, seconds."""
+        return {self._problem.tasks[task].id: span for task, span in self._auction.spans().items()}
+
     def bids(self, robot: int, refused: Collection[str]) -> tuple[Bid, ...]:
         """What a robot bids, as the winner rule needs it; none for units with tasks that it has refused."""
         units = [unit for unit in self._for_sale() if not any(task in refused for task in self._names(unit))]
         own = sorted(
             (bid for unit in units if self._auction.is_alone(unit) for bid in self._auction.bids(unit, [robot])),
-            key=lambda bid: bid.price,
+            key=lambda bid: bid.key,
         )
         held = (bid for bid in own if self._auction.holds(bid))
         chosen = list(held) if self._terms.winner_rule == "least-contested" else [b for b in (next(held, None),) if b]
@@ -54,7 +58,7 @@ class UnitSales:
     def winner(self, bids: Sequence[RoundBids]) -> Sold | None:
         """The sale of a round with these bids of all members; None: there is none."""
         offers = [offer for unit in self._for_sale() if (offer := self._offer(unit, bids)).bids]
-        ranked = sorted(offers, key=lambda offer: rank([bid.price for bid in offer.bids], self._terms))
+        ranked = sorted(offers, key=lambda offer: rank([bid.key for bid in offer.bids], self._terms))
         return next((sold for offer in ranked if (sold := self._sold(offer)) is not None), None)
 
     def award(self, sold: Sold) -> None:
@@ -96,11 +100,15 @@ class UnitSales:
         """The bids for a unit."""
         heard = self._heard(unit, bids)
         if self._auction.is_alone(unit):
-            return _Offer(
-                unit, [_Winners(price, (robot,)) for price, robot in sorted((p, r) for r, p in heard.items())]
-            )
+            alone = [_Winners((self._leaves_no_time(unit, robot), price), (robot,)) for robot, price in heard.items()]
+            return _Offer(unit, sorted(alone, key=lambda bid: (bid.key, bid.robots)))
         coalitions = self._auction.bids(unit, sorted(heard)) if heard else []
-        return _Offer(unit, [_Winners(bid.price, _robots(bid)) for bid in coalitions])
+        return _Offer(unit, [_Winners(bid.key, _robots(bid)) for bid in coalitions])
+
+    def _leaves_no_time(self, unit: int, robot: int) -> bool:
+        """Whether by the bid of this robot something not sold yet could not be in time any more, as all compute it."""
+        bid = self._auction.best_bid(unit, [robot])
+        return bid is None or bid.leaves_no_time
 
     def _heard(self, unit: int, bids: Sequence[RoundBids]) -> dict[int, float]:
         """For each robot that bids for a unit its bid."""
@@ -111,7 +119,7 @@ class UnitSales:
         """The sale to the best bid for a unit; None: the schedule does not hold it."""
         best = offer.bids[0]
         if self._auction.is_alone(offer.unit):
-            return Sold(self._problem.robots[best.robots[0]].id, self._names(offer.unit)[0], best.price)
+            return Sold(self._problem.robots[best.robots[0]].id, self._names(offer.unit)[0], best.key[1])
         bid = self._auction.best_bid(offer.unit, best.robots)
         if bid is None or not self._auction.holds(bid):
             return None
@@ -142,9 +150,9 @@ class UnitSales:
 
 @dataclass(frozen=True)
 class _Winners:
-    """Robots that would do a unit, and what for."""
+    """Robots that would do a unit, and what for: as `CoalitionBid.key`."""
 
-    price: float
+    key: tuple[bool, float]
     robots: tuple[int, ...]
 
 

@@ -90,6 +90,10 @@ class Valuer(Protocol):
         """The tasks of a robot, in the order of execution."""
         ...
 
+    def spans(self) -> Mapping[str, tuple[float, float]]:
+        """When tasks begin and end in the earliest schedule of all routes, seconds; none where nothing binds times."""
+        ...
+
 
 class TeamValuer(ABC):
     """Common parts of all methods: the mission with its added tasks, and what robots own already.
@@ -139,6 +143,9 @@ class TeamValuer(ABC):
     @abstractmethod
     def route(self, robot: str) -> list[str]: ...
 
+    def spans(self) -> Mapping[str, tuple[float, float]]:
+        return {}
+
     def _by_index(self, routes: Mapping[str, Sequence[str]], number: Mapping[str, int]) -> list[list[int]]:
         by_index: list[list[int]] = [[] for _ in self._robots]
         for robot, tasks in routes.items():
@@ -180,6 +187,9 @@ class AuctionValuer(TeamValuer):
 
     def route(self, robot: str) -> list[str]:
         return [self.problem.tasks[j].id for j in self.sales.routes[self._robots[robot]]]
+
+    def spans(self) -> Mapping[str, tuple[float, float]]:
+        return self.sales.spans() if isinstance(self.sales, UnitSales) else {}
 
     def _refuse_bid(self, problem: Problem) -> None:
         if problem.core.is_timed:

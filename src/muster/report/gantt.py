@@ -39,13 +39,13 @@ def plot_gantt(mission: Mission, verdict: Verdict, *, ax: Axes | None = None) ->
         ax = new_chart_axes(len(mission.robots))
     chart = TimeChart(
         rows=tuple(map(row_of, verdict.routes)),
-        prerequisites=drawn_prerequisites(mission),
+        prerequisites=drawn_prerequisites(mission.tasks),
         until_s=max([makespan_s, *(route.back_s or 0.0 for route in verdict.routes)]),
         lines=((makespan_s, "makespan"),),
     )
     names = Names(mission)
     with names.fonts():
-        entries = [*chart.draw(ax, names), *draw_limits(ax, mission, chart.rows)]
+        entries = [*chart.draw(ax, names), *draw_limits(ax, mission.tasks, chart.rows, mission.starts_at)]
         facts = [f"makespan {duration(makespan_s)}", f"tasks {verdict.tasks_completed}/{verdict.tasks_total}"]
         add_title(ax, names.title(mission.name), facts, alarm_of(verdict))
         add_legend(ax, [*entries, *note_entries(names)])

@@ -22,27 +22,29 @@ def plot_flown_gantt(recording: Recording) -> Axes:
 
     There is a row for each robot of the mission, then for those that joined.
 
-    Looks like `plot_gantt`. The lines are the end of the mission, and the makespan of the plan that it began with.
+    Looks like `plot_gantt`, with what the mission asked of tasks that were added too. The lines are the end of the
+    mission, and the makespan of the plan that it began with.
 
     Raises
     ------
     MissingExtraError
         if matplotlib is not installed.
     """
+    mission, tasks = recording.mission, recording.tasks
     rows, until_s = recorded_rows(recording), recording.duration_s
     ax = new_chart_axes(len(rows))
     planned = [version.plan.makespan_s for version in recording.plans[:1] if version.plan.makespan_s is not None]
     chart = TimeChart(
         rows=rows,
-        prerequisites=drawn_prerequisites(recording.mission),
+        prerequisites=drawn_prerequisites(tasks),
         until_s=max([until_s, *planned]),
         lines=((until_s, "end"), *((at_s, "planned makespan") for at_s in planned)),
     )
-    names = Names(recording.mission)
+    names = Names(mission)
     with names.fonts():
-        entries = [*chart.draw(ax, names), *draw_limits(ax, recording.mission, rows)]
+        entries = [*chart.draw(ax, names), *draw_limits(ax, tasks, rows, mission.starts_at)]
         facts = [duration(until_s), *outcome(recording)]
-        add_title(ax, names.title(recording.mission.name), facts, "" if recording.complete else "the record breaks off")
+        add_title(ax, names.title(mission.name), facts, "" if recording.complete else "the record breaks off")
         add_legend(ax, [*entries, *note_entries(names)])
     return ax
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Task
 from muster.report.route_lines import Places
 from muster.report.styles import FRAME, MOST_ARROWS, PREREQUISITE
 
@@ -18,9 +19,9 @@ def draw_stems(ax: Any, tops: Places, floor: float) -> None:
     ax.plot(*rows.T, color=FRAME, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.8, gid="stems")
 
 
-def drawn_prerequisites(mission: Mission) -> list[tuple[str, str]]:
+def drawn_prerequisites(tasks: Iterable[Task]) -> list[tuple[str, str]]:
     """List prerequisites and their dependants, by id; none where there are too many to be drawn."""
-    pairs = [(before, task.id) for task in mission.tasks for before in task.prerequisites]
+    pairs = [(before, task.id) for task in tasks for before in task.prerequisites]
     return pairs if len(pairs) <= MOST_ARROWS else []
 
 
@@ -31,7 +32,7 @@ def draw_prerequisites(ax: Any, mission: Mission, place_of: dict[str, Places], g
     """
     from matplotlib.lines import Line2D
 
-    pairs = drawn_prerequisites(mission)
+    pairs = drawn_prerequisites(mission.tasks)
     if not pairs:
         return []
     for before, after in pairs:

@@ -361,7 +361,7 @@ def _obstacles(ax: Any, scene: _Scene) -> Places:
     starts = to_points(ax, scene.places([robot.position for robot in scene.mission.robots]))
     lines = [line for lines in scene.lines for line in (lines.travel, lines.work, lines.end) if len(line)]
     at = {task.id: task.position for task in scene.mission.tasks}
-    lines += [scene.places([at[before], at[after]]) for before, after in drawn_prerequisites(scene.mission)]
+    lines += [scene.places([at[before], at[after]]) for before, after in drawn_prerequisites(scene.mission.tasks)]
     if scene.mission.map is not None:
         lines += [scene.places(outline) for outline in map_outlines(scene.mission.map)]
     walls = scene.places(() if scene.image is None else wall_places(scene.image))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import groupby
 from typing import Any
 
-from muster.mission.model import Mission
+from muster.mission.model import Task
 from muster.mission.time_types import clock_text
 from muster.report.styles import ALARM, QUIET_TEXT, TEXT
 from muster.report.time_chart import WORK_HEIGHT, Row
@@ -21,9 +21,12 @@ Entry = tuple[Any, str]
 """A handle of a legend and its words."""
 
 
-def draw_limits(ax: Any, mission: Mission, rows: Sequence[Row]) -> list[Entry]:
-    """Draw the limits of the tasks that are done, and who begins them together; the entries of a legend."""
-    marks = time_marks(mission, rows)
+def draw_limits(ax: Any, tasks: Iterable[Task], rows: Sequence[Row], starts_at: str | None) -> list[Entry]:
+    """Draw the limits of those of these tasks that are done, and who begins tasks together; the entries of a legend.
+
+    The axis has clock times if the mission starts at one.
+    """
+    marks = time_marks(tasks, rows)
 
     def of(kind: str) -> list[TimeMark]:
         return [mark for mark in marks if mark.kind == kind]
@@ -35,8 +38,8 @@ def draw_limits(ax: Any, mission: Mission, rows: Sequence[Row]) -> list[Entry]:
         *_draw_lateness(ax, of(LATE)),
         *_draw_teams(ax, of(TEAM)),
     ]
-    if mission.starts_at is not None:
-        _name_clock_times(ax, mission.starts_at)
+    if starts_at is not None:
+        _name_clock_times(ax, starts_at)
     return entries
 
 

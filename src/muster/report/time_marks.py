@@ -6,13 +6,13 @@ Pictures and pages draw the same marks.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import pairwise
 from typing import Any
 
-from muster.mission.model import Mission, Task
+from muster.mission.model import Task
 from muster.mission.time_types import clock_text
 from muster.report.time_chart import Row, Work
 
@@ -47,15 +47,15 @@ class TimeMark:
         return {"kind": self.kind, "task": self.task, "row": self.row, "to_row": self.to_row, **ends, "words": words}
 
 
-def time_marks(mission: Mission, rows: Sequence[Row]) -> tuple[TimeMark, ...]:
-    """The marks of the tasks that are done, and of who begins them together."""
-    tasks = {task.id: task for task in mission.tasks}
+def time_marks(tasks: Iterable[Task], rows: Sequence[Row]) -> tuple[TimeMark, ...]:
+    """The marks of those of these tasks that are done, and of who begins tasks together."""
+    named = {task.id: task for task in tasks}
     found = [
         mark
         for number, row in enumerate(rows)
         for work in row.work
-        if work.task in tasks  # else it came in while the mission was carried out
-        for mark in _limits(tasks[work.task], number, work)
+        if work.task in named
+        for mark in _limits(named[work.task], number, work)
     ]
     return (*dict.fromkeys(found), *_teams(rows))  # a robot may try one task again
 
@@ -81,10 +81,10 @@ def _teams(rows: Sequence[Row]) -> Iterator[TimeMark]:
                 yield TimeMark(TEAM, task, above, work.starts_s, other.starts_s, below)
 
 
-def page_marks(mission: Mission, rows: Sequence[Row]) -> dict[str, Any]:
-    """The marks as plain data for pages, and when the clock time of the mission starts, seconds from midnight."""
-    marks = [mark.as_dict(_words(mark, rows, mission.starts_at)) for mark in time_marks(mission, rows)]
-    return {"marks": marks, "clock_start_s": clock_start_s(mission)}
+def page_marks(tasks: Iterable[Task], rows: Sequence[Row], starts_at: str | None) -> dict[str, Any]:
+    """The marks as plain data for pages, and when the mission starts by its clock, seconds from midnight."""
+    marks = [mark.as_dict(_words(mark, rows, starts_at)) for mark in time_marks(tasks, rows)]
+    return {"marks": marks, "clock_start_s": clock_start_s(starts_at)}
 
 
 def _words(mark: TimeMark, rows: Sequence[Row], starts_at: str | None) -> str:
@@ -101,9 +101,9 @@ def _words(mark: TimeMark, rows: Sequence[Row], starts_at: str | None) -> str:
     return f"{mark.task}: {'deadline' if mark.kind == DEADLINE else 'due'} {told(mark.from_s)}"
 
 
-def clock_start_s(mission: Mission) -> float | None:
-    """When the mission starts, seconds from midnight by its own clock; None where it does not say so."""
-    if mission.starts_at is None:
+def clock_start_s(starts_at: str | None) -> float | None:
+    """When a mission starts, seconds from midnight by its own clock; None where it does not say so."""
+    if starts_at is None:
         return None
-    start = datetime.fromisoformat(mission.starts_at)
+    start = datetime.fromisoformat(starts_at)
     return start.hour * 3600.0 + start.minute * 60.0 + start.second + start.microsecond / 1e6

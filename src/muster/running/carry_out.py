@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import threading
 
     from muster.bridges.fleet import Fleet
-    from muster.execution import ExecutionEvent, Recorder, Report
+    from muster.execution import ExecutionEvent, Recorder, Report, Standing
 
 
 def carry_out(
@@ -28,6 +28,7 @@ def carry_out(
     seed: int = 0,
     planning: PlanningOptions | None = None,
     ignore: str | Collection[str] = (),
+    standing: Standing | None = None,
     record: str | Path | None = None,
     observers: Sequence[Recorder] = (),
     on_event: Callable[[ExecutionEvent], None] | None = None,
@@ -45,6 +46,8 @@ def carry_out(
         options with which the tasks left are planned again: allocator, parameters, `rewire`.
     ignore
         rules that do not hold, whatever the plan says of itself.
+    standing
+        for a fleet that stays on duty: until when, and for which orders.
     record
         a file (.mcap) for the record of the run; needs the extra `record`.
     observers
@@ -75,6 +78,7 @@ def carry_out(
             seed=seed,
             planning=planning,
             ignore=ignore,
+            standing=standing,
             recorder=recorder,
             on_event=on_event,
             halt=halt,

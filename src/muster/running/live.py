@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
@@ -16,6 +16,7 @@ from muster.execution import (
     CompletedWork,
     Executor,
     Recorder,
+    Standing,
     Status,
     report_of,
     status_of,
@@ -30,10 +31,11 @@ from muster.motion.port import RobotPort
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.fleet_clock import FleetWithMissionClock
-from muster.running.replanning import reallocation_by
+from muster.running.replanning import planning_of
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Report
+    from muster.execution.standing import EventLog
 
 LOOK_S = 0.2
 """Seconds between two looks at the robots, where nothing is heard before."""
@@ -49,6 +51,7 @@ def carry_out_live(
     seed: int = 0,
     planning: PlanningOptions | None = None,
     ignore: str | Collection[str] = (),
+    standing: Standing | None = None,
     recorder: Recorder | None = None,
     on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
@@ -67,6 +70,8 @@ def carry_out_live(
         options of planning anew; see `reallocation_by`.
     ignore
         rules that do not hold, whatever the plan says of itself.
+    standing
+        for a fleet that stays on duty: until when, and for which orders.
     recorder
         receives all events, and the positions that robots report.
     on_event
@@ -77,15 +82,15 @@ def carry_out_live(
     ParameterError
         if the plan names robots or tasks that the mission does not have, or a robot has no port.
     """
-    live = Live(mission, plan, fleet, seed=seed, planning=planning, ignore=ignore, recorder=recorder)
+    live = Live(mission, plan, fleet, seed=seed, planning=planning, ignore=ignore, standing=standing, recorder=recorder)
     halt, told = halt or threading.Event(), 0
     try:
         while not halt.is_set():
             live.look()
             if on_event is not None:
-                for event in live.events[told:]:
+                for event in live.events.since(told):
                     on_event(event)
-                told = len(live.events)
+                told = live.events.total
             if live.done:
                 break
             live.hear(live.time_s + LOOK_S)
@@ -110,6 +115,8 @@ class Live:
         options of planning anew; see `reallocation_by`.
     ignore
         rules that do not hold, whatever the plan says of itself.
+    standing
+        for a fleet that stays on duty: until when, and for which orders.
     recorder
         receives all events, and the positions that robots report.
     past, begin_s
@@ -130,6 +137,7 @@ class Live:
         seed: int = 0,
         planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
+        standing: Standing | None = None,
         recorder: Recorder | None = None,
         past: CompletedWork | None = None,
         begin_s: float = 0.0,
@@ -137,16 +145,18 @@ class Live:
         self._fleet, self._recorder = FleetWithMissionClock(fleet, begin_s), recorder
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
+        replan, self._standing = planning_of(mission, standing, planning, travel, seed, repeatable=False)
         self.executor = Executor(
             mission,
             replace(plan, ignored=ignored_rules(ignore)),
             self._fleet.ports,
             way=way_of(mission, robot_paths),
             travel=travel,
-            replan=reallocation_by(planning, travel, seed),
+            replan=replan,
             observer=recorder,
             now=begin_s,
             past=past,
+            standing=self._standing,
         )
 
     @property
@@ -160,8 +170,8 @@ class Live:
         return self.executor.done
 
     @property
-    def events(self) -> Sequence[ExecutionEvent]:
-        """All that has happened so far."""
+    def events(self) -> EventLog:
+        """All that has happened so far; of a standing fleet the last of it."""
         return self.executor.events
 
     @property
@@ -172,6 +182,7 @@ class Live:
     def look(self) -> None:
         """See how far robots are, and send them on."""
         self.executor.tick(self.time_s)
+        self.executor.orders.clock_lag.add(self.time_s - self.executor.now_s)
         self.tell_places()
 
     def hear(self, until_s: float) -> None:
@@ -196,8 +207,10 @@ class Live:
         self.executor.resume()
 
     def stop(self) -> None:
-        """Robots stay where they are."""
+        """Robots stay where they are, and nothing is searched for any more."""
         self._fleet.stop()
+        if self._standing is not None and self._standing.improver is not None:
+            self._standing.improver.close()
 
     def result(self) -> Report:
         """What it took, so far or in all."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from muster.execution import (
     Executor,
     Recorder,
+    Standing,
     Status,
     broken_off,
     report_of,
@@ -29,10 +30,12 @@ from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.localisation import Localise
 from muster.running.recorded_world import recorded_world, with_tracking
-from muster.running.replanning import reallocation_by
+from muster.running.replanning import planning_of
+from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
+from muster.traffic.managers import reserved
 from muster.verification import verify
 
 if TYPE_CHECKING:
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
 
     from muster.execution.record import ExecutionEvent
     from muster.execution.report import Report
+    from muster.execution.standing import EventLog
     from muster.running.simulation_options import RecordedWorldOptions
 
 OnWorld = Callable[[SimulatedWorld], None]
@@ -76,6 +80,8 @@ class Simulation:
         options of planning anew; see `reallocation_by`.
     ignore
         rules that do not hold, whatever the plan says of itself.
+    standing
+        for a fleet that stays on duty: until when, and for which orders.
     recorder
         receives all events.
     on_look
@@ -100,6 +106,7 @@ class Simulation:
         seed: int = 0,
         dt_s: float = 0.1,
         avoidance: str = AUTO,
+        traffic: str = "free",
         law: str = "profile",
         noise: Noise = NO_NOISE,
         wind: Wind = CALM,
@@ -109,6 +116,7 @@ class Simulation:
         localise: Localise | None = None,
         planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
+        standing: Standing | None = None,
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
@@ -125,7 +133,7 @@ class Simulation:
             rotor_level=rotor_level,
             seed=seed,
             dt_s=dt_s,
-            avoidance=avoidance,
+            avoidance="none" if traffic == "reserve" else avoidance,
             noise=noise,
         )
         if on_world is not None:
@@ -133,15 +141,19 @@ class Simulation:
         self._robots: RobotsInWorld = with_state_estimation(
             self._world, mission, pose=pose, localise=localise, seed=seed
         )
+        if traffic == "reserve":
+            self._robots = RobotsInTraffic(self._robots, self._world, reserved(mission, seed), mission)
+        replan, self._standing = planning_of(mission, standing, planning, travel, seed)
         self._executor = Executor(
             mission,
             _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
             self._robots.ports,
             way=way_of(mission, robot_paths),
             travel=travel,
-            replan=reallocation_by(planning, travel, seed),
+            replan=replan,
             observer=recorder,
             now=self._world.time_s,
+            standing=self._standing,
         )
         self._camera_search = camera_search_for(
             mission, self._world, self._robots.ports, noise=noise, seed=seed, on_look=on_look
@@ -176,8 +188,8 @@ class Simulation:
         return self._executor.plan
 
     @property
-    def events(self) -> Sequence[ExecutionEvent]:
-        """All that has happened so far."""
+    def events(self) -> EventLog:
+        """All that has happened so far; of a standing fleet the last of it."""
         return self._executor.events
 
     @property
@@ -191,15 +203,15 @@ class Simulation:
 
         It goes on by whole steps: what falls into a step, an event or `until_s`, comes at its end.
         """
-        first = len(self._executor.events)
-        while not self.done and self.time_s < until_s - 1e-9 and len(self._executor.events) == first:
+        first = self._executor.events.total
+        while not self.done and self.time_s < until_s - 1e-9 and self._executor.events.total == first:
             due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
             self._robots.advance(max(due_s, self.time_s + self._world.dt_s))
             while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
                 self._take_event(self._ahead.pop(0))
             self._look()
             self._tick()
-        return self._executor.events[first:]
+        return self._executor.events.since(first)
 
     def report(self, event: Event, *, replan: bool = True) -> None:
         """Let something happen now that the mission file did not foresee; its `at_s` does not count.
@@ -221,6 +233,10 @@ class Simulation:
             self._take_event(event)
         if replan:
             self.replan()
+
+    def note_lag(self, seconds: float) -> None:
+        """Note, for the report, by how much the mission's clock is behind the wall clock that it goes by."""
+        self._executor.orders.clock_lag.add(seconds)
 
     def replan(self) -> None:
         """Plan the rest again at once if events that were reported ask for that, and send robots on."""
@@ -252,7 +268,9 @@ class Simulation:
         return self._camera_search
 
     def close(self) -> None:
-        """Give back what pictures hold of the graphics library."""
+        """Give back what pictures hold of the graphics library, and the thread that searches."""
+        if self._standing is not None and self._standing.improver is not None:
+            self._standing.improver.close()
         if self._camera_search is not None:
             self._camera_search.close()
 
@@ -290,6 +308,8 @@ class Simulation:
             self._world.recover(event.robot_returns)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
+            if isinstance(self._robots, RobotsInTraffic):
+                self._robots.join(event.robot_joins)
             if self._camera_search is not None:
                 self._camera_search.join(event.robot_joins)
 
@@ -328,9 +348,11 @@ def carry_out(
         while not simulation.done and not halt.is_set():
             simulation.advance(simulation.time_s + LOOK_S)
             if speed is not None:
-                halt.wait(max(0.0, begin + simulation.time_s / speed - time.monotonic()))
+                ahead_s = begin + simulation.time_s / speed - time.monotonic()
+                simulation.note_lag(max(0.0, -ahead_s))
+                halt.wait(max(0.0, ahead_s))
             if on_event is not None:
-                for event in simulation.events[told:]:
+                for event in simulation.events.since(told):
                     on_event(event)
-                told = len(simulation.events)
+                told = simulation.events.total
         return simulation.result()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
-    from muster.execution import ExecutionEvent, Recorder
+    from muster.execution import ExecutionEvent, Recorder, Standing
     from muster.planning.options import PlanningOptions
     from muster.running.camera_search import OnLook
     from muster.running.localisation import Localise
@@ -33,17 +33,19 @@ class WorldOptions(TypedDict, total=False):
 
 
 class RecordedWorldOptions(WorldOptions, total=False):
-    """As `WorldOptions`; and the seed, options of planning anew, and the recorder of what happens."""
+    """As `WorldOptions`; and the seed, options of planning anew, a fleet on duty, and the recorder of what happens."""
 
     seed: int
     planning: PlanningOptions | None
+    standing: Standing | None
     recorder: Recorder | None
 
 
 class SimulationOptions(WorldOptions, total=False):
-    """Options of the world, of planning anew, and of its clock: `speed`, `on_event` and `halt`."""
+    """Options of the world, of planning anew, of a fleet on duty, and of its clock: `speed`, `on_event` and `halt`."""
 
     planning: PlanningOptions | None
+    standing: Standing | None
     speed: float | None
     on_event: Callable[[ExecutionEvent], None] | None
     halt: threading.Event | None

@@ -23,7 +23,7 @@ def carried_out(seed):
     """Let the team of a seed carry out its mission, and check what it did."""
     report = Report(seed)
     with report.trying():
-        run = Run(seed)
+        run = Run(team_scene(seed), seed)
         report.check(run.play(), "the robots do not come to rest")
         report.story += run.story()
         for wrong in (*run.wrong_deeds(), *run.left_open()):
@@ -35,8 +35,8 @@ def carried_out(seed):
 class Run:
     """A team, its scene, and what came of it."""
 
-    def __init__(self, seed):
-        self.scene = team_scene(seed)
+    def __init__(self, scene, seed):
+        self.scene = scene
         self.team = SimulatedTeam(self.scene.mission, seed=seed, **self.scene.conditions)
         self.cancelled, self.reasons = set(), Counter()
 
@@ -56,6 +56,8 @@ class Run:
             if fault.robots:
                 team.net.cut(fault.robots, [name for name in team.robots if name not in fault.robots])
             team.net.block(fault.links)
+        elif fault.kind == "strike" and team.run(LAST_FAULT_S, lambda: self._at_joint_work) and len(team.controls) > 1:
+            team.crash(self._at_joint_work[0])
         elif fault.kind == "crash" and robot in team.controls and len(team.controls) > 1:
             team.crash(robot)
         elif fault.kind in ("restart", "forget") and robot not in team.controls:
@@ -63,6 +65,11 @@ class Run:
         elif fault.kind == "told" and robot in team.controls:
             self.cancelled.add(fault.event.cancel_task)
             team.controls[robot].take_event(fault.event)
+
+    @property
+    def _at_joint_work(self):
+        """The robots that have begun a task with others."""
+        return [robot for robot in self.team.controls if self.team.net.nodes[robot].joint.under_way]
 
     @property
     def tasks(self):
@@ -116,7 +123,7 @@ class Run:
     @property
     def may_do_once(self):
         """Whether nothing has torn the team apart: then nothing is done twice."""
-        return not any(fault.kind in ("cut", "block", "crash") for fault in self.scene.faults)
+        return not any(fault.kind in ("cut", "block", "crash", "strike") for fault in self.scene.faults)
 
     def left_open(self):
         """Tasks that were not done, and for which there is no reason; the reasons of the others are counted."""

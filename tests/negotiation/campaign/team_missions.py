@@ -1,6 +1,6 @@
 """Random missions of teams, and what goes wrong while robots carry them out by themselves."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from random import Random
 
 from muster.mission.model import Event, Lag, Mission, MovedTask, Robot, Task, TeamPart
@@ -12,7 +12,11 @@ LAST_FAULT_S = 60.0
 
 @dataclass(frozen=True)
 class Fault:
-    """What happens at a time, in seconds: "crash", "restart", "forget", "cut", "block", "heal" or "told" (an event)."""
+    """What happens at a time, in seconds.
+
+    "strike" (the first robot to be at work with others crashes), "crash", "restart", "forget", "cut", "block", "heal"
+    or "told" (an event).
+    """
 
     at_s: float
     kind: str
@@ -41,6 +45,15 @@ def team_scene(seed):
         "duplication": random.choice((0.0, 0.2)),
     }
     return TeamScene(mission, conditions, tuple(sorted(_faults(mission, random), key=lambda fault: fault.at_s)))
+
+
+def calm_scene(seed):
+    """A scene in which nothing goes wrong, of robots of which some are slow at work."""
+    random = Random(f"calm {seed}")
+    mission = _mission(random)
+    robots = tuple(replace(robot, efficiency=random.choice((1.0, 1.0, 0.5))) for robot in mission.robots)
+    conditions = {"delay_s": random.uniform(0.001, 0.05), "jitter_s": random.choice((0.0, 0.05))}
+    return TeamScene(replace(mission, robots=robots), conditions)
 
 
 def _mission(random):
@@ -77,7 +90,7 @@ def _task(name, others, random, *, timed):
     return Task(
         id=name,
         position=_place(random),
-        duration_s=random.choice((0.0, 3.0, random.uniform(4, 12))),
+        duration_s=random.choice((0.0, 3.0, random.uniform(4, 12), random.uniform(15, 40))),
         **sort,
         **_ties(others, random, timed=timed),
         **(_times(random) if timed else {}),
@@ -109,6 +122,8 @@ def _times(random):
 
 def _faults(mission, random):
     names = [robot.id for robot in mission.robots]
+    if random.random() < 0.3:
+        yield Fault(0.0, "strike")
     for robot in random.sample(names, random.choice((0, 0, 1, random.randint(0, len(names) - 1)))):
         yield from _crashes(robot, random)
     for _ in range(random.choice((0, 0, 1, 2))):

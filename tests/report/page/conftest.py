@@ -74,13 +74,21 @@ tasks:
 TIMED_ROUTES = {"crawler": ["beam", "boiler"], "hauler": ["beam"]}
 
 
+ADDED = (
+    (5.0, "new_task", {"task": {"id": "new", "position": [0, 0], "window_s": [[60, 120]], "due_s": 100}}),
+    (90.0, "sets_out", {"robot": "hauler", "task": "new"}),
+    (100.0, "starts", {"robot": "hauler", "task": "new"}),
+    (115.0, "ends", {"robot": "hauler", "task": "new"}),
+)
+
+
 @pytest.fixture(scope="session")
 def timed_page(tmp_path_factory):
-    """The page of a mission with a window, a deadline, a task that is late, and a team."""
+    """The page of a mission with a window, a deadline, a task that is late, and a team; and a task that was added."""
     folder = tmp_path_factory.mktemp("timed")
     (folder / "timed.yaml").write_text(TIMED, encoding="utf-8")
     mission = muster.load(folder / "timed.yaml")
     with RecordWriter(folder / "timed.mcap", mission) as writer:
-        carry_out(mission, plan_of(TIMED_ROUTES), writer)
+        carry_out(mission, plan_of(TIMED_ROUTES), writer, more=ADDED)
     write_page(folder / "timed.html", read_record(folder / "timed.mcap"))
     return folder / "timed.html"

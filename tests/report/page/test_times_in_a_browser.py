@@ -26,7 +26,7 @@ def fill(browser, selector, what="fill"):
 @pytest.mark.parametrize("size", [WIDE, NARROW], ids=["wide", "narrow"])
 def test_a_window_is_shaded_from_where_it_opens_to_the_end_of_the_chart(size, browser, timed_page):
     browser.open(timed_page, *size)
-    ((left, right, top, bottom),) = boxes(browser, "rect.window")
+    ((left, right, top, bottom),) = boxes(browser, "rect.window[data-task=boiler]")
     ((begins, ends, high, low),) = boxes(browser, "rect.work[data-task=boiler]")
     assert (left, right) == pytest.approx((begins, ends), abs=1)  # it waits until 10:00, and is the last
     assert top < high < low < bottom  # so that it is seen beside the bar
@@ -35,13 +35,22 @@ def test_a_window_is_shaded_from_where_it_opens_to_the_end_of_the_chart(size, br
 
 def test_lateness_is_red_from_the_due_time_to_the_end(browser, timed_page):
     browser.open(timed_page, *WIDE)
-    ((left, right, *_),) = boxes(browser, "rect.late")
+    ((left, right, *_),) = boxes(browser, "rect.late[data-task=boiler]")
     ((begins, ends, *_),) = boxes(browser, "rect.work[data-task=boiler]")
     assert (left, right) == pytest.approx(((begins + ends) / 2, ends), abs=1)
     assert fill(browser, "rect.late") == "rgb(176, 0, 32)"
-    ((due, *_),) = boxes(browser, "line.due")
+    ((due, *_),) = boxes(browser, "line.due[data-task=boiler]")
     assert due == pytest.approx(left, abs=1.5)
     assert len(boxes(browser, "line.deadline")) == 2  # in the row of each robot of the team
+
+
+def test_a_task_that_was_added_has_marks_too(browser, timed_page):
+    browser.open(timed_page, *WIDE)
+    ((begins, ends, *_),) = boxes(browser, "rect.work[data-task=new]")
+    ((opens, closes, *_),) = boxes(browser, "rect.window[data-task=new]")
+    assert opens < begins < ends < closes
+    ((left, right, *_),) = boxes(browser, "rect.late[data-task=new]")
+    assert (left, right) == pytest.approx((begins, ends), abs=1)
 
 
 def test_the_bars_of_a_team_are_linked_where_it_begins(browser, timed_page):

@@ -67,3 +67,34 @@ def test_nobody_listens_without_a_token(guarded):
     with pytest.raises(InvalidStatus) as refused:
         told(url, "/jobs/1/stream", tokens["watch"])
     assert refused.value.response.status_code == 404
+
+
+def test_orders_are_taken_over_a_websocket_and_answered_each(url, http, plan):
+    settings = {"stay": True, "until_s": 60.0}
+    run = http.post("/runs", json={"plan": plan, "speed": 20.0, "settings": settings}).json()["id"]
+    orders = [{"new_task": {"id": name, "type": "E", "position": [1, 1]}} for name in ("o1", "o2")]
+    with connect(f"ws{url.removeprefix('http')}/api/v1/runs/{run}/orders") as socket:
+        answers = []
+        for text in (json.dumps(orders), json.dumps(orders[0]), '{"robot_fails": "r_0"}', "[", json.dumps([])):
+            socket.send(text)
+            answers.append(json.loads(socket.recv(timeout=60)))
+    assert [answer["type"] for answer in answers] == ["action", "action", "refused", "refused", "refused"]
+    assert answers[0]["data"] == {"orders": orders}
+    assert "expected one of new_task, cancel_task" in answers[2]["error"]
+    assert "is no JSON at character 1" in answers[3]["error"]
+    told(url, f"/runs/{run}/stream")
+    outcomes = {action["id"]: action["outcome"] for action in http.get("/actions", params={"run": run}).json()}
+    assert outcomes[answers[0]["id"]] == "done"
+    assert "expected an id that no task has" in outcomes[answers[1]["id"]]
+    assert http.get(f"/runs/{run}/report").json()["orders"]["taken"] == 2
+
+
+def test_orders_to_a_run_that_is_over_or_not_there_are_refused_as_over_http(url, http, plan):
+    run = http.post("/runs", json={"plan": plan, "speed": None}).json()["id"]
+    told(url, f"/runs/{run}/stream")
+    for path, code in ((f"/runs/{run}/orders", 409), ("/runs/999/orders", 404)):
+        with pytest.raises(InvalidStatus) as refused:
+            told(url, path)
+        assert refused.value.response.status_code == code
+    assert http.post(f"/runs/{run}/orders", json={"orders": [{"cancel_task": "1"}]}).status_code == 409
+    assert http.post(f"/runs/{run}/orders", json={"orders": []}).status_code == 422

@@ -20,7 +20,7 @@ FLAGS = (
     "--disable-component-update",
     "--disable-sync",
     "--disable-features=IsolateSandboxedIframes",  # the replay is drawn together with the page around it
-    "--use-angle=swiftshader",  # the view in space without a graphics card
+    "--use-angle=swiftshader-webgl",  # for the view in space alone, without a graphics card; the rest is drawn without
     "--enable-unsafe-swiftshader",
 )
 

@@ -1,6 +1,6 @@
 """A run without processes: what users ask for comes at moments of the mission's clock, what is told is collected."""
 
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,16 +12,26 @@ from muster.server.runs.simulated_run import SimulatedRun
 from muster.server.runs.tracks import unpacked
 
 
+class Killed(Exception):  # noqa: N818  # no error
+    """The process of a run is no more."""
+
+
 @dataclass
 class Kept:
-    """What a run told: entries as a log has them, tracks, and what is out of date soon."""
+    """What a run told until it was killed: entries as a log has them, tracks, and what is out of date soon.
+
+    It is killed once `most` entries are kept; None: it is not.
+    """
 
     log: list = field(default_factory=list)
     tracks: list = field(default_factory=list)
     others: list = field(default_factory=list)
+    most: int | None = None
     full = False
 
     def entry(self, message):
+        if len(self.log) == self.most:
+            raise Killed
         self.log.append({key: message[key] for key in ("seq", "time_s", "kind", "data")})
 
     def stretch(self, from_s, until_s, data):
@@ -61,11 +71,12 @@ def performed(
     settings=None,
     ended=lambda: False,
     until_s=None,
+    killed_after=None,
 ):
-    """Carry a plan out to its end; returns what was told, behind the log that there was."""
-    kept = Kept()
+    """Carry a plan out to its end, or until it is killed; returns what was told, behind the log that there was."""
+    kept = Kept(most=killed_after)
     recorder = LogRecorder(mission, kept, log=log, tracked_s=tracked_s)
-    with closing(SimulatedRun(mission, plan, world, settings or {}, recorder)) as world_run:
+    with suppress(Killed), closing(SimulatedRun(mission, plan, world, settings or {}, recorder)) as world_run:
         script = Script(world_run, asked)
         how = {"speed": None, "starts_at": mission.starts_at, "ended": ended, "clock": VirtualClock(step_s=1.0)}
         run_loop = RunLoop(world_run, recorder, script, kept, **how)
@@ -78,10 +89,10 @@ def performed_with_crashes(mission, plan, asked, crashes, **how):
     """The log and the tracks of a run that is killed each time when so many entries are kept, and resumed."""
     log, tracks = [], []
     for crash in [*crashes, None]:
-        kept = performed(mission, plan, asked, log=log, tracked_s=tracks[-1][1] if tracks else 0.0, **how)
-        log = [*log, *kept.log][: None if crash is None else max(crash, len(log))]
-        reached = log[-1]["time_s"] if log else 0.0
-        tracks += [one for one in kept.tracks if crash is None or one[1] <= reached]
+        more = None if crash is None else max(crash - len(log), 0)
+        tracked_s = tracks[-1][1] if tracks else 0.0
+        kept = performed(mission, plan, asked, log=log, tracked_s=tracked_s, killed_after=more, **how)
+        log, tracks = [*log, *kept.log], [*tracks, *kept.tracks]
     return log, tracks
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.motion.free_space import PolygonSpace
-from muster.motion.grid import Bools, Grid
+from muster.motion.grid import Bools, Grid, Indices
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -70,11 +71,8 @@ def touched(shape: BaseGeometry, size: tuple[int, int]) -> Bools:
     marks = np.zeros((rows, columns + 1), dtype=np.int32)
     if shape.is_empty:
         return marks[:, :-1] > 0
-    west, south, east, north = shape.bounds
-    row = np.arange(max(0, math.floor(south)), min(rows, math.ceil(north)))
-    ends = np.ones(len(row))
-    strips = shapely.box((west - 1) * ends, row, (east + 1) * ends, row + 1)
-    parts, at = shapely.get_parts(shapely.intersection(shape, strips), return_index=True)
+    pieces, row = _by_rows(shape, rows)
+    parts, at = shapely.get_parts(pieces, return_index=True)
     left, low, right, high = shapely.bounds(parts).T
     solid = (shapely.get_type_id(parts) == _POLYGON) & (high - low > _SLACK) & (right - left > 2 * _SLACK)
     first = np.clip(np.floor(left[solid] + _SLACK), 0, columns).astype(np.int64)
@@ -82,6 +80,30 @@ def touched(shape: BaseGeometry, size: tuple[int, int]) -> Bools:
     np.add.at(marks, (row[at[solid]], first), 1)
     np.add.at(marks, (row[at[solid]], last), -1)
     return np.cumsum(marks, axis=1)[:, :-1] > 0
+
+
+def _by_rows(shape: BaseGeometry, rows: int) -> tuple[npt.NDArray[Any], Indices]:
+    """What of a shape, in cells, lies in each row that it reaches into: pieces, and their rows.
+
+    Bands of rows are halved, so that no row is cut out of the whole shape.
+    """
+    import shapely
+
+    west, south, east, north = shape.bounds
+    pieces = np.array([shape], dtype=object)
+    first = np.array([max(0, math.floor(south))])
+    end = np.array([min(rows, math.ceil(north))])
+    while len(pieces) and int((end - first).max()) > 1:
+        middle = (first + end + 1) // 2
+        whole = np.concatenate([pieces, pieces])
+        first, end = np.concatenate([first, middle]), np.concatenate([middle, end])
+        some = end > first
+        ones = np.ones(int(some.sum()))
+        first, end = first[some], end[some]
+        pieces = shapely.intersection(whole[some], shapely.box((west - 1) * ones, first, (east + 1) * ones, end))
+        filled = ~shapely.is_empty(pieces)
+        pieces, first, end = pieces[filled], first[filled], end[filled]
+    return pieces, first
 
 
 _POLYGON = 3  # Shapely's type id

@@ -113,7 +113,7 @@ class _InRegion:
         return self._ways.sees(pair(a), pair(b))
 
     def way(self, start: Floats, goal: Floats) -> Floats:
-        return self._ways.way(pair(start), pair(goal))
+        return _plane_way(self._ways, pair(start), pair(goal))
 
     def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
         return _plane_lengths(self._ways, exits, entries, threads)
@@ -130,7 +130,7 @@ class _OnGrid:
         return self._ways.sees(self._cell(a), self._cell(b))
 
     def way(self, start: Floats, goal: Floats) -> Floats:
-        way = self._grid.to_map(self._ways.way(self._cell(start), self._cell(goal)))
+        way = self._grid.to_map(_plane_way(self._ways, self._cell(start), self._cell(goal)))
         if len(way):
             way[0], way[-1] = start, goal
         return way
@@ -143,23 +143,39 @@ class _OnGrid:
         return pair(self._grid.to_grid(point[np.newaxis])[0])
 
 
+def _plane_way(ways: core.Ways, start: tuple[float, float], goal: tuple[float, float]) -> Floats:
+    if ways.graph_pays:
+        _build(ways, 1)
+    return ways.way(start, goal)
+
+
 def _plane_lengths(ways: core.Ways, exits: Floats, entries: Floats, threads: int) -> Floats:
-    while not ways.built:
-        ways.build(_CORNERS_AT_A_TIME * threads, threads)
+    """A table whose exits are its entries is the same in both directions: half of it is searched for."""
     if not np.array_equal(exits, entries):
-        return _rows(ways, exits, entries, threads, mutual=False)
+        return _plane_table(ways, exits, entries, threads, mutual=False)
     order = _outermost_first(exits)
     table = np.empty((len(exits), len(exits)))
-    table[np.ix_(order, order)] = _rows(ways, exits[order], exits[order], threads, mutual=True)
+    table[np.ix_(order, order)] = _plane_table(ways, exits[order], exits[order], threads, mutual=True)
     return table
 
 
-def _rows(ways: core.Ways, exits: Floats, entries: Floats, threads: int, *, mutual: bool) -> Floats:
+def _plane_table(ways: core.Ways, exits: Floats, entries: Floats, threads: int, *, mutual: bool) -> Floats:
+    """Way by way until the graph pays; then row by row in the graph."""
+    whole = None if ways.built else ways.lengths_alone(exits, entries, mutual=mutual)
+    if whole is not None:
+        return _joined([whole], whole.shape, mutual=mutual)
+    _build(ways, threads)
     rows = [
         ways.lengths(exits, entries, mutual=mutual, first=first, last=last, threads=threads)
         for first, last in _blocks(len(exits), threads)
     ]
     return _joined(rows, (len(exits), len(entries)), mutual=mutual)
+
+
+def _build(ways: core.Ways, threads: int) -> None:
+    """The graph of what corners see, in pieces."""
+    while not ways.built:
+        ways.build(_CORNERS_AT_A_TIME * threads, threads)
 
 
 def _outermost_first(places: Floats) -> Indices:

@@ -12,6 +12,7 @@ from muster.allocation.problem import Problem
 from muster.mission.model import Mission
 from muster.mission.plan import Reason, Unassigned
 from muster.motion.actions.coverage import Unseen
+from muster.planning.explaining.crossings import BlockedWay, blocked_ways
 from muster.planning.explaining.explanations import admits
 from muster.planning.explaining.unseen_searches import unseen_searches
 
@@ -28,11 +29,14 @@ class Possible:
         whether one plan can do all others.
     unseen
         raster searches of which robots that may do them do not see all.
+    blocked
+        robots that cannot get past each other, and lanes that do not lead where robots must go.
     """
 
     impossible: tuple[Unassigned, ...] = ()
     together: Together = Together()
     unseen: tuple[Unseen, ...] = ()
+    blocked: tuple[BlockedWay, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Return what `muster check --format json` prints of it."""
@@ -42,6 +46,7 @@ class Possible:
             "conflict": None if conflict is None else asdict(conflict),
             "unknown": self.together.unknown,
             "unseen": [asdict(item) for item in self.unseen],
+            "blocked": [asdict(item) for item in self.blocked],
         }
 
     @classmethod
@@ -52,7 +57,8 @@ class Possible:
             for item in data["impossible"]
         )
         unseen = tuple(Unseen(**item) for item in data.get("unseen", ()))
-        return cls(tuple(lost), Together(_conflict(data["conflict"]), data["unknown"]), unseen)
+        blocked = tuple(BlockedWay(**{**item, "robots": tuple(item["robots"])}) for item in data.get("blocked", ()))
+        return cls(tuple(lost), Together(_conflict(data["conflict"]), data["unknown"]), unseen, blocked)
 
 
 def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float | None = None) -> Possible:
@@ -71,10 +77,10 @@ def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float
         if the mission cannot be planned at all, or its map is wrong.
     """
     problem = Problem.compile(mission, ignored=ignored).ready()  # which reads the map
-    lost, unseen = impossible(problem), unseen_searches(problem)
+    lost, unseen, blocked = impossible(problem), unseen_searches(problem), blocked_ways(problem)
     if time_limit is None:
-        return Possible(lost, Together(unknown=True), unseen)
-    return Possible(lost, together(problem, admits, time_limit=time_limit), unseen)
+        return Possible(lost, Together(unknown=True), unseen, blocked)
+    return Possible(lost, together(problem, admits, time_limit=time_limit), unseen, blocked)
 
 
 def _conflict(data: Mapping[str, Any] | None) -> Conflict | None:

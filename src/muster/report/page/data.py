@@ -56,7 +56,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "nearest": _nearest(recording, tracks),
         "map": _map(recording.mission.map, recording.image),
         "figures": _figures(recording),
-        **page_marks(recording.mission, recorded_rows(recording)),
+        **page_marks(recording.tasks, recorded_rows(recording), recording.mission.starts_at),
     }
 
 

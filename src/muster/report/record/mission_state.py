@@ -21,6 +21,7 @@ work of a robot has the words of the judge's schedule. An event of another kind 
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Self
@@ -35,14 +36,24 @@ OUT = ("robot_fails", "robot_silent", "robot_stuck")
 """Kinds of event after which a robot takes no part."""
 ALARMING = ("lost", *OUT, "contact", "traffic_jam")
 """Kinds of event that somebody should look at."""
+KEPT_OVER = 10_000
+"""Tasks that are over which somebody who writes down what happens remembers, however long it goes on."""
+_OVER = (DONE, LOST, CANCELLED)
 _BECOMES = {"starts": UNDER_WAY, "ends": DONE, "lost": LOST, "cancel_task": CANCELLED, "work_broken_off": OPEN}
 
 
 class MissionState:
-    """Robots and tasks by id, in the order in which they came, and the state of each task."""
+    """Robots and tasks by id, in the order in which they came, and the state of each task.
 
-    def __init__(self, mission: Mission) -> None:
+    Parameters
+    ----------
+    most_over
+        of so many tasks that are done, lost or cancelled the first are forgotten; None: none ever is.
+    """
+
+    def __init__(self, mission: Mission, most_over: int | None = None) -> None:
         self.mission = mission
+        self._most_over, self._over = most_over, deque[str]()
         self.robots: dict[str, Robot] = {robot.id: robot for robot in mission.robots}
         self.tasks: dict[str, Task] = {task.id: task for task in mission.tasks}
         self.states: dict[str, str] = dict.fromkeys(self.tasks, OPEN)
@@ -81,7 +92,18 @@ class MissionState:
         if kind not in _BECOMES or self.states[name] == CANCELLED:
             return None
         self.states[name] = _BECOMES[kind]
+        self._forget_before(str(name))
         return str(name)
+
+    def _forget_before(self, name: str) -> None:
+        """A task may be over: then one that was so long before is forgotten, if there are too many."""
+        if self._most_over is None or self.states[name] not in _OVER:
+            return
+        self._over.append(name)
+        if len(self._over) > self._most_over:
+            first = self._over.popleft()
+            if self.states.get(first) in _OVER:
+                del self.tasks[first], self.states[first]
 
     def _made(self, model: type, data: Any, kind: str) -> Any:
         """A robot or task from a mapping, or by the id of one in the mission's own events."""

@@ -18,7 +18,7 @@ from muster.mission.event_descriptions import event_line
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
 from muster.report.record import json_messages, scene
-from muster.report.record.mission_state import ALARMING, MissionState
+from muster.report.record.mission_state import ALARMING, KEPT_OVER, MissionState
 from muster.report.record.routes import RouteLines
 
 Floats = npt.NDArray[np.float64]
@@ -36,7 +36,7 @@ class Publisher(ABC):
     def __init__(self, mission: Mission, rate_hz: float) -> None:
         if not rate_hz > 0:
             raise ParameterError(f"rate_hz: {rate_hz}; expected a number above 0")
-        self._mission_state = MissionState(mission)
+        self._mission_state = MissionState(mission, KEPT_OVER)
         self._routes = RouteLines(mission)
         self._places: dict[str, Point] = {}
         self._period_s, self._next_s = 1.0 / rate_hz, 0.0

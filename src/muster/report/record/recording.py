@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.execution.record import ExecutionEvent
-from muster.mission.model import Mission, Point, Robot
+from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
 from muster.report.record.mission_state import MissionState
@@ -102,3 +102,8 @@ class Recording:
     def robots(self) -> tuple[Robot, ...]:
         """Those of the mission, then those that joined."""
         return tuple(self.outcome.robots.values())
+
+    @cached_property
+    def tasks(self) -> tuple[Task, ...]:
+        """Those of the mission, then those that were added."""
+        return tuple(self.outcome.tasks.values())

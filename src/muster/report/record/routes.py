@@ -10,10 +10,11 @@ from muster.report.record.mission_state import CANCELLED, DONE, LOST, MissionSta
 from muster.report.route_lines import PathFunction, path_function
 
 _OVER = (DONE, LOST, CANCELLED)
+_MOST_LEGS = 10_000  # that are kept: a standing fleet has new ones for ever
 
 
 class RouteLines:
-    """Makes the lines of routes; each path over the map is searched once."""
+    """Makes the lines of routes; each path over the map is kept for a while."""
 
     def __init__(self, mission: Mission) -> None:
         self._path: PathFunction = path_function(mission)
@@ -51,6 +52,8 @@ class RouteLines:
     def _leg(self, name: str, mission_state: MissionState, start: Point, goal: Point) -> tuple[Point, ...]:
         leg = (name, start, goal)
         if leg not in self._found:
+            if len(self._found) >= _MOST_LEGS:
+                self._found.clear()
             self._found[leg] = tuple(tuple(point) for point in self._path(mission_state.robots[name], start, goal))[1:]
         return self._found[leg]
 

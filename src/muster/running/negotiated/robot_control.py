@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
@@ -28,6 +29,9 @@ from muster.negotiation.new_tasks import content_of, task_of
 
 NOTICE_HEARTBEATS = 3.0
 """The time before a joint begin in which all have to learn of it, in heartbeats."""
+
+LATENESS = 0.1
+"""The share of the time until a task begins by which it may be late; what it must follow soon is held back for that."""
 
 _ITS_OWN = {
     "sets_out",
@@ -120,7 +124,7 @@ class RobotControl:
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
-        first = len(self._executor.events)
+        first = self._executor.events.total
         self._break_off()
         self._learn()
         if not self._hand.out and self._wanted != self._hand.route:
@@ -131,7 +135,7 @@ class RobotControl:
             elif _is_back(event):
                 self._negotiator.come_back()
         self._negotiator.joint.leave_all_but(self._at)
-        return [event for event in self._executor.events[first:] if event.kind in _ITS_OWN or _is_back(event)]
+        return [event for event in self._executor.events.since(first) if event.kind in _ITS_OWN or _is_back(event)]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
@@ -174,6 +178,32 @@ class RobotControl:
         if start is None:
             return Gathering()
         return Gathering((), next_begin(start.from_s), start.lasts_s[task], start.team(task))
+
+    def hold_until_s(self, task: str, now: float) -> float:
+        """As `execution.Peers.hold_until_s`, by the schedule of all routes that the robots have agreed on."""
+        ledger, spans = self._executor.ledger, self._negotiator.spans
+        until_s = now
+        for before in self._unit(task):
+            for name in ledger.within_dependants([before]):
+                lag = ledger.tasks[name].lags[before]
+                if lag.within_s is None or name not in spans or before not in spans:
+                    continue
+                (begin_s, _), (starts_s, ends_s) = spans[name], spans[before]
+                late_s = min(LATENESS * max(0.0, begin_s - now), (lag.within_s - lag.after_s) / 2)
+                until_s = max(until_s, begin_s + late_s - lag.within_s - (ends_s - starts_s))
+        return min(until_s, max(now, self._latest_s(task)))
+
+    def _latest_s(self, task: str) -> float:
+        """Until when a task may be held back for others, for its own times; they are kept with time to spare."""
+        ledger = self._executor.ledger
+        latest_s = math.inf
+        for name in self._unit(task):
+            what, (begin_s, ends_s) = ledger.tasks[name], self._negotiator.spans.get(name, (0.0, 0.0))
+            closes_s = [closes for opens, closes in what.window_s if closes is not None and opens <= begin_s <= closes]
+            deadlines_s = [] if what.deadline_s is None else [what.deadline_s - (ends_s - begin_s)]
+            lags_s = [latest for _, latest in ledger.lag_limits(name).values()]
+            latest_s = min([latest_s, *(limit - self._notice_s for limit in (*closes_s, *deadlines_s, *lags_s))])
+        return latest_s
 
     def begin_together(self, task: str) -> None:
         """As `execution.Peers.begin_together`."""

@@ -14,8 +14,9 @@ from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import IdempotencyKey, TheServices, TheUser, key_of
 from muster.server.api.parameter_types import LARGEST, After, Body, Limit, Name, RunId
 from muster.server.api.responses import errors, with_location
-from muster.server.api.sockets import message, tell
+from muster.server.api.sockets import answer, message, tell
 from muster.server.runs.log_lines import line_of
+from muster.server.runs.run_settings import MOST_ORDERS
 from muster.server.services.runs import Runs
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=BoundedRoute)
@@ -40,12 +41,23 @@ class NewRun(Body):
 class ActionToTake(Body):
     """A command to a run."""
 
-    verb: Literal["pause", "resume", "speed", "cancel", "event"]
+    verb: Literal["pause", "resume", "speed", "cancel", "event", "orders"]
     data: dict[Name, Any] = Field(
         default={},
         max_length=50,
-        description='Of speed `{"speed": 2.0}`; of event one of a mission file without `at_s`.',
+        description='Of speed `{"speed": 2.0}`; of event one of a mission file without `at_s`; orders: see /orders.',
         examples=[{"robot_fails": "r_0"}],
+    )
+
+
+class Orders(Body):
+    """Tasks that come, are cancelled, moved or delayed: events of a mission file without `at_s`, in order."""
+
+    orders: list[dict[Name, Any]] = Field(
+        min_length=1,
+        max_length=MOST_ORDERS,
+        description="Each `new_task`, `cancel_task`, `move_task` or `delay_task`.",
+        examples=[[{"new_task": {"id": "o1", "position": [3, 4], "priority": 5}}]],
     )
 
 
@@ -85,6 +97,12 @@ async def act(services: TheServices, who: TheUser, run: RunId, body: ActionToTak
     return await services.runs.act(who, run, body.verb, body.data)
 
 
+@router.post("/{run}/orders", status_code=202, summary="Order tasks", responses=errors(409))
+async def order(services: TheServices, who: TheUser, run: RunId, body: Orders) -> Action:
+    """Many at once; they are planned for together. The `outcome` says how many did not fit, and why the first."""
+    return await services.runs.act(who, run, "orders", {"orders": body.orders})
+
+
 @router.get("/{run}/events", summary="Read the log of a run")
 async def events(services: TheServices, run: RunId, after: After = 0, limit: Limit = 1000) -> list[Entry]:
     """In order; `after` the last `seq` gives the next ones."""
@@ -108,6 +126,18 @@ async def stream(
     """Send what happens; docs/mission-control-api.md describes the messages."""
     subscribers = services.runs.subscribers(run)
     await tell(socket, _past(services.runs, run, after) if subscribers is None else subscribers.watch(after))
+
+
+@router.websocket("/{run}/orders")
+async def take_orders(socket: WebSocket, services: TheServices, who: TheUser, run: RunId) -> None:
+    """Take orders, a message each or a list of them; docs/mission-control-api.md describes the answers."""
+    await services.runs.require_under_way(run)
+
+    async def take(data: Any) -> Action:
+        orders = data if isinstance(data, list) else [data]
+        return await services.runs.act(who, run, "orders", {"orders": orders})
+
+    await answer(socket, take)
 
 
 async def _past(runs: Runs, run: int, after: int) -> AsyncIterator[str]:

@@ -1,16 +1,17 @@
-"""WebSockets that only send: refused with a problem before they open, and closed when the client disconnects."""
+"""WebSockets that send, or answer messages: refused with a problem before they open, closed when the client leaves."""
 
 from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import Any
 
-from fastapi import WebSocket, WebSocketDisconnect
+from fastapi import HTTPException, WebSocket, WebSocketDisconnect
 from pydantic_core import to_jsonable_python
 
 from muster.mission.errors import MusterError
+from muster.server.api.bodies import strict_json
 
 _OVER, _FAILED = 1000, 1011
 _LONGEST_REASON = 120  # bytes; a close frame takes 123
@@ -40,6 +41,22 @@ async def tell(socket: WebSocket, texts: AsyncIterator[str]) -> None:
         await socket.close(_FAILED, _reason(str(failure)))
     elif not isinstance(failure, WebSocketDisconnect):
         raise failure
+
+
+async def answer(socket: WebSocket, take: Callable[[Any], Awaitable[Any]]) -> None:
+    """Answer each message of a client, JSON as of a body, by what is made of it, until the client disconnects.
+
+    What is refused is answered too: `{"type": "refused", "error": ...}`.
+    """
+    await socket.accept()
+    while (received := await socket.receive())["type"] != "websocket.disconnect":
+        body = received.get("bytes") or (received.get("text") or "").encode()
+        try:
+            await socket.send_text(message("action", await take(strict_json(body))))
+        except MusterError as error:
+            await socket.send_text(message("refused", {"error": str(error)}))
+        except HTTPException as error:
+            await socket.send_text(message("refused", {"error": error.detail}))
 
 
 def message(kind: str, content: Any) -> str:

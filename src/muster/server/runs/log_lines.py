@@ -35,6 +35,7 @@ _HAPPENS = {
     "within_missed": "task {task} is not begun in time",
     "work_broken_off": "work on task {task} is broken off",
     "lost": "task {task} is lost",
+    "improved": "a search has found better routes",
     "mission_ended": "the mission is over",
 }
 """What happened, by the kind of its entry; a `reason` follows."""
@@ -66,6 +67,9 @@ def deed_of(verb: str, data: Mapping[str, Any]) -> str:
     if verb == "speed":
         speed = data.get("speed")
         return "lets it go as fast as it goes" if speed is None else f"sets the speed to {speed:g} times"
+    if verb == "orders":
+        count = len(data.get("orders", ()))
+        return f"gives {count} order{'' if count == 1 else 's'}"
     if verb != "event" or not data:
         return _DOES.get(verb, verb)
     kind, what = next(iter(data.items()))

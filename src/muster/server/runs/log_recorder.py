@@ -19,7 +19,7 @@ from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.report.record.json_messages import json_bytes
-from muster.report.record.mission_state import MissionState
+from muster.report.record.mission_state import KEPT_OVER, MissionState
 from muster.report.record.routes import RouteLines
 from muster.server.runs.log_lines import line_of
 from muster.server.runs.tracks import Floats, Row, Steps, Track, packed
@@ -69,7 +69,7 @@ class LogRecorder:
     ) -> None:
         entries = list(log)
         self._out = out
-        self._mission_state = MissionState(mission)
+        self._mission_state = MissionState(mission, KEPT_OVER)
         self._routes = RouteLines(mission)
         self._said = deque(entries if again else ())
         self._seq = 0 if again or not entries else int(entries[-1]["seq"])

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from muster.bridges.fleet import Fleet
-from muster.execution import Recorder, Report, Status, broken_off
+from muster.execution import Recorder, Report, Standing, Status, broken_off
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
@@ -29,6 +29,8 @@ class RealRun:
         the log before a crash; empty for a new run.
     begin_s
         the mission time at which the run starts or resumes.
+    standing
+        of a fleet that stays on duty.
     at_end
         called when all tasks are done.
     """
@@ -44,6 +46,7 @@ class RealRun:
         *,
         seed: int = 0,
         planning: PlanningOptions | None = None,
+        standing: Standing | None = None,
         log: Sequence[Mapping[str, Any]] = (),
         begin_s: float = 0.0,
         at_end: Callable[[], None] = lambda: None,
@@ -59,6 +62,7 @@ class RealRun:
             fleet,
             seed=seed,
             planning=planning,
+            standing=standing,
             ignore=found.plan.ignored,
             recorder=gauged,
             past=found.past if log else None,

@@ -213,8 +213,25 @@ class RunLoop:
             self._cancelled = True
             self._world_run.break_off(CANCELLED)
         else:
-            self._world_run.report(event_given(data, self._world_run.time_s, self._starts_at))
-            self._must_replan = True
+            self._report(data["orders"] if verb == "orders" else [data])
+
+    def _report(self, events: Sequence[Mapping[str, Any]]) -> None:
+        """Let events happen now; what does not fit is left out.
+
+        Raises
+        ------
+        ParameterError
+            if any does not fit: how many of several, and why the first.
+        """
+        refused: list[str] = []
+        for event in events:
+            try:
+                self._world_run.report(event_given(event, self._world_run.time_s, self._starts_at))
+                self._must_replan = True
+            except ParameterError as error:
+                refused.append(str(error))
+        if refused:
+            raise ParameterError(refused[0] if len(events) == 1 else f"{len(refused)} refused, the first: {refused[0]}")
 
     def _require(self, holds: bool, otherwise: str) -> None:
         if not holds:

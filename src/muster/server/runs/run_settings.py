@@ -7,16 +7,18 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from muster.execution import Standing
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
+from muster.mission.order_files import OF_TASKS
 from muster.mission.value_types import shown
 from muster.motion.avoidance_names import AVOIDANCE
 from muster.motion.laws import LAWS
 from muster.planning.options import options_from
 from muster.running.worlds import WORLDS
 
-_PLANNING = {"seed": int, "ignore": list, "planning": dict}
+_PLANNING = {"seed": int, "ignore": list, "planning": dict, "stay": bool, "until_s": float}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
 _WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
@@ -81,7 +83,9 @@ _KINDS = {
     int: "a whole number",
     float: "a number",
 }
-VERBS = ("pause", "resume", "speed", "cancel", "event")
+VERBS = ("pause", "resume", "speed", "cancel", "event", "orders")
+MOST_ORDERS = 1000
+"""Of one action."""
 _FASTEST = 1e6
 
 
@@ -93,6 +97,9 @@ def require_world(world: str, bridges: tuple[str, ...], settings: Mapping[str, A
     ignored_rules(settings.get("ignore", ()))
     options_from(settings.get("planning", {}))
     _require_number(settings, "seed", 0, 2**63 - 1, whole=True)
+    _require_number(settings, "until_s", 0.0, math.inf)
+    if "until_s" in settings and not settings.get("stay"):
+        raise ParameterError(f"until_s: {settings['until_s']!r}; expected it together with stay")
     if world in WORLDS:
         _require_number(settings, "dt_s", 0.001, 1.0)
         noise = settings.get("noise", {})
@@ -138,6 +145,13 @@ def _require_number(values: Mapping[str, Any], name: str, least: float, most: fl
         raise ParameterError(f"{name}: {value!r}; expected {'a whole' if whole else 'a'} number, {least:g} to {most:g}")
 
 
+def standing_of(settings: Mapping[str, Any]) -> Standing | None:
+    """The fleet that stays on duty by `stay` and `until_s`; None: it ends when its tasks are done."""
+    if not settings.get("stay"):
+        return None
+    return Standing(until_s=settings.get("until_s", math.inf))
+
+
 def require_speed(speed: object) -> float | None:
     """A speed: a number above 0, or None, as fast as it goes."""
     if speed is None:
@@ -175,6 +189,19 @@ def require_action(verb: str, data: Mapping[str, Any]) -> dict[str, Any]:
         if len(data) != 1 or "at_s" in data:
             raise ParameterError(f"data: {', '.join(data) or 'nothing'}; expected one event, without at_s")
         return dict(data)
+    if verb == "orders":
+        return {"orders": _orders(data)}
     if data:
         raise ParameterError(f"data: {', '.join(data)}; expected none with {verb}")
     return {}
+
+
+def _orders(data: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The orders of one action: events that concern tasks, in order."""
+    orders = data.get("orders")
+    if set(data) != {"orders"} or not isinstance(orders, list) or not 1 <= len(orders) <= MOST_ORDERS:
+        raise ParameterError(f"data: {', '.join(data) or 'nothing'}; expected orders, a list of 1 to {MOST_ORDERS}")
+    for k, order in enumerate(orders):
+        if not isinstance(order, dict) or len(order) != 1 or next(iter(order)) not in OF_TASKS:
+            raise ParameterError(f"orders[{k}]: {shown(order)}; expected one of {', '.join(OF_TASKS)}, without at_s")
+    return [dict(order) for order in orders]

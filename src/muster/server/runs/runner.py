@@ -116,6 +116,7 @@ def _world_run(
         return SimulatedRun(mission, plan, begin["world"], settings, recorder)
     from muster.running.fleets import fleet_ready
     from muster.server.runs.real_run import RealRun
+    from muster.server.runs.run_settings import standing_of
     from muster.server.work.tasks.check_request import checked_options
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
@@ -127,6 +128,7 @@ def _world_run(
             recorder,
             seed=settings.get("seed", 0),
             planning=checked_options(settings.get("planning", {})),
+            standing=standing_of(settings),
             log=log,
             begin_s=begin["until_s"],
             at_end=at_end,

@@ -6,6 +6,7 @@ crash it is simulated again up to where the log reaches, and goes on.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,6 +14,7 @@ from muster.execution import Recorder, Report, Status
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.running.simulation import Simulation
+from muster.server.runs.run_settings import standing_of
 from muster.server.work.tasks.check_request import checked_options
 from muster.simulation import Noise
 
@@ -30,6 +32,7 @@ class SimulatedRun:
     ) -> None:
         how = dict(settings)
         noise = Noise(**how.pop("noise", {}))
+        how["standing"] = standing_of({"stay": how.pop("stay", False), "until_s": how.pop("until_s", math.inf)})
         how["ignore"] = plan.ignored
         how["planning"] = checked_options(how.get("planning", {}))
         self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)

@@ -142,7 +142,7 @@ class Runs:
         return session.run if session is not None else await asyncio.to_thread(self._store.runs.get, run)
 
     async def act(self, who: User, run: int, verb: str, data: Mapping[str, Any] | None = None) -> Action:
-        """Command a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {an event without at_s}.
+        """Command a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {one without at_s}, `orders` {orders}.
 
         Subscribers receive the outcome, and the action has it later. The action is written before the command takes
         effect. If the database fails or is slow, the command takes effect anyway: robots may have to be stopped.
@@ -155,15 +155,19 @@ class Runs:
         """
         async with self._written_if_refused(who, f"run.{verb}", {"run": run, "data": dict(data or {})}):
             said = require_action(verb, data or {})
-            state = (await self.get(run)).state
-            session = self._sessions.get(run)
-            if session is None or session.over:
-                raise ConflictError(f"run {run} is over: {state}; expected one that is under way")
+            await self.require_under_way(run)
+            session = self._sessions[run]
         action = await self._added(unsaved_action(who, f"run.{verb}", said, run, self._moment()), who, session)
         if not session.ask(action):
             await self._patiently(self._store.actions.keep, replace(action, outcome=TOO_LATE))
             raise ConflictError(f"run {run} is over: {session.run.state}; expected one that is under way")
         return action
+
+    async def require_under_way(self, run: int) -> None:
+        """Raise NotFoundError or ConflictError unless a run is under way."""
+        state = (await self.get(run)).state
+        if run not in self._sessions or self._sessions[run].over:
+            raise ConflictError(f"run {run} is over: {state}; expected one that is under way")
 
     async def entries(self, run: int, after: int = 0, limit: int | None = None) -> Sequence[Entry]:
         """The log of a run after an entry.

@@ -30,7 +30,8 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     verdict = verify(mission, plan_of(arguments["plan"]), arguments.get("ignore", ()), arguments.get("objective"))
     routes = [asdict(route) for route in verdict.routes]
     own = {"waiting_s": verdict.waiting_s, "routes": routes, "lines": lines(mission, verdict)}
-    return {**verdict.as_dict(), **own, **page_marks(mission, tuple(map(row_of, verdict.routes)))}
+    rows = tuple(map(row_of, verdict.routes))
+    return {**verdict.as_dict(), **own, **page_marks(mission.tasks, rows, mission.starts_at)}
 
 
 def lines(mission: Mission, verdict: Verdict) -> dict[str, dict[str, list[list[list[float]]]]]:

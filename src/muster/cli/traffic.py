@@ -1,0 +1,106 @@
+"""`muster traffic`: the roadmap that the robots of a mission share."""
+
+from __future__ import annotations
+
+from pathlib import Path as File
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from muster.cli.exits import DONE
+from muster.cli.options import Finite, MissionFile, format_option, mission_argument, quiet_option
+from muster.cli.outputs import require_drawable, require_writable
+from muster.cli.tables import counted, sequence
+from muster.mission.model import Mission
+from muster.mission.plan import json_text
+
+if TYPE_CHECKING:
+    from muster.traffic.mission_roadmap import MissionRoadmap
+    from muster.traffic.passages import Passage
+
+
+@click.command()
+@mission_argument
+@click.option(
+    "--margin",
+    type=Finite(1e-6, 1e6),
+    default=0.02,
+    show_default=True,
+    metavar="M",
+    help="What two robots keep between them beyond touching, metres.",
+)
+@format_option
+@click.option("--plot", type=click.Path(path_type=File), metavar="FILE", help="Draw the roadmap (.png, .svg, .pdf).")
+@quiet_option
+def command(mission: MissionFile, margin: float, form: str, plot: File | None, quiet: bool, verbose: bool) -> int:
+    """Show the roadmap that the robots of a MISSION share: its lanes, passages for one, dead ends and holding places.
+
+    It is made of the mission's lanes where it gives them, else of its map, else of the open area around its places, for
+    the widest robot that drives.
+    """
+    from muster.motion.map_world import World
+    from muster.traffic.mission_roadmap import MissionRoadmap
+    from muster.traffic.passages import passages
+
+    require_writable(None, (plot,), mission.files, ())
+    require_drawable(plot)
+    loaded = mission.load(verbose=verbose)
+    world = None if loaded.map is None else World.of(loaded)
+    made = MissionRoadmap.of(loaded, world, margin_m=margin)
+    found = passages(made.roadmap)
+    if not quiet:
+        _warn(loaded, made)
+    if plot is not None:
+        from muster.report.files import save_figure
+        from muster.report.roadmap_picture import plot_roadmap
+
+        save_figure(plot_roadmap(loaded, made, found, image=None if world is None else world.image), plot)
+    if form == "json":
+        click.echo(json_text(_figures(made, found)), nl=False)
+    else:
+        _print(loaded, made, found)
+    return DONE
+
+
+def _warn(mission: Mission, made: MissionRoadmap) -> None:
+    """Print on standard error the lanes that are left out, and the places that no way leads to."""
+    for lane in made.closed:
+        click.echo(f"warning: lanes.edges[{lane.number}]: {lane.reason}; the lane is left out", err=True)
+    away = [f"({x:g}, {y:g})" for (x, y), point in made.point_of.items() if point < 0]
+    if away:
+        radius = f"radius {made.roadmap.radius_m:g} m"
+        click.echo(f"warning: no way for {radius} leads to {sequence(away)}", err=True)
+
+
+def _figures(made: MissionRoadmap, found: tuple[Passage, ...]) -> dict[str, Any]:
+    roadmap = made.roadmap
+    return {
+        "radius_m": roadmap.radius_m,
+        "margin_m": roadmap.margin_m,
+        "points": len(roadmap.points),
+        "holding_places": int(roadmap.holding.sum()),
+        "edges": len(roadmap.edges),
+        "one_way": int(roadmap.one_way.sum()),
+        "length_m": float(roadmap.lengths_m[~roadmap.one_way].sum() / 2 + roadmap.lengths_m[roadmap.one_way].sum()),
+        "passages_for_one": len(found),
+        "dead_ends": sum(one.is_dead_end for one in found),
+        "lanes_left_out": [lane.number for lane in made.closed],
+        "places_without_a_way": [list(place) for place, point in made.point_of.items() if point < 0],
+    }
+
+
+def _print(mission: Mission, made: MissionRoadmap, found: tuple[Passage, ...]) -> None:
+    from muster.cli.tables import print_table
+
+    figures = _figures(made, found)
+    rows = [
+        ("points", figures["points"]),
+        ("  holding places", figures["holding_places"]),
+        ("edges", figures["edges"]),
+        ("  one-way", figures["one_way"]),
+        ("passages for one", figures["passages_for_one"]),
+        ("  dead ends", figures["dead_ends"]),
+    ]
+    print_table(("roadmap", "number"), [(name, str(count)) for name, count in rows], right=("number",))
+    about = f"{counted(len(made.robots), 'robot')}, radius {figures['radius_m']:g} m, margin {figures['margin_m']:g} m"
+    click.echo(f"{mission.name}: {about}; {figures['length_m']:.0f} m of lanes")

@@ -1,0 +1,92 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "bindings.hpp"
+#include "passing_order.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace muster {
+
+namespace {
+
+using Pair = std::pair<double, double>;
+
+Point point_of(const Pair& pair) { return {pair.first, pair.second}; }
+Pair pair_of(const Point& point) { return {point.x, point.y}; }
+
+std::vector<Pair> pairs_of(const std::vector<Point>& points) {
+  std::vector<Pair> pairs;
+  for (const Point& point : points) pairs.push_back(pair_of(point));
+  return pairs;
+}
+
+// An order with the numbers of robots checked, where Python passes them.
+class CheckedOrder {
+ public:
+  CheckedOrder(double margin, double ahead) : order_(margin, ahead) {}
+
+  int add(Pair place, double radius) { return robots_ = order_.add(point_of(place), radius) + 1, robots_ - 1; }
+  void put(int robot, Pair place) { checked(robot).put(robot, point_of(place)); }
+  bool append(int robot, Pair to) { return checked(robot).append(robot, point_of(to)); }
+  void drop_ahead() { order_.drop_ahead(); }
+  void cut() { order_.cut(); }
+  void progress(int robot, int passed, Pair near) { checked(robot).progress(robot, passed, point_of(near)); }
+  PassingOrder::Grant grant(int robot) { return checked(robot).grant(robot); }
+  Pair end(int robot) { return pair_of(checked(robot).end(robot)); }
+  Pair begun_end(int robot) { return pair_of(checked(robot).begun_end(robot)); }
+  int passed(int robot) { return checked(robot).passed(robot); }
+  int left(int robot) { return checked(robot).left(robot); }
+  double metres_left(int robot) { return checked(robot).metres_left(robot); }
+  std::vector<Pair> places_left(int robot) { return pairs_of(checked(robot).places_left(robot)); }
+
+ private:
+  PassingOrder& checked(int robot) {
+    if (robot < 0 || robot >= robots_) throw std::invalid_argument("robot: not in the order");
+    return order_;
+  }
+
+  PassingOrder order_;
+  int robots_ = 0;
+};
+
+}  // namespace
+
+void bind_passing_order(nb::module_& m) {
+  nb::class_<PassingOrder::Grant>(m, "Grant", "How far a robot may go along its moves.")
+      .def_prop_ro("points", [](const PassingOrder::Grant& grant) { return pairs_of(grant.points); },
+                   "Ends of moves, in metres; the last may lie within a move.")
+      .def_ro("ended", &PassingOrder::Grant::ended, "How many of these are ends of moves.")
+      .def_ro("metres", &PassingOrder::Grant::metres, "From where the robot is.")
+      .def_ro("waits_for", &PassingOrder::Grant::waits_for, "The robot that passes first; -1: none.")
+      .def_ro("last", &PassingOrder::Grant::last, "Whether all moves of the robot are granted.");
+
+  nb::class_<CheckedOrder>(m, "PassingOrder",
+                           "The order in which robots pass: one sequence of straight moves, by order and not by clock "
+                           "[hoenig2019]. Places are in metres.")
+      .def(nb::init<double, double>(), nb::kw_only(), "margin"_a, "ahead"_a,
+           "Metres that are left between robots, and for which a robot may have begun moves.")
+      .def("add", &CheckedOrder::add, "place"_a, "radius"_a, "A robot that stands; returns its number.")
+      .def("put", &CheckedOrder::put, "robot"_a, "place"_a, "A robot without moves is elsewhere.")
+      .def("append", &CheckedOrder::append, "robot"_a, "to"_a,
+           "A move from where the robot's moves end; False where another would stand in the way.")
+      .def("drop_ahead", &CheckedOrder::drop_ahead, "Drop all moves that have not begun.")
+      .def("cut", &CheckedOrder::cut, "Let all moves end where robots have been let go to.")
+      .def("progress", &CheckedOrder::progress, "robot"_a, "passed"_a, "near"_a,
+           "A robot has passed the ends of so many of its moves in all, and is near a place.")
+      .def("grant", &CheckedOrder::grant, "robot"_a, "How far a robot may go now; what it is told it keeps.")
+      .def("end", &CheckedOrder::end, "robot"_a, "Where a robot is after all its moves.")
+      .def("begun_end", &CheckedOrder::begun_end, "robot"_a, "Where a robot is after the moves that it has begun.")
+      .def("passed", &CheckedOrder::passed, "robot"_a, "Moves that a robot has finished since it was added.")
+      .def("left", &CheckedOrder::left, "robot"_a, "Moves that a robot has not finished.")
+      .def("metres_left", &CheckedOrder::metres_left, "robot"_a, "Metres that a robot has still to go.")
+      .def("places_left", &CheckedOrder::places_left, "robot"_a, "The ends of the moves that are not finished.");
+}
+
+}  // namespace muster

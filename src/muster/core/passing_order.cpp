@@ -1,0 +1,195 @@
+#include "passing_order.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace muster {
+
+namespace {
+
+constexpr double kSample = 0.05;    // metres between the places of a move that are looked at
+constexpr double kCorner = 0.02;    // metres before the end of a move at which it is as good as passed
+constexpr double kRounding = 1e-6;  // metres
+
+double side(Point a, Point b, Point p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
+
+}  // namespace
+
+double segment_gap(Point p, Point from, Point to) {
+  const double dx = to.x - from.x, dy = to.y - from.y, squared = dx * dx + dy * dy;
+  const double share = squared > 0.0 ? ((p.x - from.x) * dx + (p.y - from.y) * dy) / squared : 0.0;
+  const double kept = std::clamp(share, 0.0, 1.0);
+  return distance(p, {from.x + kept * dx, from.y + kept * dy});
+}
+
+double segment_gap(Point a_from, Point a_to, Point b_from, Point b_to) {
+  const bool apart_by_a = side(a_from, a_to, b_from) * side(a_from, a_to, b_to) >= 0.0;
+  const bool apart_by_b = side(b_from, b_to, a_from) * side(b_from, b_to, a_to) >= 0.0;
+  if (!apart_by_a && !apart_by_b) return 0.0;
+  return std::min({segment_gap(a_from, b_from, b_to), segment_gap(a_to, b_from, b_to), segment_gap(b_from, a_from, a_to),
+                   segment_gap(b_to, a_from, a_to)});
+}
+
+int PassingOrder::add(Point place, double radius) {
+  bots_.push_back({radius, place, 0, {}});
+  return static_cast<int>(bots_.size()) - 1;
+}
+
+void PassingOrder::put(int robot, Point place) {
+  if (!bots_[robot].moves.empty()) throw std::invalid_argument("the robot has moves");
+  bots_[robot].end = place;
+}
+
+bool PassingOrder::append(int robot, Point to) {
+  Bot& bot = bots_[robot];
+  const Point from = bot.end;
+  for (int other = 0; other < static_cast<int>(bots_.size()); ++other) {
+    const Point stands = bots_[other].end;
+    const double gap = other == robot ? std::numeric_limits<double>::infinity() : segment_gap(stands, from, to);
+    if (gap < apart(robot, other) - kRounding && gap < distance(stands, from) - kRounding) return false;
+  }
+  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, {}};
+  for (std::size_t number = first_; number < first_ + moves_.size(); ++number) {
+    const Move& before = move(number);
+    if (before.robot < 0 || before.robot == robot) continue;
+    if (segment_gap(before.from, before.to, from, to) < apart(robot, before.robot)) fresh.earlier.push_back(number);
+  }
+  bot.moves.push_back(first_ + moves_.size());
+  bot.end = to;
+  moves_.push_back(std::move(fresh));
+  return true;
+}
+
+void PassingOrder::drop_ahead() {
+  for (Bot& bot : bots_) {
+    while (!bot.moves.empty() && !move(bot.moves.back()).begun) {
+      bot.end = move(bot.moves.back()).from;
+      move(bot.moves.back()).robot = -1;
+      bot.moves.pop_back();
+    }
+  }
+  while (!moves_.empty() && moves_.back().robot < 0) moves_.pop_back();
+}
+
+void PassingOrder::cut() {
+  drop_ahead();
+  for (Bot& bot : bots_) {
+    if (bot.moves.empty()) continue;
+    Move& last = move(bot.moves.back());  // those before it are granted whole
+    bot.end = last.to = place(last, last.granted);
+    last.length = last.granted;
+  }
+}
+
+Point PassingOrder::place(const Move& m, double at) const {
+  if (at >= m.length) return m.to;
+  const double share = at / m.length;
+  return {m.from.x + share * (m.to.x - m.from.x), m.from.y + share * (m.to.y - m.from.y)};
+}
+
+void PassingOrder::finish_first(Bot& bot) {
+  move(bot.moves.front()).robot = -1;
+  bot.moves.pop_front();
+  ++bot.passed;
+  while (!moves_.empty() && moves_.front().robot < 0) {
+    moves_.pop_front();
+    ++first_;
+  }
+}
+
+void PassingOrder::progress(int robot, int passed, Point near) {
+  Bot& bot = bots_[robot];
+  while (bot.passed < passed && !bot.moves.empty()) finish_first(bot);
+  for (; !bot.moves.empty(); finish_first(bot)) {
+    Move& m = move(bot.moves.front());
+    if (!m.begun || m.length <= 0.0) return;
+    const double dx = (m.to.x - m.from.x) / m.length, dy = (m.to.y - m.from.y) / m.length;
+    const double along = (near.x - m.from.x) * dx + (near.y - m.from.y) * dy;
+    m.at = std::clamp(along, m.at, std::max(m.at, m.granted));
+    // Where it goes on it need not come back to the end of a move that it has as good as passed.
+    if (along < m.length - kCorner || bot.moves.size() < 2 || !move(bot.moves[1]).begun) return;
+  }
+}
+
+std::pair<double, int> PassingOrder::limit(const Move& m) const {
+  double least = m.length;
+  int waits_for = -1;
+  for (const std::size_t number : m.earlier) {
+    if (over(number)) continue;
+    const Move& before = move(number);
+    const Point from = place(before, before.at);
+    const double apart = this->apart(m.robot, before.robot);
+    // Places already granted stay granted; from one that is too near the robot may go away.
+    double free = std::max(m.at, m.granted), gap = segment_gap(place(m, free), from, before.to);
+    while (free < least) {
+      const double next = std::min(least, free + kSample);
+      const double there = segment_gap(place(m, next), from, before.to);
+      if (there < apart && there < gap - kRounding) {
+        least = free;
+        waits_for = before.robot;
+        break;
+      }
+      free = next;
+      gap = there;
+    }
+  }
+  return {least, waits_for};
+}
+
+PassingOrder::Grant PassingOrder::grant(int robot) {
+  Bot& bot = bots_[robot];
+  Grant found{{}, 0, 0.0, -1, true};
+  for (const std::size_t number : bot.moves) {
+    Move& m = move(number);
+    if (!m.begun && found.metres >= ahead_) {
+      found.last = false;
+      break;
+    }
+    const auto [most, waits_for] = limit(m);
+    if (!m.begun) {
+      const auto waiting = std::ranges::find_if(m.earlier, [&](auto e) { return !over(e) && !move(e).begun; });
+      if (waiting != m.earlier.end() || most < std::min(m.length, kSample)) {
+        found.waits_for = waiting != m.earlier.end() ? move(*waiting).robot : waits_for;
+        found.last = false;
+        break;
+      }
+      m.begun = true;
+    }
+    m.granted = std::max(m.granted, most);
+    found.metres += m.granted - m.at;
+    found.points.push_back(place(m, m.granted));
+    if (m.granted < m.length) {
+      found.waits_for = waits_for;
+      found.last = false;
+      break;
+    }
+    ++found.ended;
+  }
+  return found;
+}
+
+Point PassingOrder::begun_end(int robot) const {
+  Point at = bots_[robot].moves.empty() ? bots_[robot].end : move(bots_[robot].moves.front()).from;
+  for (const std::size_t number : bots_[robot].moves) {
+    if (!move(number).begun) break;
+    at = move(number).to;
+  }
+  return at;
+}
+
+double PassingOrder::metres_left(int robot) const {
+  double metres = 0.0;
+  for (const std::size_t number : bots_[robot].moves) metres += move(number).length - move(number).at;
+  return metres;
+}
+
+std::vector<Point> PassingOrder::places_left(int robot) const {
+  std::vector<Point> places;
+  for (const std::size_t number : bots_[robot].moves) places.push_back(move(number).to);
+  return places;
+}
+
+}  // namespace muster

@@ -1,0 +1,96 @@
+// Paths in continuous time for robots that share lanes, one robot after the other [phillips2011].
+//
+// Each robot takes the earliest path through the intervals in which the points of the lanes are safe from those that
+// were planned before it. A robot is at the end of a lane from when it sets out on it, as in a sequence of moves; until
+// it is clear of the point that it left that one is its too.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shared_lanes.hpp"
+
+namespace muster {
+
+struct Stop {
+  int point;
+  double hold;  // seconds
+};
+
+struct Traveller {
+  int start;
+  double heading;           // radians
+  std::vector<Stop> stops;  // in order; none: it rests anywhere
+  double radius, speed, yaw_rate, acceleration;
+  double ready;  // seconds for which it stays at its start
+  bool fixed;    // it never leaves
+  bool stays;    // it stays at its last stop for good; else it is gone from there when it has held
+};
+
+struct TimedMove {
+  double start;  // seconds
+  int traveller, lane;
+};
+
+struct Paths {
+  std::vector<TimedMove> moves;  // by start
+  std::vector<double> ends;      // when each has held at its last stop; infinite where no path was found
+  std::vector<int> order;        // in which they were planned
+};
+
+class SafeIntervals {
+ public:
+  // `rests`: whether a robot may rest at a point without standing in the way of others.
+  SafeIntervals(const SharedLanes& lanes, std::vector<bool> rests, double margin);
+
+  // Paths of all travellers, the first of the order first.
+  Paths in_order(std::span<const Traveller> travellers, std::span<const int> order);
+
+  // The best paths of several orders, the first of which is given: those without a path come first in the next, then
+  // orders are drawn.
+  Paths best_of(std::span<const Traveller> travellers, std::vector<int> order, int tries, std::uint64_t seed);
+
+ private:
+  struct Span {
+    double from, until;
+  };
+  struct Stay {
+    double from, until, radius;
+  };
+  struct Pass {
+    double start, gap, radius;
+  };
+  struct Label {
+    double key, ready;
+    int leg, lane, interval, parent;
+    double start;
+  };
+
+  void clear();
+  double apart(const Traveller& who, double radius) const;
+  double tail(const Traveller& who) const;
+  bool path(const Traveller& who, std::vector<TimedMove>& moves, double& end);
+  void reserve(const Traveller& who, std::span<const TimedMove> moves, double end);
+  // The intervals in which a robot may be at a point.
+  const std::vector<Span>& safe(const Traveller& who, int point);
+  // The earliest time from `from` at which a robot may set out on a lane; infinite from `until` on.
+  double earliest(const Traveller& who, int lane, double from, double until) const;
+  const std::vector<double>& metres_to(int goal, double radius);
+
+  const SharedLanes& lanes_;
+  std::vector<bool> rests_;
+  double margin_;
+  std::vector<std::vector<Stay>> stays_;
+  std::vector<std::vector<Pass>> passes_;
+  std::vector<std::vector<Span>> safe_;
+  std::vector<char> known_;  // whether `safe_` of a point is that of the present traveller
+  struct ToGoal {
+    int goal;
+    double radius;
+    std::vector<double> metres;
+  };
+  std::vector<ToGoal> to_goals_;
+};
+
+}  // namespace muster

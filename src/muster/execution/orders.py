@@ -1,0 +1,144 @@
+"""The orders of a standing fleet: tasks that come while it is on duty, from their arrival to their end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from muster.execution.quantiles import Quantiles
+
+
+@dataclass(frozen=True)
+class Seconds:
+    """How long something took: what half and 95 % of all did not exceed, and the longest; seconds."""
+
+    median_s: float
+    p95_s: float
+    most_s: float
+
+    @classmethod
+    def of(cls, quantiles: Quantiles) -> Seconds:
+        return cls(*(round(value, 4) for value in (quantiles.at(0.5), quantiles.at(0.95), quantiles.most)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrdersReport:
+    """Figures of the orders that came while a mission was carried out.
+
+    Parameters
+    ----------
+    taken, done, cancelled, lost, refused
+        how many came; of them were done, cancelled, lost; and how many more did not fit the mission.
+    open
+        how many are neither yet.
+    most_open
+        how many were open at once.
+    done_per_hour
+        by the mission's clock.
+    until_in_route
+        from its arrival until an order was in a route, by the mission's clock.
+    until_done
+        from its arrival until it was done.
+    improved
+        how often routes that a search in the background had found were taken over.
+    clock_lag
+        by how much the mission's clock was behind the wall clock, in a run in real time; None in another.
+    """
+
+    taken: int
+    done: int
+    cancelled: int
+    lost: int
+    refused: int
+    open: int
+    most_open: int
+    done_per_hour: float
+    until_in_route: Seconds
+    until_done: Seconds
+    improved: int
+    clock_lag: Seconds | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+@dataclass
+class Orders:
+    """Counts orders by the events of a mission. What it keeps does not grow but with the orders that are open."""
+
+    taken: int = 0
+    done: int = 0
+    cancelled: int = 0
+    lost: int = 0
+    refused: int = 0
+    most_open: int = 0
+    improved: int = 0
+    until_in_route: Quantiles = field(default_factory=Quantiles)
+    until_done: Quantiles = field(default_factory=Quantiles)
+    clock_lag: Quantiles = field(default_factory=Quantiles)
+    _open: dict[str, float] = field(default_factory=dict)  # by order when it came
+    _waiting: dict[str, float] = field(default_factory=dict)  # those that have been in no route yet
+    _came_s: dict[str, float] = field(default_factory=dict)  # of orders that are about to be taken
+
+    def comes(self, task: str, at_s: float) -> None:
+        """An order came at a time that may be before the executor hears of it."""
+        self._came_s[task] = at_s
+
+    def take(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Note an event."""
+        if kind == "new_task":
+            self._take_order(data["task"]["id"], now)
+        elif kind == "replanned":
+            for task in data["added"]:
+                self._routed(task, now)
+            self.improved += any(cause["kind"] == IMPROVED for cause in data["causes"])
+        elif kind == "event_refused":
+            self.refused += 1
+            self._came_s.clear()
+        elif kind in ("ends", "cancel_task", "lost") and data["task"] in self._open:
+            self._close(data["task"], kind, now)
+
+    def report(self, over_s: float) -> OrdersReport | None:
+        """Figures after so many seconds of the mission's clock; None if there was no order."""
+        if not self.taken and not self.refused:
+            return None
+        return OrdersReport(
+            taken=self.taken,
+            done=self.done,
+            cancelled=self.cancelled,
+            lost=self.lost,
+            refused=self.refused,
+            open=len(self._open),
+            most_open=self.most_open,
+            done_per_hour=round(3600 * self.done / over_s, 2) if over_s > 0 else 0.0,
+            until_in_route=Seconds.of(self.until_in_route),
+            until_done=Seconds.of(self.until_done),
+            improved=self.improved,
+            clock_lag=Seconds.of(self.clock_lag) if self.clock_lag.count else None,
+        )
+
+    def _take_order(self, task: str, now: float) -> None:
+        self.taken += 1
+        came_s = self._came_s.pop(task, now)
+        self._open[task] = self._waiting[task] = came_s
+        self.most_open = max(self.most_open, len(self._open))
+
+    def _routed(self, task: str, now: float) -> None:
+        if task in self._waiting:
+            self.until_in_route.add(now - self._waiting.pop(task))
+
+    def _close(self, task: str, kind: str, now: float) -> None:
+        came_s = self._open.pop(task)
+        self._waiting.pop(task, None)
+        if kind == "ends":
+            self.done += 1
+            self.until_done.add(now - came_s)
+        elif kind == "cancel_task":
+            self.cancelled += 1
+        else:
+            self.lost += 1
+
+
+IMPROVED = "improved"
+"""The cause of a new plan that a search in the background has found."""

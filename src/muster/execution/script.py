@@ -1,0 +1,66 @@
+"""What is to happen while a mission is carried out: the events of its file, and orders as a source tells them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+
+from muster.execution.changes import may_bring_work
+from muster.mission.model import Event
+
+_ROUNDING = 1e-9  # of a batch, by which an order may be past its end
+
+
+class Script:
+    """Events in order of time. A source of orders is read one order ahead, so it may be endless.
+
+    Parameters
+    ----------
+    events
+        of the mission file.
+    orders
+        events in order of time; one that comes late happens when it is read.
+    batch_s
+        orders are due together, at whole multiples of so many seconds; 0: each when it comes.
+    after_s
+        what was due by then has happened before.
+    """
+
+    def __init__(
+        self,
+        events: Sequence[Event],
+        orders: Iterable[Event] = (),
+        *,
+        batch_s: float = 0.0,
+        after_s: float = -math.inf,
+    ) -> None:
+        self._batch_s = batch_s
+        self._events = sorted((e for e in events if e.at_s > after_s), key=lambda event: event.at_s)
+        self._orders = (order for order in orders if order.at_s > after_s)
+        self._next = next(self._orders, None)
+
+    @property
+    def next_s(self) -> float:
+        """When the next event is due; inf if there is none."""
+        return min([self._order_due_s, *(event.at_s for event in self._events[:1])])
+
+    def due(self, now: float) -> Iterator[Event]:
+        """Take the events that are due."""
+        while self._events and self._events[0].at_s <= now:
+            yield self._events.pop(0)
+        while self._next is not None and self._order_due_s <= now:
+            order, self._next = self._next, next(self._orders, None)
+            yield order
+
+    def may_bring_work(self, *, open_tasks: bool) -> bool:
+        """Whether anything to come can bring work, or a robot for what is open."""
+        ahead = (*self._events, *([] if self._next is None else [self._next]))
+        return any(may_bring_work(event, open_tasks=open_tasks) for event in ahead)
+
+    @property
+    def _order_due_s(self) -> float:
+        if self._next is None:
+            return math.inf
+        if self._batch_s == 0:
+            return self._next.at_s
+        return math.ceil(self._next.at_s / self._batch_s - _ROUNDING) * self._batch_s

@@ -1,0 +1,163 @@
+"""Standing fleets: how long one stays on duty, which orders it gets, and what it forgets so that memory is bounded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol, overload
+
+from muster.execution.forecast import Forecast
+from muster.execution.record import ExecutionEvent
+from muster.execution.remaining_problem import RemainingMission
+from muster.execution.robot_state import RobotState
+from muster.execution.task_ledger import Ledger
+from muster.mission.errors import ParameterError
+from muster.mission.model import Event
+
+KEEP_S, KEPT_EVENTS, KEPT_REVISIONS, LOOK_S = 300.0, 2_000, 10, 30.0
+"""How long tasks that are done are remembered; how many events and plans are; seconds between two looks at them."""
+BATCH_S = 0.2
+"""Seconds in which orders are collected and planned for together."""
+
+
+class Improver(Protocol):
+    """Searches for better routes beside the executor, on a snapshot of what is left."""
+
+    @property
+    def due_s(self) -> float:
+        """When, by the mission's clock, routes are to be asked for; inf while none are searched for."""
+        ...
+
+    def begin(self, rest: RemainingMission) -> None:
+        """Search for better routes from this moment on."""
+        ...
+
+    def found(self, now: float) -> Mapping[str, Sequence[str]] | None:
+        """The routes that were found, by robot, if it is time for them; it is idle then."""
+        ...
+
+    def close(self) -> None:
+        """Search no more."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Standing:
+    """A fleet that does not end when its tasks are done.
+
+    Parameters
+    ----------
+    until_s
+        until when it stays on duty, by the mission's clock; then it does what is open, and ends.
+    orders
+        events in order of time, read as time goes on: new tasks, and tasks cancelled, moved or delayed. With the
+        objective `lateness` an order that says nothing else is due when it comes, so that what counts is how long
+        each takes.
+    improver
+        searches in the background; None: what carries the mission out brings its own.
+    searches
+        whether routes are improved in the background; else orders are put into them as they come, and no more.
+    keep_s
+        how long tasks that are done or cancelled are remembered, and cannot be ordered again under the same id.
+    batch_s
+        orders that come within so many seconds are planned for together.
+
+    Raises
+    ------
+    ParameterError
+        if a time is negative.
+    """
+
+    until_s: float = math.inf
+    orders: Iterable[Event] = ()
+    improver: Improver | None = None
+    searches: bool = True
+    keep_s: float = KEEP_S
+    batch_s: float = BATCH_S
+
+    def __post_init__(self) -> None:
+        for name in ("until_s", "keep_s", "batch_s"):
+            if not getattr(self, name) >= 0:
+                raise ParameterError(f"{name}: {getattr(self, name)}; expected seconds, at least 0")
+
+    @property
+    def forgets(self) -> bool:
+        """Whether anything is ever forgotten."""
+        return self.keep_s < math.inf
+
+
+UNTIL_DONE = Standing(until_s=0.0, keep_s=math.inf)
+"""No standing fleet: the mission ends when its tasks are done, and all is remembered."""
+
+
+class EventLog(Sequence[ExecutionEvent]):
+    """The events so far, or the last of them; each has the number under which it came.
+
+    Parameters
+    ----------
+    most
+        how many are kept; None: all.
+    """
+
+    def __init__(self, most: int | None = None) -> None:
+        self._kept: list[ExecutionEvent] = []
+        self._most, self.total = most, 0
+
+    def append(self, event: ExecutionEvent) -> None:
+        self._kept.append(event)
+        self.total += 1
+        if self._most is not None and len(self._kept) >= 2 * self._most:
+            del self._kept[: -self._most]
+
+    def since(self, number: int) -> list[ExecutionEvent]:
+        """The events from a number on, as far as they are kept."""
+        return self._kept[max(0, number - self.total + len(self._kept)) :]
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    @overload
+    def __getitem__(self, index: int) -> ExecutionEvent: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[ExecutionEvent]: ...
+    def __getitem__(self, index: int | slice) -> ExecutionEvent | list[ExecutionEvent]:
+        return self._kept[index]
+
+
+@dataclass
+class Forgetting:
+    """Forgets tasks that were done, cancelled or lost a while ago, and that no task to come refers to.
+
+    Parameters
+    ----------
+    ledger, crew, forecast
+        of the executor.
+    keep_s
+        how long ago.
+    """
+
+    ledger: Ledger
+    crew: Mapping[str, RobotState]
+    forecast: Forecast
+    keep_s: float
+    _look_s: float = field(default=0.0, init=False)
+
+    def look(self, now: float) -> Iterator[tuple[str, str]]:
+        """Forget what is due; yields the tasks that are lost thereby, and why."""
+        if now < self._look_s:
+            return
+        self._look_s = now + LOOK_S
+        in_routes = {name for state in self.crew.values() for name in state.route}
+        gone = self.ledger.settled(now - self.keep_s) - in_routes - self._last_done()
+        for name in gone:
+            if name not in self.ledger.ends_s and name not in self.ledger.cancelled:
+                yield name, self.ledger.expired[name]
+        self.ledger.retire(gone)
+        self.forecast.forget()
+        for state in self.crew.values():
+            state.done = [name for name in state.done if name not in gone]
+
+    def _last_done(self) -> set[str]:
+        """The last task of each robot, from which its way to the next is counted."""
+        return {state.done[-1] for state in self.crew.values() if state.done}

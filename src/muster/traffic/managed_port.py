@@ -1,0 +1,134 @@
+"""The port of a robot that traffic steers: what it is ordered becomes goals, and it is sent as far as it may go."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import takewhile
+
+from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
+
+
+class ManagedPort:
+    """A `RobotPort` between who orders a robot and the robot.
+
+    Way points that only mark a way are left to traffic; the others are its goals, one after the other. Several at one
+    place, one after the other, are one goal.
+
+    Parameters
+    ----------
+    port
+        of the robot.
+    """
+
+    def __init__(self, port: RobotPort) -> None:
+        self._port = port
+        self._orders = 0
+        self._waypoints: tuple[Waypoint, ...] = ()
+        self._passed = 0  # of these, by the orders to the robot before the last
+        self._sent: tuple[Waypoint, ...] | None = None  # None: to be sent anew in any case
+        self._sent_order = 0
+        self._marks = 0  # how many of those sent come before what is to be done at the goal
+        self._numbers: tuple[int, ...] = ()  # of the others, among the way points
+        self.waits_for = ""
+        self.left_m: float | None = None
+        self.refused = ""
+
+    @property
+    def robot(self) -> str:
+        return self._port.robot
+
+    def send(self, waypoints: Sequence[Waypoint]) -> int:
+        """See `RobotPort`. The robot is sent on when traffic next looks."""
+        self._orders += 1
+        self._waypoints, self._passed = tuple(waypoints), 0
+        self._sent, self._numbers = None, ()
+        self.waits_for, self.left_m, self.refused = "", None, ""
+        return self._orders
+
+    def cancel(self) -> int:
+        """See `RobotPort`. The robot stops at once; where it stands in the way traffic sends it on a little."""
+        self._sent_order, self._marks = self._port.cancel(), 0
+        return self.send(())
+
+    def telemetry(self) -> Telemetry | None:
+        """See `RobotPort`."""
+        said = self._port.telemetry()
+        if said is None:
+            return None
+        return replace(
+            said,
+            order=self._orders,
+            passed=self.passed,
+            refused=self.refused or said.refused,
+            waits_for=self.waits_for,
+            left_m=self.left_m,
+        )
+
+    @property
+    def heard(self) -> Telemetry | None:
+        """What the robot itself last said."""
+        return self._port.telemetry()
+
+    @property
+    def passed(self) -> int:
+        """How many way points of its order are passed."""
+        done = self._sent_passed - self._marks
+        return self._numbers[done - 1] + 1 if done > 0 and self._numbers else self._passed
+
+    @property
+    def goal(self) -> Place | None:
+        """Where it is to go next, or stay; None where it may be anywhere."""
+        numbers = self._next()
+        if numbers:
+            return self._waypoints[numbers[0]].position
+        return self._waypoints[-1].position if self._waypoints else None
+
+    @property
+    def arrives(self) -> bool:
+        """Whether something is to be done at its goal."""
+        return bool(self._next())
+
+    @property
+    def hold_s(self) -> float:
+        """Seconds for which it stays at its goal, at most."""
+        return sum(self._waypoints[k].hold_s for k in self._next())
+
+    @property
+    def busy(self) -> bool:
+        """Whether the robot does something at its goal: it is not to be sent elsewhere."""
+        return bool(self._numbers) and self._sent_passed < self._marks + len(self._numbers) and self._at_goal
+
+    @property
+    def marks_passed(self) -> int:
+        """How many of the places are passed to which it was last sent, its goal not counted."""
+        return min(self._marks, self._sent_passed)
+
+    def go(self, places: Sequence[Place], *, to_goal: bool = False) -> bool:
+        """Send the robot along places, and let it do at the last of them what is to be done at its goal.
+
+        Without places it does that where its goal is. Returns whether that is another order than the last.
+        """
+        numbers = self._next() if to_goal else ()
+        at = [replace(self._waypoints[k], position=places[-1]) if places else self._waypoints[k] for k in numbers]
+        sent = (*map(Waypoint, places), *at)
+        if self._sent is not None and sent == self._sent[self._sent_passed :]:
+            return False
+        self._passed = self.passed
+        self._sent, self._marks, self._numbers = sent, len(places), numbers
+        self._sent_order = self._port.send(sent)
+        return True
+
+    def _next(self) -> tuple[int, ...]:
+        """The numbers of the next way points at one place that are no marks."""
+        left = [k for k in range(self.passed, len(self._waypoints)) if not self._waypoints[k].via]
+        return tuple(takewhile(lambda k: self._waypoints[k].position == self._waypoints[left[0]].position, left))
+
+    @property
+    def _at_goal(self) -> bool:
+        return self._sent_passed >= self._marks
+
+    @property
+    def _sent_passed(self) -> int:
+        said = self._port.telemetry()
+        return said.passed if said is not None and said.order == self._sent_order else 0

@@ -1,0 +1,87 @@
+"""The roadmap of a mission: for its robots that drive, from its lanes, its map or the open area around its places."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Point, Robot
+from muster.motion.actions import TaskMotion, plan
+from muster.motion.free_space import GridSpace, PolygonSpace
+from muster.motion.map_world import World
+from muster.motion.paths import PathFinder
+from muster.traffic.given_lanes import ClosedLane, closed_lanes
+from muster.traffic.roadmap import MARGIN_M, Roadmap
+
+
+@dataclass(frozen=True, eq=False)
+class MissionRoadmap:
+    """A roadmap, and where on it a mission's robots and tasks are.
+
+    Parameters
+    ----------
+    roadmap
+        for the widest of the robots.
+    robots
+        those that share it: the robots of kind `ground`, or all where none is.
+    point_of
+        for each place of these robots and their tasks, (x, y) metres in the map frame, the number of its point; -1
+        where no way leads there.
+    closed
+        the lanes of the mission that the widest robot cannot drive.
+    """
+
+    roadmap: Roadmap
+    robots: tuple[Robot, ...]
+    point_of: Mapping[Point, int]
+    closed: tuple[ClosedLane, ...] = ()
+
+    @classmethod
+    def of(cls, mission: Mission, world: World | None = None, *, margin_m: float = MARGIN_M) -> MissionRoadmap:
+        """The roadmap of a mission; its world is made where it is not given.
+
+        Raises
+        ------
+        ParameterError
+            if no robot that drives has a radius above 0.
+        MissionError, MissingExtraError
+            as `World.of`.
+        """
+        robots = tuple(robot for robot in mission.robots if robot.kind == "ground") or mission.robots
+        widest = max(robots, key=lambda robot: robot.radius_m)
+        if widest.radius_m <= 0:
+            raise ParameterError(
+                "radius_m: 0 for all robots; expected a robot with a radius above 0: others share any lane"
+            )
+        places = list(dict.fromkeys(place[:2] for place in _places(mission, robots)))
+        space = None
+        if mission.map is not None:
+            space = (world or World.of(mission)).free_space(widest.radius_m, widest.kind, three_d=False)
+            assert isinstance(space, GridSpace | PolygonSpace)
+        closed: list[ClosedLane] = []
+        if mission.lanes is None:
+            roadmap = Roadmap.of(space, widest.radius_m, places, margin_m=margin_m)
+        else:
+            roadmap = Roadmap.of_lanes(mission.lanes, widest.radius_m, places, space=space, margin_m=margin_m)
+            closed = closed_lanes(mission.lanes, widest.radius_m, None if space is None else PathFinder(space))
+        return cls(roadmap, robots, dict(zip(places, roadmap.places.tolist(), strict=True)), tuple(closed))
+
+    def points(self, places: Iterator[Point] | list[Point]) -> list[int]:
+        """The points of places of the mission."""
+        return [self.point_of[place[:2]] for place in places]
+
+
+def _places(mission: Mission, robots: tuple[Robot, ...]) -> Iterator[Point]:
+    """Where robots start and end, and where they begin and end their tasks."""
+    for robot in robots:
+        yield robot.position
+        if robot.end_position is not None:
+            yield robot.end_position
+    for task in mission.tasks:
+        for robot in robots:
+            if task.only_robots is None or robot.id in task.only_robots:
+                motion = plan(task, robot)
+                if isinstance(motion, TaskMotion):
+                    yield motion.entry
+                    yield motion.exit

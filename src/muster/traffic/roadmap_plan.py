@@ -1,0 +1,157 @@
+"""Moves of robots over a roadmap: the planner behind `ReservedTraffic`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from muster import core
+from muster.motion.grid import Floats
+from muster.motion.kinematics.registry import kinematics_named, limits_of
+from muster.traffic.edge_conflicts import conflicts
+from muster.traffic.reserved import Move, Point, Traveller
+from muster.traffic.roadmap import Roadmap
+from muster.traffic.single_moves import MovePlanner, Parameters
+
+_SAME_M = 1e-6
+_TRIES = 8
+"""Orders of robots that are tried."""
+_HORIZON = 10
+"""Moves of each robot that are planned where some find no path by themselves."""
+_ENTRIES = 6
+"""Points of the roadmap to which a place beside it is joined, at most."""
+
+
+@dataclass
+class RoadmapPlan:
+    """Plans moves of travellers over a roadmap, by safe intervals.
+
+    Parameters
+    ----------
+    roadmap
+        has points for starts and goals; a place that is none gets one.
+    clear
+        whether the straight way between two places, (2, 2) metres, is free for the widest robot.
+    seed
+        of the orders that are tried.
+    """
+
+    roadmap: Roadmap
+    clear: Callable[[Floats], bool]
+    seed: int = 0
+    inherited: int = 0
+    _priorities: list[str] = field(default_factory=list)
+
+    def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
+        """Moves in an order in which they are free, as far as paths are found."""
+        places = [place for who in travellers for place in (who.start, who.goal) if place is not None]
+        roadmap = with_places(self.roadmap, self.clear, places)
+        number = {tuple(point): k for k, point in enumerate(roadmap.points.tolist())}
+        moves = self._by_safe_intervals(roadmap, travellers, number)
+        for traveller, edge in self._by_inheritance(roadmap, travellers, number) if moves is None else moves:
+            x, y = roadmap.points[roadmap.edges[edge, 1]]
+            yield Move(traveller, (float(x), float(y)))
+
+    def _by_safe_intervals(
+        self, roadmap: Roadmap, travellers: Sequence[Traveller], number: Mapping[Point, int]
+    ) -> Sequence[tuple[int, int]] | None:
+        """Moves as (traveller, edge); None where some find no path."""
+        lanes = lanes_of(roadmap)
+        ranks = {name: k for k, name in enumerate(self._priorities)}
+        metres = [_metres(who, lanes, number) for who in travellers]
+        first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
+        moves, ends, order = core.paths_by_safe_intervals(
+            lanes=lanes,
+            rests=roadmap.holding.tolist(),
+            travellers=[_told(who, lanes, number) for who in travellers],
+            order=first,
+            margin=roadmap.margin_m,
+            tries=_TRIES,
+            seed=self.seed,
+        )
+        self._priorities = [travellers[k].robot.id for k in order]
+        return None if math.inf in ends else [(traveller, edge) for _, traveller, edge in moves]
+
+    def _by_inheritance(
+        self, roadmap: Roadmap, travellers: Sequence[Traveller], number: Mapping[Point, int]
+    ) -> Sequence[tuple[int, int]]:
+        self.inherited += 1
+        found = MovePlanner(roadmap).planned(
+            [number[who.start] for who in travellers],
+            [None if who.goal is None else number[who.goal] for who in travellers],
+            [who.robot.radius_m for who in travellers],
+            margin_m=roadmap.margin_m,
+            pinned=[who.fixed or who.ready_s > 0 for who in travellers],
+            seed=self.seed,
+            params=Parameters(horizon=_HORIZON * len(travellers)),
+        )
+        return found.moves
+
+
+def lanes_of(roadmap: Roadmap) -> core.SharedLanes:
+    """A roadmap as the core has it."""
+    return core.SharedLanes(
+        places=np.ascontiguousarray(roadmap.points),
+        ends=roadmap.edges.astype(np.int32),
+        lengths=roadmap.lengths_m,
+        clearances=roadmap.clearance_m + roadmap.radius_m,
+        reach_first=roadmap.reach_start.astype(np.int32),
+        reach_points=roadmap.reach_point.astype(np.int32),
+        reach_gaps=roadmap.reach_m,
+    )
+
+
+def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Sequence[Point]) -> Roadmap:
+    """The roadmap with a point for each place that is none yet, joined to the nearest points from which it is seen."""
+    known = {tuple(point) for point in roadmap.points.tolist()}
+    fresh = np.array([place for place in dict.fromkeys(places) if place not in known], dtype=np.float64).reshape(-1, 2)
+    if not len(fresh):
+        return roadmap
+    points = np.concatenate([roadmap.points, fresh])
+    edges = [roadmap.edges]
+    for k in range(len(roadmap.points), len(points)):
+        apart = np.linalg.norm(points[:k] - points[k], axis=1)
+        nearest = np.argsort(apart)[: 4 * _ENTRIES]
+        seen = [j for j in nearest.tolist() if clear(points[[k, j]])][:_ENTRIES]
+        edges.append(np.array([pair for j in seen for pair in ((k, j), (j, k))], dtype=np.int64).reshape(-1, 2))
+    joined = np.concatenate(edges)
+    order = np.lexsort(joined.T[::-1])
+    joined, more = joined[order], len(joined) - len(roadmap.edges)
+    start, point, metres = conflicts(points, joined, roadmap.reach)
+    return replace(
+        roadmap,
+        points=points,
+        edges=joined,
+        clearance_m=np.append(roadmap.clearance_m, np.zeros(more))[order],
+        reach_start=start,
+        reach_point=point,
+        reach_m=metres,
+        speed_mps=np.append(roadmap.speed_mps, np.full(more, np.inf))[order],
+    )
+
+
+def _told(who: Traveller, lanes: core.SharedLanes, number: Mapping[Point, int]) -> core.Traveller:
+    limits, faces = limits_of(who.robot), kinematics_named(who.robot.kinematics).faces_its_way
+    return core.Traveller(
+        lanes=lanes,
+        start=number[who.start],
+        stops=[] if who.goal is None else [(number[who.goal], who.hold_s)],
+        radius=who.robot.radius_m,
+        speed=limits.speed_mps,
+        heading=who.heading_rad,
+        yaw_rate=limits.yaw_rate_radps if faces else math.inf,
+        acceleration=limits.acceleration_mps2,
+        ready=who.ready_s,
+        fixed=who.fixed,
+        stays=who.stays,
+    )
+
+
+def _metres(who: Traveller, lanes: core.SharedLanes, number: Mapping[Point, int]) -> float:
+    """The length of the shortest way to its goal; below 0 without one."""
+    if who.goal is None:
+        return -1.0
+    return float(lanes.metres_to(number[who.goal], who.robot.radius_m)[number[who.start]])

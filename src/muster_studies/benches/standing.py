@@ -1,0 +1,147 @@
+"""A standing fleet under load: part of `muster bench`.
+
+Twenty robots at random places of a field of 60 m x 40 m, 1 m/s fast, take orders for random places, 10 s of work each.
+They come at random (Poisson) at the rate that the fleet can carry, and for one minute in twenty at 2 a second. How much
+any fleet could do: docs/standing-fleets.md.
+"""
+
+from __future__ import annotations
+
+import math
+import resource
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from random import Random
+
+from muster.execution import Standing
+from muster.execution.orders import OrdersReport
+from muster.mission.model import Event, Mission, Robot, Rules, Task
+from muster.planning.solve import solve
+from muster.running.simulation import LOOK_S, Simulation
+from muster_studies.benches.measurement import Measurement
+
+ROBOTS, SIZE_M, SPEED_MPS, WORK_S = 20, (60.0, 40.0), 1.0, 10.0
+RATE, BURST_RATE = 1.2, 2.0
+"""Orders a second: usually, and in a burst."""
+BURST_EVERY_S, BURST_AT_S, BURST_S = 1200.0, 300.0, 60.0
+HOUR_S, LIVE_S = 3600.0, 600.0
+BETA = 0.7124
+"""The length of the shortest tour through n random places of an area A is this times sqrt(n A) ([beardwood1959])."""
+
+
+def fleet(seed: int) -> Mission:
+    """Robots without tasks; what counts is how long each order takes."""
+    random = Random(seed)
+    robots = tuple(
+        Robot(id=f"r_{k}", position=_place(random), speed_mps=SPEED_MPS, radius_m=0.25) for k in range(ROBOTS)
+    )
+    return Mission(name="standing-fleet", robots=robots, tasks=(), rules=Rules(objective="lateness"))
+
+
+def orders(seed: int, until_s: float, burst_at_s: float = BURST_AT_S) -> Iterator[Event]:
+    """Orders until a time, in order of time, with the first burst from a time on."""
+    random, now, number = Random(seed + 1), 0.0, 0
+    while True:
+        now += random.expovariate(BURST_RATE if 0 <= now % BURST_EVERY_S - burst_at_s < BURST_S else RATE)
+        if now >= until_s:
+            return
+        number += 1
+        yield Event(at_s=now, new_task=Task(id=f"o{number}", position=_place(random), duration_s=WORK_S))
+
+
+def most_per_hour(orders_in_all: float) -> float:
+    """What twenty robots can do in an hour at most, if the places of so many orders were known from the beginning."""
+    way_s = BETA * math.sqrt(SIZE_M[0] * SIZE_M[1] / orders_in_all) / SPEED_MPS
+    return 3600 * ROBOTS / (WORK_S + way_s)
+
+
+@dataclass(frozen=True)
+class Shift:
+    """What came of a time on duty.
+
+    Parameters
+    ----------
+    orders
+        figures of all orders.
+    lost
+        tasks that were not done, with reasons.
+    cpu_s
+        processor time of all of it.
+    half_way_mb, end_mb
+        the most memory that the process has had until the middle, and until the end.
+    """
+
+    orders: OrdersReport
+    lost: int
+    cpu_s: float
+    half_way_mb: float
+    end_mb: float
+
+
+def on_duty(seed: int, until_s: float, speed: float | None, burst_at_s: float = BURST_AT_S) -> Shift:
+    """Let the fleet take orders until a time, and do what is open then; `speed` times real time, None: at once."""
+    mission, cpu_s, half_way_mb = fleet(seed), time.process_time(), 0.0
+    standing = Standing(until_s=until_s, orders=orders(seed, until_s, burst_at_s))
+    with closing(Simulation(mission, solve(mission, "greedy"), seed=seed, standing=standing)) as simulation:
+        begin = time.monotonic()
+        while not simulation.done:
+            simulation.advance(simulation.time_s + LOOK_S)
+            if speed is not None:
+                ahead_s = begin + simulation.time_s / speed - time.monotonic()
+                simulation.note_lag(max(0.0, -ahead_s))
+                time.sleep(max(0.0, ahead_s))
+            if simulation.time_s <= until_s / 2:
+                half_way_mb = _memory_mb()
+        report = simulation.result()
+    assert report.orders is not None
+    return Shift(report.orders, report.orders.lost, time.process_time() - cpu_s, half_way_mb, _memory_mb())
+
+
+def hour(runs: int) -> list[Measurement]:
+    """One hour, simulated as fast as it goes; once, however many runs are asked for."""
+    shift = on_duty(0, HOUR_S, None)
+    what = f"an hour of {ROBOTS} robots"
+    growth_mb, most = shift.end_mb - shift.half_way_mb, most_per_hour(shift.orders.taken)
+    return [
+        *_orders(what, shift, most),
+        _once(f"{what}: memory, second half", "MB", growth_mb, "< 5", f"{shift.half_way_mb:.0f} MB before"),
+        _once(f"{what}: processor time", "s", shift.cpu_s, "< 3600"),
+    ]
+
+
+def live(runs: int) -> list[Measurement]:
+    """Ten minutes in real time; once, however many runs are asked for."""
+    shift = on_duty(0, LIVE_S, 1.0)
+    what, lag = f"10 minutes of {ROBOTS} robots", shift.orders.clock_lag
+    assert lag is not None
+    note = f"median {lag.median_s:.3f} s, 95 % {lag.p95_s:.3f} s"
+    return [
+        *_orders(what, shift, most_per_hour(shift.orders.taken)),
+        _once(f"{what}: clock behind at most", "s", lag.most_s, "< 0.5", note),
+        _once(f"{what}: processor time", "s", shift.cpu_s, "< 600"),
+    ]
+
+
+def _orders(what: str, shift: Shift, most: float) -> list[Measurement]:
+    seen = shift.orders
+    routed, done = seen.until_in_route, seen.until_done
+    return [
+        _once(f"{what}: orders lost", "of all", shift.lost + seen.open, "0", f"{seen.taken} came, {seen.done} done"),
+        _once(f"{what}: 95 % in a route after", "s", routed.p95_s, "< 1", f"at most {routed.most_s:.2f} s"),
+        _once(f"{what}: half done after", "s", done.median_s, "", f"95 % after {done.p95_s:.0f} s"),
+        _once(f"{what}: orders done an hour", "", seen.done_per_hour, "", f"any fleet: at most {most:,.0f}"),
+    ]
+
+
+def _once(name: str, unit: str, value: float, aim: str, note: str = "") -> Measurement:
+    return Measurement.over_runs(name, unit, [value], aim, note)
+
+
+def _memory_mb() -> float:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def _place(random: Random) -> tuple[float, float]:
+    return random.uniform(0, SIZE_M[0]), random.uniform(0, SIZE_M[1])

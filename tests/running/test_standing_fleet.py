@@ -1,0 +1,98 @@
+"""A standing fleet in the kinematic world: the bench's hour in small, the same each time, and by the command."""
+
+import json
+from contextlib import closing
+from dataclasses import replace
+
+import pytest
+
+import muster
+from muster.cli.main import run
+from muster.execution import Standing
+from muster.running.simulation import Simulation
+from muster_studies.benches.standing import fleet, most_per_hour, on_duty, orders
+
+
+def test_a_minute_and_a_half_of_twenty_robots_with_a_burst_loses_nothing():
+    shift = on_duty(1, 90.0, None, burst_at_s=20.0)
+    seen = shift.orders
+    assert (shift.lost, seen.open, seen.refused, seen.done) == (0, 0, 0, seen.taken)
+    assert seen.taken > 120
+    assert seen.until_in_route.p95_s <= 1.0
+    assert seen.improved > 10
+    assert seen.done_per_hour < most_per_hour(seen.taken)
+
+
+def test_the_same_orders_are_done_in_the_same_way_each_time():
+    def carried_out():
+        mission = replace(fleet(2), robots=fleet(2).robots[:5])
+        standing = Standing(orders=list(orders(2, 30.0)), until_s=30.0)
+        with closing(Simulation(mission, muster.solve(mission, "greedy"), standing=standing)) as simulation:
+            while not simulation.done:
+                simulation.advance(simulation.time_s + 10.0)
+            return list(simulation.events), simulation.result()
+
+    (events, report), again = carried_out(), carried_out()
+    assert report.orders.improved > 0
+    assert (events, report) == again
+
+
+def test_orders_from_python_come_while_it_is_on_duty():
+    mission = replace(fleet(3), robots=fleet(3).robots[:3])
+    with closing(Simulation(mission, muster.solve(mission, "greedy"), standing=Standing())) as simulation:
+        simulation.advance(until_s=10.0)
+        simulation.report(muster.Event(at_s=0, new_task=muster.Task(id="a", position=(30, 20))))
+        while simulation.time_s < 80:
+            simulation.advance(until_s=80.0)
+        assert not simulation.done
+        assert simulation.result().orders.done == 1
+        report = simulation.break_off("enough")
+    assert (report.tasks_done, report.tasks_lost) == (("a",), ())
+
+
+FLEET = """
+schema: muster/1
+rules: {objective: lateness}
+robots: [{id: r_0, position: [0, 0]}, {id: r_1, position: [10, 0]}]
+tasks: [{id: first, position: [1, 1]}]
+"""
+
+
+@pytest.fixture
+def files(tmp_path):
+    (tmp_path / "fleet.yaml").write_text(FLEET, encoding="utf-8")
+    (tmp_path / "orders.csv").write_text("at_s,id,x,y\n1,a,2,3\n2,b,9,3\n30,c,5,5\n", encoding="utf-8")
+    return tmp_path
+
+
+def asked(files, *options):
+    return run(["simulate", str(files / "fleet.yaml"), "-q", *options])
+
+
+def test_the_command_does_orders_from_a_file_and_tells_how_fast(files, capsys):
+    assert asked(files, "--orders", str(files / "orders.csv")) == 0
+    said = capsys.readouterr().out
+    assert "tasks done        4 of 4" in said
+    assert "orders            3: 3 done" in said
+    assert "in a route after  " in said
+
+
+def test_the_command_stays_on_duty_until_it_is_told(files, capsys):
+    orders = ("--orders", str(files / "orders.csv"), "--format", "json")
+    assert asked(files, "--stay", "--until", "20", *orders) == 0
+    assert json.loads(capsys.readouterr().out)["orders"]["taken"] == 3  # those after its end are still done
+    assert asked(files, "--stay", "--until", "90", *orders) == 0
+    assert json.loads(capsys.readouterr().out)["orders"]["done_per_hour"] == 120.0
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--until", "3"), "--until given; expected it together with --stay"),
+        (("--orders", "nowhere.csv"), "nowhere.csv: No such file or directory; expected a file to read"),
+        (("--stay", "--negotiate"), "--stay given; expected it without --negotiate"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(files, capsys, options, message):
+    assert asked(files, *options) == 2
+    assert message in capsys.readouterr().err

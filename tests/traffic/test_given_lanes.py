@@ -1,0 +1,98 @@
+"""Roadmaps of given lanes: directions, capacities, widths, walls, and the places beside them."""
+
+import numpy as np
+import pytest
+import shapely
+
+from muster.mission.errors import MissionError
+from muster.mission.lanes import Lane, Lanes
+from muster.motion.free_space import PolygonSpace
+from muster.motion.paths import PathFinder
+from muster.traffic.given_lanes import closed_lanes
+from muster.traffic.roadmap import Roadmap
+
+RADIUS = 0.3
+NODES = {"a": (0, 0), "b": (5, 0), "c": (5, 3)}
+
+
+def lanes(*edges):
+    return Lanes(nodes=NODES, edges=tuple(Lane(**edge) for edge in edges))
+
+
+def test_a_lane_leads_one_way_or_both():
+    one = Roadmap.of_lanes(lanes({"start": "a", "end": "b", "capacity": 1}), RADIUS)
+    assert one.edges.tolist() == [[0, 1]]
+    assert one.one_way.tolist() == [True]
+    both = Roadmap.of_lanes(lanes({"start": "a", "end": "b", "capacity": 1, "both_ways": True}), RADIUS)
+    assert both.edges.tolist() == [[0, 1], [1, 0]]
+    assert not both.one_way.any()
+    assert both.names == ("a", "b", "c")
+
+
+@pytest.mark.parametrize(("capacity", "pieces"), [(1, 1), (3, 3), (None, 8), (100, 8)])
+def test_as_many_robots_fit_on_a_lane_as_its_capacity_and_length_say(capacity, pieces):
+    """A lane of 5 m has room for eight pieces of at least 0.62 m."""
+    roadmap = Roadmap.of_lanes(lanes({"start": "a", "end": "b", "capacity": capacity}), RADIUS)
+    assert len(roadmap.edges) == pieces
+    np.testing.assert_allclose(roadmap.lengths_m, 5 / pieces)
+    inner = roadmap.points[3:]
+    np.testing.assert_allclose(np.sort(inner[:, 0]), np.arange(1, pieces) * 5 / pieces)
+    heads = {int(v) for _, v in roadmap.edges}
+    assert len(heads) == pieces
+
+
+def test_lanes_have_their_speed_and_the_room_to_spare():
+    given = (
+        {"start": "a", "end": "b", "capacity": 1, "speed_mps": 0.5, "width_m": 1.0},
+        {"start": "b", "end": "c", "capacity": 1},
+    )
+    roadmap = Roadmap.of_lanes(lanes(*given), RADIUS)
+    assert roadmap.edges.tolist() == [[0, 1], [1, 2]]
+    assert roadmap.speed_mps.tolist() == [0.5, np.inf]
+    np.testing.assert_allclose(roadmap.clearance_m, [0.2, np.inf])
+
+
+def test_lanes_that_are_too_narrow_or_lead_through_a_wall_are_left_out():
+    graph = lanes(
+        {"start": "a", "end": "b", "width_m": 0.5},
+        {"start": "b", "end": "c", "capacity": 1},
+        {"start": "c", "end": "a"},
+    )
+    space = PolygonSpace(shapely.box(-1, -1, 6, 4).difference(shapely.box(1, 1, 2, 2)))
+    roadmap = Roadmap.of_lanes(graph, RADIUS, space=space)
+    assert roadmap.edges.tolist() == [[1, 2]]
+    found = closed_lanes(graph, RADIUS, PathFinder(space))
+    assert [(one.number, one.reason) for one in found] == [
+        (0, "0.5 m wide, diameter 0.6 m"),
+        (2, "too near to an obstacle for radius 0.3 m"),
+    ]
+
+
+def test_a_place_is_joined_to_the_nearest_point_that_it_sees():
+    space = PolygonSpace(shapely.box(-1, -3, 6, 4).difference(shapely.box(-1, -1.2, 1.4, -1)))
+    roadmap = Roadmap.of_lanes(
+        lanes({"start": "a", "end": "b", "both_ways": True}), RADIUS, [(0, -2), (5, 0), (1.3, 0.2)], space=space
+    )
+    behind, node, beside = (int(p) for p in roadmap.places)
+    assert node == 1
+    ((there, back),) = {(int(v), int(u)) for u, v in roadmap.edges if u == behind}
+    assert [back, there] in roadmap.edges.tolist()
+    pieces = shapely.linestrings([[roadmap.points[behind], point] for point in roadmap.points[:behind]])
+    seen = shapely.covers(space.region, pieces)
+    to_lanes = np.where(seen, shapely.length(pieces), np.inf)
+    assert there == np.argmin(to_lanes)
+    assert not seen[3]
+    (near,) = {int(v) for u, v in roadmap.edges if u == beside}
+    np.testing.assert_allclose(roadmap.points[near], (1.25, 0))
+    assert (near, beside) in {(int(u), int(v)) for u, v in roadmap.edges}
+
+
+def test_what_a_graph_of_lanes_may_not_be():
+    for edges, value in (
+        ([{"start": "a", "end": "d"}], '"d"'),
+        ([{"start": "a", "end": "b"}, {"start": "a", "end": "b"}], "a lane from a to b"),
+        ([{"start": "a", "end": "b", "id": "x"}, {"start": "b", "end": "c", "id": "x"}], '"x"'),
+    ):
+        with pytest.raises(MissionError) as error:
+            lanes(*edges)
+        assert error.value.findings[0].value == value
