@@ -187,7 +187,7 @@ def avoidance_option(verb: Verb) -> Verb:
         type=click.Choice(AVOIDANCE),
         default=AUTO,
         show_default=True,
-        help="How robots pass each other; auto: simulated in the plane by rvo, else by orca.",
+        help="How robots pass each other; auto: simulated in the plane by hrvo, else by orca.",
     )(verb)
 
 

@@ -109,15 +109,22 @@ class Supervisor:
                 for one in members:
                     one.jammed_s = self.limits.jam_after_s
                 yield from self._give_up_in_jam(self._first_to_yield(members), jam, now)
-            elif held_s >= self._turn(jam, members) * self.limits.aside_after_s:
+            elif self._is_ring(jam) and held_s >= self._turn(jam, members) * self.limits.aside_after_s:
                 for one in members:
                     one.held_s = 0.0
                 self._let_stand_aside(self._first_to_yield(members), now)
 
+    def _is_ring(self, jam: Collection[str]) -> bool:
+        """Whether all of a jam want to get on, as far as is known; else one that stands is to make room."""
+        return all(robot in self.traffic.waits or robot not in self.crew for robot in jam)
+
     def _steered(self, members: Sequence[Progress]) -> bool:
-        """Whether traffic decides who passes first of these robots."""
+        """Whether traffic decides who passes first of these robots: then it tells how far each has to go.
+
+        That one waits for another says the collision avoidance of a robot by itself, too.
+        """
         said = [self.crew[one.robot].telemetry for one in members]
-        return any(one is not None and one.waits_for is not None for one in said)
+        return any(one is not None and one.left_m is not None for one in said)
 
     def _turn(self, jam: Collection[str], members: Sequence[Progress]) -> int:
         """Which of a jam is the next to stand aside, from 1, as far as its robots do not know of each other.

@@ -6,7 +6,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 
 AUTO = "auto"
-"""The method that jams least in simulated worlds, by docs/avoidance.md: `rvo` in the plane, `orca` in space."""
+"""The method that jams least in simulated worlds, by docs/avoidance.md: `hrvo` in the plane, `orca` in space."""
 METHODS = ("orca", "rvo", "hrvo", "avo", "none")
 AVOIDANCE = (AUTO, *METHODS)
 _IN_THE_PLANE = ("rvo", "hrvo", "avo")
@@ -38,4 +38,4 @@ def method_for(avoidance: str, dimensions: int) -> str:
     require_avoidance(avoidance, dimensions)
     if avoidance != AUTO:
         return avoidance
-    return "rvo" if dimensions == 2 else "orca"
+    return "hrvo" if dimensions == 2 else "orca"

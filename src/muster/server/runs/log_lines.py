@@ -73,7 +73,7 @@ def deed_of(verb: str, data: Mapping[str, Any]) -> str:
     if verb != "event" or not data:
         return _DOES.get(verb, verb)
     kind, what = next(iter(data.items()))
-    return _filled(_DOES.get(kind, kind.replace("_", " ")), _named(kind, what))
+    return _filled(_DOES[kind], _named(kind, what)) if kind in _DOES else kind.replace("_", " ")
 
 
 def _command(data: Mapping[str, Any]) -> str:
