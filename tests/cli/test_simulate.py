@@ -73,6 +73,7 @@ def test_what_is_printed_for_programs(muster):
         "robots", "starts_s", "ends_s",
         "objective", "tasks", "done_twice", "found",
         "waiting_by_cause_s", "lateness_s", "missed", "deadlines_missed_s", "within_exceeded_s", "shifts_exceeded_s",
+        "orders", "tasks_forgotten",
         "remarks",
     ]  # fmt: skip
     assert len(data["tasks_done"]) == 31
