@@ -74,6 +74,7 @@ def test_what_is_printed_for_programs(muster):
         "objective", "tasks", "done_twice", "found",
         "waiting_by_cause_s", "lateness_s", "missed", "deadlines_missed_s", "within_exceeded_s", "shifts_exceeded_s",
         "traffic",
+        "orders", "tasks_forgotten",
         "remarks",
     ]  # fmt: skip
     assert len(data["tasks_done"]) == 31

@@ -171,6 +171,7 @@ def test_watchers_change_nothing(guarded, http):
         "/missions/{mission}/plans/upload": {"schema": "muster-plan/1", "routes": []},
         "/runs": {"plan": 1},
         "/runs/{run}/actions": {"verb": "pause"},
+        "/runs/{run}/orders": {"orders": [{"cancel_task": "1"}]},
     }
     asked = 0
     who = {"authorization": f"Bearer {tokens['watch']}"}
