@@ -1,5 +1,7 @@
 """Who waits in traffic for whom, what that counts, and how jams end."""
 
+from dataclasses import replace
+
 import pytest
 from tests.execution.test_executor import kinds, line, plan_of
 from tests.execution.world import Point, World, carry_out
@@ -169,6 +171,8 @@ def test_nobody_waits_for_ever_for_one_that_is_out():
 
 def test_a_robot_that_was_stuck_is_back_when_it_moves():
     mission = line(40.0, 60.0)
+    later = Event(at_s=100, new_task=replace(mission.tasks[1], id="2"))  # nothing would wait for it otherwise
+    mission = replace(mission, events=(later,))
     world = World(mission)
     executor = Executor(mission, plan_of(r_0=["0", "1"]), world.ports, limits=Limits(stuck_after_s=10))
     port = world.ports["r_0"]
@@ -178,10 +182,8 @@ def test_a_robot_that_was_stuck_is_back_when_it_moves():
         if executor.crew["r_0"].out and world.now > 60:
             port.position = (port.position[0] + 0.05, *port.position[1:])  # somebody has freed it
 
-    mission_goes_on = Event(at_s=100, new_task=mission.tasks[0])
-    executor._script.append(mission_goes_on)  # nothing would wait for it otherwise
     carry_out(executor, world, each=each, until=1000)
     stuck, back = (next(e for e in executor.events if e.kind == kind) for kind in (STUCK, "robot_returns"))
     assert stuck.data["reason"] == "no progress with nobody in its way"
     assert back.data == {"robot": "r_0", "reason": "it moves again"}
-    assert executor.crew["r_0"].done == ["0", "1"]
+    assert executor.crew["r_0"].done == ["0", "1", "2"]
