@@ -6,6 +6,7 @@ Called from `allocation`, `motion`, `simulation` and `traffic` alone.
 from muster.core._core import (
     AirWays,
     Annealing,
+    AnnotatedRoadmap,
     Bidders,
     Colony,
     CrowdWorld,
@@ -25,9 +26,9 @@ from muster.core._core import (
     Population,
     Problem,
     Roster,
+    SafeIntervals,
     ScheduleSearch,
     Search,
-    SharedLanes,
     SpaceAgents,
     Team,
     Traveller,
@@ -43,7 +44,6 @@ from muster.core._core import (
     hybrid_obstacle,
     nearest_in_plane,
     nearest_in_space,
-    paths_by_safe_intervals,
     rvo,
     squared_distances,
 )
@@ -51,6 +51,7 @@ from muster.core._core import (
 __all__ = [
     "AirWays",
     "Annealing",
+    "AnnotatedRoadmap",
     "Bidders",
     "Colony",
     "CrowdWorld",
@@ -70,9 +71,9 @@ __all__ = [
     "Population",
     "Problem",
     "Roster",
+    "SafeIntervals",
     "ScheduleSearch",
     "Search",
-    "SharedLanes",
     "SpaceAgents",
     "Team",
     "Traveller",
@@ -88,7 +89,6 @@ __all__ = [
     "hybrid_obstacle",
     "nearest_in_plane",
     "nearest_in_space",
-    "paths_by_safe_intervals",
     "rvo",
     "squared_distances",
 ]

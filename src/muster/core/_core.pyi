@@ -7,6 +7,16 @@ import numpy
 from numpy.typing import NDArray
 
 
+class AnnotatedRoadmap:
+    """
+    A roadmap that says for each edge which points a robot on it comes near to.
+    """
+
+    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], first: Sequence[int], heads: Sequence[int], costs: Sequence[float], near_first: Sequence[int], near_points: Sequence[int], near_metres: Sequence[float]) -> None:
+        """
+        `points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not fit.
+        """
+
 class Problem:
     """The compiled question: arrays that no algorithm changes."""
 
@@ -833,9 +843,6 @@ class PassingOrder:
     def add(self, place: tuple[float, float], radius: float) -> int:
         """A robot that stands; returns its number."""
 
-    def put(self, robot: int, place: tuple[float, float]) -> None:
-        """A robot without moves is elsewhere."""
-
     def append(self, robot: int, to: tuple[float, float]) -> bool:
         """
         A move from where the robot's moves end; False where another would stand in the way.
@@ -858,40 +865,34 @@ class PassingOrder:
     def end(self, robot: int) -> tuple[float, float]:
         """Where a robot is after all its moves."""
 
-    def begun_end(self, robot: int) -> tuple[float, float]:
-        """Where a robot is after the moves that it has begun."""
-
     def passed(self, robot: int) -> int:
         """Moves that a robot has finished since it was added."""
-
-    def left(self, robot: int) -> int:
-        """Moves that a robot has not finished."""
 
     def metres_left(self, robot: int) -> float:
         """Metres that a robot has still to go."""
 
-    def places_left(self, robot: int) -> list[tuple[float, float]]:
-        """The ends of the moves that are not finished."""
-
-class SharedLanes:
-    """Straight lanes between points, with the points that each comes near."""
-
-    def __init__(self, *, places: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], ends: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], lengths: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], clearances: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], reach_first: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], reach_points: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], reach_gaps: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
-
-    def metres_to(self, goal: int, radius: float) -> list[float]:
-        """
-        Metres to a point from each, for robots of a radius; inf where there is no way.
-        """
-
 class Traveller:
-    """A robot for which a path over lanes is sought."""
+    """A robot for which a path over a roadmap is sought."""
 
-    def __init__(self, *, lanes: SharedLanes, start: int, stops: Sequence[tuple[int, float]], radius: float, speed: float, heading: float, yaw_rate: float, acceleration: float, ready: float, fixed: bool, stays: bool) -> None: ...
+    def __init__(self, *, start: int, stops: Sequence[tuple[int, float]], radius: float, speed: float, heading: float, yaw_rate: float, acceleration: float, ready: float, fixed: bool, stays: bool) -> None: ...
 
-def paths_by_safe_intervals(*, lanes: SharedLanes, rests: Sequence[bool], travellers: Sequence[Traveller], order: Sequence[int], margin: float, tries: int, seed: int) -> tuple[list[tuple[float, int, int]], list[float], list[int]]:
+class SafeIntervals:
     """
-    Moves (seconds, traveller, lane) in order; when each has held at its last stop, inf where it finds no path; and the order of travellers in which these were found, the best of several from the one given on [phillips2011].
+    Paths in continuous time on a roadmap, one robot after the other [phillips2011].
     """
+
+    def __init__(self, roadmap: AnnotatedRoadmap, rests: Sequence[bool], margin: float) -> None:
+        """
+        `rests`: whether a robot may rest at a point without standing in the way of others.
+        """
+
+    def metres_to(self, goal: int) -> list[float]:
+        """What it costs to come to a point from each; inf where there is no way."""
+
+    def best_of(self, travellers: Sequence[Traveller], *, order: Sequence[int], tries: int, seed: int) -> tuple[list[tuple[float, int, int]], list[float], list[int]]:
+        """
+        Moves (seconds, traveller, edge) in order; when each has held at its last stop, inf where it finds no path; and the order of travellers in which these were found, the best of several from the one given on.
+        """
 
 class DirectedGraph:
     """A directed graph in compressed rows."""
@@ -967,10 +968,7 @@ class MovePlanner:
     Sequences of single moves of a team on a roadmap with annotated conflicts.
     """
 
-    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], first: Sequence[int], heads: Sequence[int], costs: Sequence[float], near_first: Sequence[int], near_points: Sequence[int], near_metres: Sequence[float]) -> None:
-        """
-        `points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not fit.
-        """
+    def __init__(self, roadmap: AnnotatedRoadmap) -> None: ...
 
     def planned(self, starts: Sequence[int], goals: Sequence[int], radii: Sequence[float], priorities: Sequence[float], pinned: Sequence[bool], *, margin: float, turn_cost: float, horizon: int, settle: bool, expansions: int, tries: int, seed: int) -> tuple[str, list[tuple[int, int]], list[int], list[bool]]:
         """

@@ -50,6 +50,16 @@ class AnnotatedRoadmap {
     }
     return false;
   }
+  Point place(int point) const { return points_[point]; }
+  double length(int edge) const {
+    const Point way = along(edge);
+    return std::hypot(way.x, way.y);
+  }
+  // Radians from east, anticlockwise.
+  double direction(int edge) const {
+    const Point way = along(edge);
+    return std::atan2(way.y, way.x);
+  }
   // Radians from one edge to the next, without sign.
   double turn(int edge, int next) const {
     const Point a = along(edge), b = along(next);

@@ -1,17 +1,15 @@
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
 
-#include "arrays.hpp"
 #include "bindings.hpp"
 #include "move_planner.hpp"
 
@@ -22,15 +20,7 @@ namespace muster {
 
 namespace {
 
-using Reach = std::vector<AnnotatedRoadmap::Near>;
 using Planned = std::tuple<std::string, std::vector<std::pair<int, int>>, Configuration, std::vector<bool>>;
-
-Reach reach(const std::vector<int>& points, const std::vector<double>& metres) {
-  if (points.size() != metres.size()) throw std::invalid_argument("points that are near need distances");
-  Reach near;
-  for (std::size_t k = 0; k < points.size(); ++k) near.push_back({points[k], metres[k]});
-  return near;
-}
 
 const char* name_of(MovePlan::Outcome outcome) {
   switch (outcome) {
@@ -60,18 +50,7 @@ Planned planned(MovePlanner& planner, MovingTeam team, const MovePlanner::Limits
 void bind_move_planner(nb::module_& m) {
   nb::class_<MovePlanner>(m, "MovePlanner",
                           "Sequences of single moves of a team on a roadmap with annotated conflicts.")
-      .def(
-          "__init__",
-          [](MovePlanner* self, const PointArray& points, std::vector<int> first, std::vector<int> heads,
-             std::vector<double> costs, std::vector<int> near_first, const std::vector<int>& near_points,
-             const std::vector<double>& near_metres) {
-            DirectedGraph graph(std::move(first), std::move(heads), std::move(costs));
-            new (self) MovePlanner(std::make_shared<AnnotatedRoadmap>(
-                points_of(points), std::move(graph), std::move(near_first), reach(near_points, near_metres)));
-          },
-          "points"_a, "first"_a, "heads"_a, "costs"_a, "near_first"_a, "near_points"_a, "near_metres"_a,
-          "`points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not "
-          "fit.")
+      .def(nb::init<std::shared_ptr<const AnnotatedRoadmap>>(), "roadmap"_a)
       .def(
           "planned",
           [](MovePlanner& self, Configuration starts, std::vector<int> goals, std::vector<double> radii,

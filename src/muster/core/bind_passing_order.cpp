@@ -33,18 +33,14 @@ class CheckedOrder {
   CheckedOrder(double margin, double ahead) : order_(margin, ahead) {}
 
   int add(Pair place, double radius) { return robots_ = order_.add(point_of(place), radius) + 1, robots_ - 1; }
-  void put(int robot, Pair place) { checked(robot).put(robot, point_of(place)); }
   bool append(int robot, Pair to) { return checked(robot).append(robot, point_of(to)); }
   void drop_ahead() { order_.drop_ahead(); }
   void cut() { order_.cut(); }
   void progress(int robot, int passed, Pair near) { checked(robot).progress(robot, passed, point_of(near)); }
   PassingOrder::Grant grant(int robot) { return checked(robot).grant(robot); }
   Pair end(int robot) { return pair_of(checked(robot).end(robot)); }
-  Pair begun_end(int robot) { return pair_of(checked(robot).begun_end(robot)); }
   int passed(int robot) { return checked(robot).passed(robot); }
-  int left(int robot) { return checked(robot).left(robot); }
   double metres_left(int robot) { return checked(robot).metres_left(robot); }
-  std::vector<Pair> places_left(int robot) { return pairs_of(checked(robot).places_left(robot)); }
 
  private:
   PassingOrder& checked(int robot) {
@@ -60,8 +56,9 @@ class CheckedOrder {
 
 void bind_passing_order(nb::module_& m) {
   nb::class_<PassingOrder::Grant>(m, "Grant", "How far a robot may go along its moves.")
-      .def_prop_ro("points", [](const PassingOrder::Grant& grant) { return pairs_of(grant.points); },
-                   "Ends of moves, in metres; the last may lie within a move.")
+      .def_prop_ro(
+          "points", [](const PassingOrder::Grant& grant) { return pairs_of(grant.points); },
+          "Ends of moves, in metres; the last may lie within a move.")
       .def_ro("ended", &PassingOrder::Grant::ended, "How many of these are ends of moves.")
       .def_ro("metres", &PassingOrder::Grant::metres, "From where the robot is.")
       .def_ro("waits_for", &PassingOrder::Grant::waits_for, "The robot that passes first; -1: none.")
@@ -73,7 +70,6 @@ void bind_passing_order(nb::module_& m) {
       .def(nb::init<double, double>(), nb::kw_only(), "margin"_a, "ahead"_a,
            "Metres that are left between robots, and for which a robot may have begun moves.")
       .def("add", &CheckedOrder::add, "place"_a, "radius"_a, "A robot that stands; returns its number.")
-      .def("put", &CheckedOrder::put, "robot"_a, "place"_a, "A robot without moves is elsewhere.")
       .def("append", &CheckedOrder::append, "robot"_a, "to"_a,
            "A move from where the robot's moves end; False where another would stand in the way.")
       .def("drop_ahead", &CheckedOrder::drop_ahead, "Drop all moves that have not begun.")
@@ -82,11 +78,8 @@ void bind_passing_order(nb::module_& m) {
            "A robot has passed the ends of so many of its moves in all, and is near a place.")
       .def("grant", &CheckedOrder::grant, "robot"_a, "How far a robot may go now; what it is told it keeps.")
       .def("end", &CheckedOrder::end, "robot"_a, "Where a robot is after all its moves.")
-      .def("begun_end", &CheckedOrder::begun_end, "robot"_a, "Where a robot is after the moves that it has begun.")
       .def("passed", &CheckedOrder::passed, "robot"_a, "Moves that a robot has finished since it was added.")
-      .def("left", &CheckedOrder::left, "robot"_a, "Moves that a robot has not finished.")
-      .def("metres_left", &CheckedOrder::metres_left, "robot"_a, "Metres that a robot has still to go.")
-      .def("places_left", &CheckedOrder::places_left, "robot"_a, "The ends of the moves that are not finished.");
+      .def("metres_left", &CheckedOrder::metres_left, "robot"_a, "Metres that a robot has still to go.");
 }
 
 }  // namespace muster

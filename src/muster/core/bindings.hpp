@@ -24,6 +24,7 @@ void bind_tree(nanobind::module_& m);
 void bind_avoidance(nanobind::module_& m);
 void bind_crowd_world(nanobind::module_& m);
 void bind_passing_order(nanobind::module_& m);
+void bind_annotated_roadmap(nanobind::module_& m);
 void bind_safe_intervals(nanobind::module_& m);
 void bind_lacam(nanobind::module_& m);
 void bind_move_planner(nanobind::module_& m);

@@ -8,6 +8,7 @@ NB_MODULE(_core, m) {
   // What a thread still holds when Python ends is no concern of who ran a command.
   nanobind::set_leak_warnings(false);
 #endif
+  muster::bind_annotated_roadmap(m);
   muster::bind_problem(m);
   muster::bind_inspection(m);
   muster::bind_greedy(m);

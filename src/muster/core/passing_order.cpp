@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 namespace muster {
@@ -29,18 +28,13 @@ double segment_gap(Point a_from, Point a_to, Point b_from, Point b_to) {
   const bool apart_by_a = side(a_from, a_to, b_from) * side(a_from, a_to, b_to) >= 0.0;
   const bool apart_by_b = side(b_from, b_to, a_from) * side(b_from, b_to, a_to) >= 0.0;
   if (!apart_by_a && !apart_by_b) return 0.0;
-  return std::min({segment_gap(a_from, b_from, b_to), segment_gap(a_to, b_from, b_to), segment_gap(b_from, a_from, a_to),
-                   segment_gap(b_to, a_from, a_to)});
+  return std::min({segment_gap(a_from, b_from, b_to), segment_gap(a_to, b_from, b_to),
+                   segment_gap(b_from, a_from, a_to), segment_gap(b_to, a_from, a_to)});
 }
 
 int PassingOrder::add(Point place, double radius) {
   bots_.push_back({radius, place, 0, {}});
   return static_cast<int>(bots_.size()) - 1;
-}
-
-void PassingOrder::put(int robot, Point place) {
-  if (!bots_[robot].moves.empty()) throw std::invalid_argument("the robot has moves");
-  bots_[robot].end = place;
 }
 
 bool PassingOrder::append(int robot, Point to) {
@@ -171,25 +165,10 @@ PassingOrder::Grant PassingOrder::grant(int robot) {
   return found;
 }
 
-Point PassingOrder::begun_end(int robot) const {
-  Point at = bots_[robot].moves.empty() ? bots_[robot].end : move(bots_[robot].moves.front()).from;
-  for (const std::size_t number : bots_[robot].moves) {
-    if (!move(number).begun) break;
-    at = move(number).to;
-  }
-  return at;
-}
-
 double PassingOrder::metres_left(int robot) const {
   double metres = 0.0;
   for (const std::size_t number : bots_[robot].moves) metres += move(number).length - move(number).at;
   return metres;
-}
-
-std::vector<Point> PassingOrder::places_left(int robot) const {
-  std::vector<Point> places;
-  for (const std::size_t number : bots_[robot].moves) places.push_back(move(number).to);
-  return places;
 }
 
 }  // namespace muster

@@ -29,9 +29,6 @@ class PassingOrder {
   // Adds a robot that stands; returns its number.
   int add(Point place, double radius);
 
-  // Puts a robot that has no moves elsewhere, as when it was carried.
-  void put(int robot, Point place);
-
   // Appends a move of a robot from where its moves end. False, and nothing is appended, where another robot would stand
   // in the way; one that is too near at the beginning may be left.
   bool append(int robot, Point to);
@@ -57,16 +54,10 @@ class PassingOrder {
 
   // Where a robot is when all its moves are done.
   Point end(int robot) const { return bots_[robot].end; }
-  // Where a robot is when its moves are done that have begun.
-  Point begun_end(int robot) const;
   // Moves that a robot has finished since it was added.
   int passed(int robot) const { return bots_[robot].passed; }
-  // Moves that a robot has not finished.
-  int left(int robot) const { return static_cast<int>(bots_[robot].moves.size()); }
   // Metres that a robot has still to go.
   double metres_left(int robot) const;
-  // The ends of the moves that a robot has not finished.
-  std::vector<Point> places_left(int robot) const;
 
  private:
   struct Move {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 
@@ -19,7 +20,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;
 constexpr double kNearly = 1e-6;  // metres by which two may be nearer
 constexpr double kTailsToLeave = 4.0;
-constexpr int kTriesWhereLost = 4;  // times as many orders are tried where some find no path
+constexpr int kTriesWhereLost = 4;         // times as many orders are tried where some find no path
 constexpr double kRestingInTheWay = 10.0;  // seconds that a path may be longer to rest out of the way
 
 double turned(double from, double to) {
@@ -29,14 +30,37 @@ double turned(double from, double to) {
 
 }  // namespace
 
-SafeIntervals::SafeIntervals(const SharedLanes& lanes, std::vector<bool> rests, double margin)
-    : lanes_(lanes),
+SafeIntervals::SafeIntervals(std::shared_ptr<const AnnotatedRoadmap> roadmap, std::vector<bool> rests, double margin)
+    : roadmap_(std::move(roadmap)),
       rests_(std::move(rests)),
       margin_(margin),
-      stays_(lanes.points()),
-      passes_(lanes.points()),
-      safe_(lanes.points()),
-      known_(lanes.points()) {}
+      stays_(points()),
+      passes_(points()),
+      safe_(points()),
+      known_(points()),
+      around_(points()) {
+  if (static_cast<int>(rests_.size()) != points()) throw std::invalid_argument("rests: expected one for each point");
+  find_around();
+}
+
+void SafeIntervals::find_around() {
+  double reach = 0.0;
+  for (int edge = 0; edge < roadmap_->graph().edges(); ++edge)
+    for (const auto& near : roadmap_->near(edge)) reach = std::max(reach, near.metres);
+  std::vector<int> by_x(points());
+  std::iota(by_x.begin(), by_x.end(), 0);
+  std::ranges::sort(by_x, {}, [&](int point) { return roadmap_->place(point).x; });
+  for (std::size_t first = 0, k = 0; k < by_x.size(); ++k) {
+    const Point here = roadmap_->place(by_x[k]);
+    while (roadmap_->place(by_x[first]).x < here.x - reach) ++first;
+    for (std::size_t j = first; j <= k; ++j) {
+      const double gap = distance(here, roadmap_->place(by_x[j]));
+      if (gap > reach) continue;
+      around_[by_x[k]].push_back({by_x[j], gap});
+      if (j < k) around_[by_x[j]].push_back({by_x[k], gap});
+    }
+  }
+}
 
 void SafeIntervals::clear() {
   for (auto& stays : stays_) stays.clear();
@@ -50,11 +74,8 @@ double SafeIntervals::apart(const Traveller& who, double radius) const {
 // Half the time that a robot takes to get clear of a point: one that comes is as far away still.
 double SafeIntervals::tail(const Traveller& who) const { return (who.radius + margin_) / who.speed; }
 
-const std::vector<double>& SafeIntervals::metres_to(int goal, double radius) {
-  for (const ToGoal& known : to_goals_)
-    if (known.goal == goal && known.radius == radius) return known.metres;
-  to_goals_.push_back({goal, radius, lanes_.metres_to(goal, radius)});
-  return to_goals_.back().metres;
+const std::vector<double>& SafeIntervals::metres_to(int goal) {
+  return to_goals_.to(goal, [&](int to) { return roadmap_->graph().costs_to(to); });
 }
 
 const std::vector<SafeIntervals::Span>& SafeIntervals::safe(const Traveller& who, int point) {
@@ -64,9 +85,9 @@ const std::vector<SafeIntervals::Span>& SafeIntervals::safe(const Traveller& who
   found.clear();
   const double before = tail(who);
   std::vector<Span> taken;
-  for (const Near& near : lanes_.around(point))
+  for (const auto& near : around_[point])
     for (const Stay& stay : stays_[near.point])
-      if (near.gap < apart(who, stay.radius)) taken.push_back({stay.from - before, stay.until});
+      if (near.metres < apart(who, stay.radius)) taken.push_back({stay.from - before, stay.until});
   for (const Pass& pass : passes_[point])
     if (pass.gap < apart(who, pass.radius)) taken.push_back({pass.start - before, pass.start + before});
   std::ranges::sort(taken, {}, &Span::from);
@@ -79,13 +100,13 @@ const std::vector<SafeIntervals::Span>& SafeIntervals::safe(const Traveller& who
   return found;
 }
 
-double SafeIntervals::earliest(const Traveller& who, int lane, double from, double until) const {
+double SafeIntervals::earliest(const Traveller& who, int edge, double from, double until) const {
   const double before = tail(who);
   for (bool moved = true; moved && from <= until;) {
     moved = false;
-    for (const Near& near : lanes_.reach(lane))
+    for (const auto& near : roadmap_->near(edge))
       for (const Stay& stay : stays_[near.point])
-        if (near.gap < apart(who, stay.radius) && from > stay.from - before && from < stay.until - kRounding) {
+        if (near.metres < apart(who, stay.radius) && from > stay.from - before && from < stay.until - kRounding) {
           from = stay.until;
           moved = true;
         }
@@ -93,13 +114,22 @@ double SafeIntervals::earliest(const Traveller& who, int lane, double from, doub
   return from <= until ? from : kNever;
 }
 
+double SafeIntervals::leaves_by(const Traveller& who) {
+  for (const Span& span : safe(who, who.start))
+    if (span.from <= 0.0 && span.until > 0.0) return span.until;
+  double until = kNever;  // too near to somebody who stands: only who comes by counts
+  for (const Pass& pass : passes_[who.start])
+    if (pass.gap < apart(who, pass.radius)) until = std::min(until, pass.start - tail(who));
+  return until;
+}
+
 bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, double& end) {
   std::ranges::fill(known_, false);
+  const DirectedGraph& graph = roadmap_->graph();
   const int legs = static_cast<int>(who.stops.size());
   std::vector<const std::vector<double>*> to_stop;
   std::vector<double> after(legs + 1, 0.0);  // seconds from a stop to the last
-  for (const Stop& stop : who.stops) metres_to(stop.point, who.radius);  // all first: references move
-  for (const Stop& stop : who.stops) to_stop.push_back(&metres_to(stop.point, who.radius));
+  for (const Stop& stop : who.stops) to_stop.push_back(&metres_to(stop.point));
   for (int leg = legs - 1; leg > 0; --leg)
     after[leg] = after[leg + 1] + (*to_stop[leg])[who.stops[leg - 1].point] / who.speed + who.stops[leg].hold;
   const auto remaining = [&](int leg, int point) {
@@ -119,31 +149,17 @@ bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, do
     label.key = label.ready + remaining(label.leg, point);
     if (!(label.key < kNever)) return;
     const std::uint64_t key = (static_cast<std::uint64_t>(label.leg) << 52) ^
-                              (static_cast<std::uint64_t>(label.lane + 1) << 20) ^ static_cast<std::uint64_t>(label.interval);
+                              (static_cast<std::uint64_t>(label.edge + 1) << 20) ^
+                              static_cast<std::uint64_t>(label.interval);
     const auto [at, fresh] = best.try_emplace(key, label.ready);
     if (!fresh && at->second <= label.ready + kRounding) return;
     at->second = label.ready;
     labels.push_back(label);
     queue.push({label.key, static_cast<int>(labels.size()) - 1, false});
   };
-  // Where it starts it is, whoever stands near; it has to be gone before the next one comes.
-  Span start{-kNever, kNever};
-  {
-    std::vector<Span> safe_there = safe(who, who.start);
-    double until = kNever;
-    bool inside = false;
-    for (const Span& span : safe_there) {
-      if (span.from <= 0.0 && span.until > 0.0) inside = true, until = span.until;
-    }
-    if (!inside) {  // too near to somebody: it may leave as soon as it likes
-      until = kNever;
-      for (const Pass& pass : passes_[who.start])
-        if (pass.gap < apart(who, pass.radius)) until = std::min(until, pass.start - tail(who));
-    }
-    start.until = until;
-  }
+  const Span start{-kNever, leaves_by(who)};
   const auto interval_of = [&](const Label& label) {
-    return label.interval < 0 ? start : safe(who, lanes_.lane(label.lane).to)[label.interval];
+    return label.interval < 0 ? start : safe(who, graph.head(label.edge))[label.interval];
   };
   offer({0.0, who.ready, 0, -1, -1, -1, 0.0}, who.start);
   int found = -1;
@@ -154,7 +170,7 @@ bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, do
       found = item.label;
       break;
     }
-    const int point = label.lane < 0 ? who.start : lanes_.lane(label.lane).to;
+    const int point = label.edge < 0 ? who.start : graph.head(label.edge);
     const Span here = interval_of(label);
     if (label.leg < legs && who.stops[label.leg].point == point) {
       const double held = label.ready + who.stops[label.leg].hold;
@@ -176,26 +192,26 @@ bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, do
     }
     if (legs == 0 && here.until == kNever)
       queue.push({label.ready + (rests_[point] ? 0.0 : kRestingInTheWay), item.label, true});
-    for (const int lane : lanes_.out(point)) {
-      const SharedLanes::Lane& way = lanes_.lane(lane);
-      if (way.clearance < who.radius) continue;
-      const double angle = turned(label.lane < 0 ? who.heading : lanes_.direction(label.lane), lanes_.direction(lane));
+    for (int edge = graph.begin(point); edge < graph.end(point); ++edge) {
+      const double angle =
+          turned(label.edge < 0 ? who.heading : roadmap_->direction(label.edge), roadmap_->direction(edge));
       const double turning = angle / who.yaw_rate + stop_s * std::min(1.0, angle / (0.5 * std::numbers::pi));
-      const std::vector<Span>& there = safe(who, way.to);
+      const std::vector<Span>& there = safe(who, graph.head(edge));
       for (int k = 0; k < static_cast<int>(there.size()); ++k) {
-        const double from = std::max(label.ready + turning, there[k].from), until = std::min(here.until, there[k].until);
-        const double set_out = from <= until ? earliest(who, lane, from, until) : kNever;
+        const double from = std::max(label.ready + turning, there[k].from),
+                     until = std::min(here.until, there[k].until);
+        const double set_out = from <= until ? earliest(who, edge, from, until) : kNever;
         if (set_out == kNever) continue;
-        const double arrives = set_out + way.length / who.speed;
+        const double arrives = set_out + roadmap_->length(edge) / who.speed;
         if (arrives > there[k].until) continue;
-        offer({0.0, arrives, label.leg, lane, k, item.label, set_out}, way.to);
+        offer({0.0, arrives, label.leg, edge, k, item.label, set_out}, graph.head(edge));
       }
     }
   }
   if (found < 0) return false;
   end = labels[found].ready;
   for (int k = found; k >= 0; k = labels[k].parent)
-    if (labels[k].lane >= 0 && labels[k].start < kNever) moves.push_back({labels[k].start, 0, labels[k].lane});
+    if (labels[k].edge >= 0 && labels[k].start < kNever) moves.push_back({labels[k].start, 0, labels[k].edge});
   std::ranges::reverse(moves);
   return true;
 }
@@ -206,8 +222,9 @@ void SafeIntervals::reserve(const Traveller& who, std::span<const TimedMove> mov
   double from = -kNever;
   for (const TimedMove& move : moves) {
     stays_[point].push_back({from, move.start + after, who.radius});
-    for (const Near& near : lanes_.reach(move.lane)) passes_[near.point].push_back({move.start, near.gap, who.radius});
-    point = lanes_.lane(move.lane).to;
+    for (const auto& near : roadmap_->near(move.edge))
+      passes_[near.point].push_back({move.start, near.metres, who.radius});
+    point = roadmap_->graph().head(move.edge);
     from = move.start;
   }
   stays_[point].push_back({from, who.fixed || who.stays || who.stops.empty() ? kNever : end, who.radius});

@@ -1,15 +1,16 @@
-// Paths in continuous time for robots that share lanes, one robot after the other [phillips2011].
+// Paths in continuous time for robots that share a roadmap, one robot after the other [phillips2011].
 //
-// Each robot takes the earliest path through the intervals in which the points of the lanes are safe from those that
-// were planned before it. A robot is at the end of a lane from when it sets out on it, as in a sequence of moves; until
+// Each robot takes the earliest path through the intervals in which the points are safe from those that were planned
+// before it. A robot is at the end of an edge from when it sets out on it, as in a sequence of moves; until
 // it is clear of the point that it left that one is its too.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "shared_lanes.hpp"
+#include "annotated_roadmap.hpp"
 
 namespace muster {
 
@@ -30,7 +31,7 @@ struct Traveller {
 
 struct TimedMove {
   double start;  // seconds
-  int traveller, lane;
+  int traveller, edge;
 };
 
 struct Paths {
@@ -42,7 +43,11 @@ struct Paths {
 class SafeIntervals {
  public:
   // `rests`: whether a robot may rest at a point without standing in the way of others.
-  SafeIntervals(const SharedLanes& lanes, std::vector<bool> rests, double margin);
+  SafeIntervals(std::shared_ptr<const AnnotatedRoadmap> roadmap, std::vector<bool> rests, double margin);
+
+  int points() const { return roadmap_->size(); }
+  // What it costs to come to a point from each, kept from one plan to the next.
+  const std::vector<double>& metres_to(int goal);
 
   // Paths of all travellers, the first of the order first.
   Paths in_order(std::span<const Traveller> travellers, std::span<const int> order);
@@ -63,7 +68,7 @@ class SafeIntervals {
   };
   struct Label {
     double key, ready;
-    int leg, lane, interval, parent;
+    int leg, edge, interval, parent;
     double start;
   };
 
@@ -74,23 +79,22 @@ class SafeIntervals {
   void reserve(const Traveller& who, std::span<const TimedMove> moves, double end);
   // The intervals in which a robot may be at a point.
   const std::vector<Span>& safe(const Traveller& who, int point);
-  // The earliest time from `from` at which a robot may set out on a lane; infinite from `until` on.
-  double earliest(const Traveller& who, int lane, double from, double until) const;
-  const std::vector<double>& metres_to(int goal, double radius);
+  // When a robot must have left where it starts: it is there, whoever stands near.
+  double leaves_by(const Traveller& who);
+  // The earliest time from `from` at which a robot may set out on an edge; infinite from `until` on.
+  double earliest(const Traveller& who, int edge, double from, double until) const;
+  void find_around();
 
-  const SharedLanes& lanes_;
+  std::shared_ptr<const AnnotatedRoadmap> roadmap_;
   std::vector<bool> rests_;
   double margin_;
   std::vector<std::vector<Stay>> stays_;
   std::vector<std::vector<Pass>> passes_;
   std::vector<std::vector<Span>> safe_;
   std::vector<char> known_;  // whether `safe_` of a point is that of the present traveller
-  struct ToGoal {
-    int goal;
-    double radius;
-    std::vector<double> metres;
-  };
-  std::vector<ToGoal> to_goals_;
+  std::vector<std::vector<AnnotatedRoadmap::Near>>
+      around_;  // of each point those as near as any edge's, itself included
+  GoalTables<std::vector<double>> to_goals_;
 };
 
 }  // namespace muster

@@ -59,8 +59,8 @@ SingleMoves::SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, Moving
 Configuration SingleMoves::start() const {
   Configuration start;
   for (int i = 0; i < team_.robots(); ++i) {
-    const bool there =
-        team_.arrived[i] || team_.pinned[i] || team_.goals[i] == MovingTeam::kNoGoal || team_.goals[i] == team_.starts[i];
+    const bool there = team_.arrived[i] || team_.pinned[i] || team_.goals[i] == MovingTeam::kNoGoal ||
+                       team_.goals[i] == team_.starts[i];
     start.push_back(2 * team_.starts[i] + there);
   }
   return start;
@@ -94,8 +94,8 @@ bool SingleMoves::finished(const Configuration& configuration, const Memo& memo)
 
 bool SingleMoves::all_arrived(const Configuration& configuration) const {
   for (int i = 0; i < team_.robots(); ++i) {
-    const bool away =
-        settle_ && !team_.pinned[i] && team_.goals[i] != MovingTeam::kNoGoal && point(configuration[i]) != team_.goals[i];
+    const bool away = settle_ && !team_.pinned[i] && team_.goals[i] != MovingTeam::kNoGoal &&
+                      point(configuration[i]) != team_.goals[i];
     if (away || !visited(configuration[i])) return false;
   }
   return true;

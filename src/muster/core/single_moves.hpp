@@ -61,7 +61,8 @@ class SingleMoves {
 
   // Ends when each robot has been at its goal, with `settle` when all are there at once, or after `horizon` moves.
   // `tables` outlives it. Throws std::invalid_argument where the team does not fit the roadmap.
-  SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, MovingTeam team, Tables* tables, int horizon, bool settle);
+  SingleMoves(std::shared_ptr<const AnnotatedRoadmap> roadmap, MovingTeam team, Tables* tables, int horizon,
+              bool settle);
 
   Configuration start() const;
   Memo memo() const;

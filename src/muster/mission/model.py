@@ -104,6 +104,16 @@ class Mission(MissionData):
         """
         write_text(Path(path), yaml_text(with_files_from(self, Path(path).parent)))
 
+    @property
+    def all_robots(self) -> tuple[Robot, ...]:
+        """Its robots, and those that join it while it is carried out."""
+        return (*self.robots, *self.newcomers)
+
+    @property
+    def newcomers(self) -> tuple[Robot, ...]:
+        """The robots that join it while it is carried out."""
+        return tuple(event.robot_joins for event in self.events if event.robot_joins is not None)
+
     def at_once(self, **changes: Any) -> Mission:
         """The mission, changed, without what happens or is found while it is carried out."""
         return replace(self, events=(), tags=(), found=(), **changes)

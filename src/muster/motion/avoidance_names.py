@@ -5,9 +5,9 @@ from __future__ import annotations
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 
-AUTO = "auto"
+AUTO, NONE = "auto", "none"
 """The method that jams least in simulated worlds, by docs/avoidance.md: `hrvo` in the plane, `orca` in space."""
-METHODS = ("orca", "rvo", "hrvo", "avo", "none")
+METHODS = ("orca", "rvo", "hrvo", "avo", NONE)
 AVOIDANCE = (AUTO, *METHODS)
 _IN_THE_PLANE = ("rvo", "hrvo", "avo")
 

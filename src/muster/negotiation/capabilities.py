@@ -43,9 +43,8 @@ def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
     ParameterError
         as there.
     """
-    joining = [event.robot_joins for event in mission.events if event.robot_joins is not None]
     new = [event.new_task for event in mission.events if event.new_task is not None]
-    whole = mission.at_once(robots=(*mission.robots, *joining), tasks=(*mission.tasks, *new))
+    whole = mission.at_once(robots=mission.all_robots, tasks=(*mission.tasks, *new))
     problem = Problem.compile(whole)
     refuse_what_is_not_agreed(problem, can)
     refuse_once_together(problem.tasks, (problem.holds("team"), problem.holds("relation")))

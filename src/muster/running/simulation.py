@@ -24,7 +24,7 @@ from muster.execution import (
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.avoidance_names import AUTO
+from muster.motion.avoidance_names import AUTO, NONE
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
@@ -35,7 +35,7 @@ from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
-from muster.traffic.managers import reserved
+from muster.traffic.managers import FREE, manager_named
 from muster.verification import verify
 
 if TYPE_CHECKING:
@@ -64,6 +64,8 @@ class Simulation:
         step of the world in seconds.
     avoidance
         how robots pass each other: auto (the method that jams least), orca, rvo, hrvo, avo or none.
+    traffic
+        free: robots pass each other as they meet; reserve: in the order of one plan for all, without avoidance.
     law
         how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise
@@ -106,7 +108,7 @@ class Simulation:
         seed: int = 0,
         dt_s: float = 0.1,
         avoidance: str = AUTO,
-        traffic: str = "free",
+        traffic: str = FREE,
         law: str = "profile",
         noise: Noise = NO_NOISE,
         wind: Wind = CALM,
@@ -123,6 +125,7 @@ class Simulation:
     ) -> None:
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
+        manager = manager_named(traffic, mission, seed)
         self._world = recorded_world(
             world,
             mission,
@@ -133,16 +136,15 @@ class Simulation:
             rotor_level=rotor_level,
             seed=seed,
             dt_s=dt_s,
-            avoidance="none" if traffic == "reserve" else avoidance,
+            avoidance=avoidance if manager is None else NONE,
             noise=noise,
         )
         if on_world is not None:
             on_world(self._world)
-        self._robots: RobotsInWorld = with_state_estimation(
-            self._world, mission, pose=pose, localise=localise, seed=seed
-        )
-        if traffic == "reserve":
-            self._robots = RobotsInTraffic(self._robots, self._world, reserved(mission, seed), mission)
+        robots = with_state_estimation(self._world, mission, pose=pose, localise=localise, seed=seed)
+        self._estimated = robots if isinstance(robots, EstimatedWorld) else None
+        self._traffic = None if manager is None else RobotsInTraffic(robots, self._world, manager, mission)
+        self._robots: RobotsInWorld = robots if self._traffic is None else self._traffic
         replan, self._standing = planning_of(mission, standing, planning, travel, seed)
         self._executor = Executor(
             mission,
@@ -246,8 +248,8 @@ class Simulation:
         """What it took, so far or in all."""
         world = self._world
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
-        if isinstance(self._robots, EstimatedWorld):
-            report = replace(report, remarks=(*report.remarks, self._robots.remark))
+        if self._estimated is not None:
+            report = replace(report, remarks=(*report.remarks, self._estimated.remark))
         return with_tracking(with_found(report, self._camera_search), world)
 
     @property
@@ -308,8 +310,8 @@ class Simulation:
             self._world.recover(event.robot_returns)
         elif event.robot_joins is not None:
             self._world.join(event.robot_joins)
-            if isinstance(self._robots, RobotsInTraffic):
-                self._robots.join(event.robot_joins)
+            if self._traffic is not None:
+                self._traffic.join(event.robot_joins)
             if self._camera_search is not None:
                 self._camera_search.join(event.robot_joins)
 

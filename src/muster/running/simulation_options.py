@@ -20,6 +20,7 @@ class WorldOptions(TypedDict, total=False):
     world: str
     dt_s: float
     avoidance: str
+    traffic: str
     law: str
     noise: Noise
     wind: Wind

@@ -149,7 +149,7 @@ class WorldBase(SimulatedWorld, ABC):
             odometry_noise=noise.odometry,
             seed=seed,
         )
-        require_charges(batteries, [robot.id for robot in robots_of(mission)])
+        require_charges(batteries, [robot.id for robot in mission.all_robots])
         self._batteries = batteries
         self._in_time = mission.rules.usage == "time"
         self._walls: dict[Body, int] = {}
@@ -377,12 +377,6 @@ class WorldBase(SimulatedWorld, ABC):
         if body not in self._faces:
             self._faces[body] = (_NO_FACES, []) if self._map is None else faces_and_slabs(self._map, body)
         return self._faces[body]
-
-
-def robots_of(mission: Mission) -> list[Robot]:
-    """The robots of a mission, and those that will join it."""
-    joining = [event.robot_joins for event in mission.events]
-    return [*mission.robots, *(robot for robot in joining if robot is not None)]
 
 
 def _lowest(mission: Mission) -> float:

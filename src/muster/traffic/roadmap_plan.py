@@ -27,7 +27,7 @@ _ENTRIES = 6
 
 @dataclass
 class RoadmapPlan:
-    """Plans moves of travellers over a roadmap, by safe intervals.
+    """Plans moves of travellers over a roadmap: by safe intervals, or by priority inheritance where some find no path.
 
     Parameters
     ----------
@@ -42,48 +42,40 @@ class RoadmapPlan:
     roadmap: Roadmap
     clear: Callable[[Floats], bool]
     seed: int = 0
-    inherited: int = 0
     _priorities: list[str] = field(default_factory=list)
+    _known: _Network | None = None
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
-        places = [place for who in travellers for place in (who.start, who.goal) if place is not None]
-        roadmap = with_places(self.roadmap, self.clear, places)
-        number = {tuple(point): k for k, point in enumerate(roadmap.points.tolist())}
-        moves = self._by_safe_intervals(roadmap, travellers, number)
-        for traveller, edge in self._by_inheritance(roadmap, travellers, number) if moves is None else moves:
-            x, y = roadmap.points[roadmap.edges[edge, 1]]
+        on = self._network([place for who in travellers for place in (who.start, who.goal) if place is not None])
+        moves = self._by_safe_intervals(on, travellers)
+        for traveller, edge in self._by_inheritance(on, travellers) if moves is None else moves:
+            x, y = on.roadmap.points[on.roadmap.edges[edge, 1]]
             yield Move(traveller, (float(x), float(y)))
 
-    def _by_safe_intervals(
-        self, roadmap: Roadmap, travellers: Sequence[Traveller], number: Mapping[Point, int]
-    ) -> Sequence[tuple[int, int]] | None:
+    def _network(self, places: Sequence[Point]) -> _Network:
+        """The roadmap with these places, as it was for the last plan where that has them."""
+        if self._known is None or not self._known.number.keys() >= set(places):
+            self._known = _Network.of(with_places(self.roadmap, self.clear, places))
+        return self._known
+
+    def _by_safe_intervals(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int]] | None:
         """Moves as (traveller, edge); None where some find no path."""
-        lanes = lanes_of(roadmap)
         ranks = {name: k for k, name in enumerate(self._priorities)}
-        metres = [_metres(who, lanes, number) for who in travellers]
+        metres = [on.metres(who) for who in travellers]
         first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
-        moves, ends, order = core.paths_by_safe_intervals(
-            lanes=lanes,
-            rests=roadmap.holding.tolist(),
-            travellers=[_told(who, lanes, number) for who in travellers],
-            order=first,
-            margin=roadmap.margin_m,
-            tries=_TRIES,
-            seed=self.seed,
-        )
+        told = [_told(who, on.number) for who in travellers]
+        moves, ends, order = on.intervals.best_of(told, order=first, tries=_TRIES, seed=self.seed)
         self._priorities = [travellers[k].robot.id for k in order]
         return None if math.inf in ends else [(traveller, edge) for _, traveller, edge in moves]
 
-    def _by_inheritance(
-        self, roadmap: Roadmap, travellers: Sequence[Traveller], number: Mapping[Point, int]
-    ) -> Sequence[tuple[int, int]]:
-        self.inherited += 1
-        found = MovePlanner(roadmap).planned(
-            [number[who.start] for who in travellers],
-            [None if who.goal is None else number[who.goal] for who in travellers],
+    def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int]]:
+        """Moves as (traveller, edge), as far as the horizon."""
+        found = on.planner.planned(
+            [on.number[who.start] for who in travellers],
+            [None if who.goal is None else on.number[who.goal] for who in travellers],
             [who.robot.radius_m for who in travellers],
-            margin_m=roadmap.margin_m,
+            margin_m=on.roadmap.margin_m,
             pinned=[who.fixed or who.ready_s > 0 for who in travellers],
             seed=self.seed,
             params=Parameters(horizon=_HORIZON * len(travellers)),
@@ -91,17 +83,25 @@ class RoadmapPlan:
         return found.moves
 
 
-def lanes_of(roadmap: Roadmap) -> core.SharedLanes:
-    """A roadmap as the core has it."""
-    return core.SharedLanes(
-        places=np.ascontiguousarray(roadmap.points),
-        ends=roadmap.edges.astype(np.int32),
-        lengths=roadmap.lengths_m,
-        clearances=roadmap.clearance_m + roadmap.radius_m,
-        reach_first=roadmap.reach_start.astype(np.int32),
-        reach_points=roadmap.reach_point.astype(np.int32),
-        reach_gaps=roadmap.reach_m,
-    )
+@dataclass(frozen=True)
+class _Network:
+    """A roadmap, the numbers of its points by place, and its two planners."""
+
+    roadmap: Roadmap
+    number: Mapping[Point, int]
+    planner: MovePlanner
+    intervals: core.SafeIntervals
+
+    @classmethod
+    def of(cls, roadmap: Roadmap) -> _Network:
+        number = {(x, y): k for k, (x, y) in enumerate(roadmap.points.tolist())}
+        planner = MovePlanner(roadmap)
+        rests = roadmap.holding.tolist()
+        return cls(roadmap, number, planner, core.SafeIntervals(planner.shared, rests, roadmap.margin_m))
+
+    def metres(self, who: Traveller) -> float:
+        """The length of the shortest way to a robot's goal; below 0 without one."""
+        return -1.0 if who.goal is None else self.intervals.metres_to(self.number[who.goal])[self.number[who.start]]
 
 
 def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Sequence[Point]) -> Roadmap:
@@ -133,10 +133,9 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
     )
 
 
-def _told(who: Traveller, lanes: core.SharedLanes, number: Mapping[Point, int]) -> core.Traveller:
+def _told(who: Traveller, number: Mapping[Point, int]) -> core.Traveller:
     limits, faces = limits_of(who.robot), kinematics_named(who.robot.kinematics).faces_its_way
     return core.Traveller(
-        lanes=lanes,
         start=number[who.start],
         stops=[] if who.goal is None else [(number[who.goal], who.hold_s)],
         radius=who.robot.radius_m,
@@ -148,10 +147,3 @@ def _told(who: Traveller, lanes: core.SharedLanes, number: Mapping[Point, int]) 
         fixed=who.fixed,
         stays=who.stays,
     )
-
-
-def _metres(who: Traveller, lanes: core.SharedLanes, number: Mapping[Point, int]) -> float:
-    """The length of the shortest way to its goal; below 0 without one."""
-    if who.goal is None:
-        return -1.0
-    return float(lanes.metres_to(number[who.goal], who.robot.radius_m)[number[who.start]])

@@ -103,6 +103,32 @@ class Moves:
     arrived: tuple[bool, ...]
 
 
+def annotated(roadmap: AnnotatedRoadmap, costs: npt.ArrayLike | None = None) -> core.AnnotatedRoadmap:
+    """A roadmap as the core has it; `costs` as `MovePlanner` takes them.
+
+    Raises
+    ------
+    ParameterError
+        if the arrays do not fit, or a cost is not above 0.
+    """
+    points, edges = np.asarray(roadmap.points, dtype=np.float64), np.asarray(roadmap.edges, dtype=np.int64)
+    if np.any(np.diff(edges[:, 0]) < 0):
+        raise ParameterError("edges: not in the order of their first points; expected so")
+    lengths = np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1) if costs is None else costs
+    try:
+        return core.AnnotatedRoadmap(
+            np.ascontiguousarray(points),
+            np.searchsorted(edges[:, 0], np.arange(len(points) + 1)).tolist(),
+            edges[:, 1].tolist(),
+            np.asarray(lengths, dtype=np.float64).tolist(),
+            np.asarray(roadmap.reach_start).tolist(),
+            np.asarray(roadmap.reach_point).tolist(),
+            np.asarray(roadmap.reach_m).tolist(),
+        )
+    except ValueError as error:
+        raise ParameterError(f"roadmap: {error}") from None
+
+
 class MovePlanner:
     """Plans on one roadmap; it keeps the ways to goals, so that the next plan with these goals comes sooner.
 
@@ -113,6 +139,11 @@ class MovePlanner:
     costs
         (m,): what each edge costs, in metres; its length by default. Greater where waiting is to be expected.
 
+    Attributes
+    ----------
+    shared
+        the roadmap as the core has it, for other planners.
+
     Raises
     ------
     ParameterError
@@ -120,22 +151,8 @@ class MovePlanner:
     """
 
     def __init__(self, roadmap: AnnotatedRoadmap, costs: npt.ArrayLike | None = None) -> None:
-        points, edges = np.asarray(roadmap.points, dtype=np.float64), np.asarray(roadmap.edges, dtype=np.int64)
-        if np.any(np.diff(edges[:, 0]) < 0):
-            raise ParameterError("edges: not in the order of their first points; expected so")
-        lengths = np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1) if costs is None else costs
-        try:
-            self._core = core.MovePlanner(
-                np.ascontiguousarray(points),
-                np.searchsorted(edges[:, 0], np.arange(len(points) + 1)).tolist(),
-                edges[:, 1].tolist(),
-                np.asarray(lengths, dtype=np.float64).tolist(),
-                np.asarray(roadmap.reach_start).tolist(),
-                np.asarray(roadmap.reach_point).tolist(),
-                np.asarray(roadmap.reach_m).tolist(),
-            )
-        except ValueError as error:
-            raise ParameterError(f"roadmap: {error}") from None
+        self.shared = annotated(roadmap, costs)
+        self._core = core.MovePlanner(self.shared)
 
     def planned(
         self,

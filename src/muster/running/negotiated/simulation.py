@@ -143,8 +143,7 @@ def negotiate_and_carry_out(
 def setup_of(problem: Problem, negotiation: Negotiation, memory: Path, speed: float = 1.0) -> TeamSetup:
     """The setup of the robots' processes, with those of robots that join later or restart."""
     mission = problem.mission
-    joining = [event.robot_joins for event in mission.events if event.robot_joins is not None]
-    whole = Problem.compile(mission.at_once(robots=(*mission.robots, *joining)), problem.objective, problem.ignored)
+    whole = Problem.compile(mission.at_once(robots=mission.all_robots), problem.objective, problem.ignored)
     method = method_named(negotiation.method)
     return TeamSetup(
         problem=whole.ready(),
@@ -153,7 +152,7 @@ def setup_of(problem: Problem, negotiation: Negotiation, memory: Path, speed: fl
         method=negotiation.method,
         transport=negotiation.transport,
         timeouts=timeouts_for(len(whole.robots)),
-        late=frozenset(robot.id for robot in joining),
+        late=frozenset(robot.id for robot in mission.newcomers),
         starts=_starts(mission.events),
         memory=memory,
         part=run_robot_process,

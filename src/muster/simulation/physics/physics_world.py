@@ -34,7 +34,7 @@ from muster.simulation.physics.rays import Rays
 from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.simulated_model import SimulatedModel
 from muster.simulation.wind import CALM, Wind, WindField
-from muster.simulation.world_base import FLIGHT_M, Event, WorldBase, robots_of
+from muster.simulation.world_base import FLIGHT_M, Event, WorldBase
 
 PHYSICS_S = 0.005
 """The longest step of physics."""
@@ -74,7 +74,7 @@ class PhysicsWorld(WorldBase):
 
     def __init__(self, mission: Mission, *, rotor_level: bool = False, wind: Wind = CALM, **how: Any) -> None:
         self._rotor_level = rotor_level or wind.blows or bool(how.get("batteries"))
-        if any(self._body(robot).kind is BodyKind.ROTORCRAFT for robot in robots_of(mission)):
+        if any(self._body(robot).kind is BodyKind.ROTORCRAFT for robot in mission.all_robots):
             windy_m = WIND_CLEARANCE_M + GUST_CLEARANCE_S * wind.gusts_mps
             self._clearance_m = windy_m if wind.blows else ROTORCRAFT_CLEARANCE_M
         self._collide = how.get("avoidance") != "none"
