@@ -1,0 +1,78 @@
+"""Robots pass in the order of one sequence of moves: how far each may go, whatever is late."""
+
+from __future__ import annotations
+
+import pytest
+
+from muster.core import PassingOrder
+
+RADIUS_M, MARGIN_M = 0.3, 0.02
+
+
+@pytest.fixture
+def order():
+    return PassingOrder(margin=MARGIN_M, ahead=5.0)
+
+
+def test_who_comes_first_in_the_order_passes_first(order):
+    """Two ways cross: the second robot stops before the way of the first until that has gone by."""
+    first, second = order.add((-2.0, 0.0), RADIUS_M), order.add((0.0, -2.0), RADIUS_M)
+    assert order.append(first, (2.0, 0.0))
+    assert order.append(second, (0.0, 2.0))
+    assert order.grant(second).points == []  # the first has not even begun
+    assert order.grant(first).points == [(2.0, 0.0)]
+    granted = order.grant(second)
+    (_, y) = granted.points[-1]
+    assert -0.7 < y <= -0.62
+    assert (granted.waits_for, granted.last) == (first, False)
+    order.progress(first, 0, (0.7, 0.0))
+    assert order.grant(second).points == [(0.0, 2.0)]
+    assert order.grant(second).last
+
+
+def test_no_move_leads_to_where_another_stands(order):
+    first, second = order.add((0.0, 0.0), RADIUS_M), order.add((1.0, 0.0), RADIUS_M)
+    assert not order.append(first, (2.0, 0.0))
+    assert order.end(first) == (0.0, 0.0)
+    assert order.append(second, (1.0, 3.0))
+    assert order.append(first, (2.0, 0.0))
+
+
+def test_robots_that_stand_too_close_may_part(order):
+    first = order.add((0.0, 0.0), RADIUS_M)
+    order.add((0.5, 0.0), RADIUS_M)
+    assert not order.append(first, (0.2, 0.0))
+    assert order.append(first, (-1.0, 0.0))
+    assert order.grant(first).points == [(-1.0, 0.0)]
+
+
+def test_a_new_plan_leaves_what_has_begun(order):
+    """A move that waits for one that has not begun does not begin either: both may be dropped."""
+    first, second = order.add((0.0, 0.0), RADIUS_M), order.add((-1.0, 0.0), RADIUS_M)
+    order.append(first, (1.0, 0.0))
+    order.append(second, (0.0, 0.0))
+    order.append(second, (0.0, 3.0))
+    assert order.grant(second).points == []  # its first move leads to where the other has not yet left
+    order.drop_ahead()
+    assert (order.end(first), order.end(second)) == ((0.0, 0.0), (-1.0, 0.0))
+    order.append(first, (1.0, 0.0))
+    order.append(second, (0.0, 0.0))
+    order.grant(first)
+    order.drop_ahead()
+    assert (order.end(first), order.end(second)) == ((1.0, 0.0), (-1.0, 0.0))
+
+
+def test_moves_are_cut_where_robots_have_been_let_go_to(order):
+    first, second = order.add((-2.0, 0.0), RADIUS_M), order.add((0.0, -2.0), RADIUS_M)
+    order.append(first, (2.0, 0.0))
+    order.append(second, (0.0, 2.0))
+    order.grant(first)
+    stops = order.grant(second).points[-1]
+    order.cut()
+    assert order.end(second) == stops
+    assert order.end(first) == (2.0, 0.0)
+
+
+def test_a_robot_that_is_not_there_is_refused(order):
+    with pytest.raises(ValueError, match="robot: not in the order"):
+        order.grant(0)

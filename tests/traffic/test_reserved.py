@@ -1,0 +1,41 @@
+"""Traffic by reservation in the kinematic world: where there is space for one, all get through and nobody touches."""
+
+from __future__ import annotations
+
+import pytest
+
+from muster import ParameterError, Simulation, solve
+from muster_studies.jams import scenes
+
+COUNTS = {"one_way_door": 8, "two_way_door": 6, "corridor": 8, "aisles": 4, "dead_ends": 4}
+
+
+@pytest.mark.parametrize("kinematics", ["holonomic", "differential-drive"])
+@pytest.mark.parametrize("scene", COUNTS)
+def test_all_get_through(scene, kinematics):
+    mission = getattr(scenes, scene)(kinematics, 1, COUNTS[scene])
+    simulation = Simulation(mission, solve(mission, "greedy"), traffic="reserve")
+    while not simulation.done:
+        simulation.advance(simulation.time_s + 10.0)
+        assert simulation.time_s < 600.0
+    report = simulation.result()
+    assert len(report.tasks_done) == len(mission.tasks)
+    assert (report.contacts, report.tasks_lost) == (0, ())
+
+
+def test_it_is_the_same_again():
+    mission = scenes.aisles("holonomic", 2, 3)
+    plan = solve(mission, "greedy")
+    times = []
+    for _ in range(2):
+        simulation = Simulation(mission, plan, traffic="reserve")
+        while not simulation.done:
+            simulation.advance(simulation.time_s + 10.0)
+        times.append([(event.time_s, event.kind) for event in simulation.events])
+    assert times[0] == times[1]
+
+
+def test_an_unknown_manager_is_refused():
+    mission = scenes.pair("holonomic", 0)
+    with pytest.raises(ParameterError, match="traffic: \"reserv\"; expected free, reserve; did you mean 'reserve'"):
+        Simulation(mission, solve(mission, "greedy"), traffic="reserv")
