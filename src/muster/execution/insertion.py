@@ -13,7 +13,7 @@ from muster.allocation.allocator import Routes
 from muster.allocation.fixed import admissible_part
 from muster.allocation.insertion import inserted
 from muster.allocation.problem import Problem
-from muster.execution.reallocation import Revision, nobody, revision_of, routes_before, torn, without_units
+from muster.execution.reallocation import Revision, nobody, rest_to_plan, revision_of, routes_before, without_units
 from muster.execution.remaining_problem import RemainingMission, remaining_problem
 from muster.execution.travel import Travel
 
@@ -39,10 +39,7 @@ class Insertion:
         """The rest planned again."""
         if not rest.crew:
             return nobody(rest)
-        what = remaining_problem(rest, self.travel)
-        problem = what.problem.ready()
-        before = routes_before(problem, rest)
-        forced = torn(problem, rest, before)
+        what, problem, before, forced = rest_to_plan(rest, self.travel)
         routes = _filled(problem, without_units(problem, before, forced))
         return revision_of(rest, what, routes, forced)
 

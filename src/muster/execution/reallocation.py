@@ -111,10 +111,7 @@ class Reallocation:
         """
         if not rest.crew:
             return nobody(rest)
-        what = remaining_problem(rest, self.travel)
-        problem = what.problem.ready()
-        before = routes_before(problem, rest)
-        forced = torn(problem, rest, before)
+        what, problem, before, forced = rest_to_plan(rest, self.travel)
         start = admissible_part(problem, without_units(problem, before, forced))
         stable = rest.mission.rules.stability
         if stable is None:
@@ -147,6 +144,14 @@ class Reallocation:
         if not self.allocator.anytime:
             start = [list(problem.beginning(i)) for i in range(len(problem.robots))]
         return self.allocator.outcome(problem, stop, self.seed, self.parameters, start).routes
+
+
+def rest_to_plan(rest: RemainingMission, travel: Travel) -> tuple[RemainingProblem, Problem, Routes, frozenset[int]]:
+    """The problem of the rest, that ready to be planned, the routes so far, and the tasks that are torn from these."""
+    what = remaining_problem(rest, travel)
+    problem = what.problem.ready()
+    before = routes_before(problem, rest)
+    return what, problem, before, torn(problem, rest, before)
 
 
 def routes_before(problem: Problem, rest: RemainingMission) -> Routes:

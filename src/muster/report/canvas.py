@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from muster.mission.errors import MissingExtraError
 from muster.mission.plan import Plan
+from muster.motion.grid import Floats
 from muster.report.fonts import Names
 from muster.report.styles import ALARM, FRAME, GRID, QUIET_TEXT, TEXT
 from muster.verification import Verdict
@@ -23,6 +24,18 @@ LEGEND_ROWS = 24
 _NAMED_OF_MANY = 20
 _LONGEST_TITLE = 60
 _LONGEST_NAME = 24
+
+
+def map_axes(low: Floats, high: Floats, long_side_in: float, least_in: float = 2.5) -> Axes:
+    """Axes for a map in the plane between two corners: so long on its long side, at least so high, beside a legend.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    width, height = long_side_in * (high - low) / (high - low).max()
+    return new_axes(width + 2.6, max(height + 1.0, least_in))
 
 
 def new_axes(width_in: float, height_in: float, *, spatial: bool = False) -> Axes:

@@ -9,7 +9,7 @@ import numpy as np
 from muster.mission.model import Mission, Point
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath, Path
-from muster.report.canvas import add_legend, add_title, frame_of_map, is_spatial, limits, new_axes
+from muster.report.canvas import add_legend, add_title, frame_of_map, is_spatial, limits, map_axes, new_axes
 from muster.report.floor import draw_map, map_corners
 from muster.report.route_ground import draw_stems
 from muster.report.route_lines import places
@@ -45,8 +45,8 @@ def plot_way(
     spatial = len(start) == 3
     way = found.points if isinstance(found, Path) else places((start, goal), len(start))
     low, high = _limits(mission, way, image)
-    width, height = (_LONG_SIDE_IN, _LONG_SIDE_IN) if spatial else _LONG_SIDE_IN * (high - low) / (high - low).max()
-    ax: Any = new_axes(width + 2.6, max(height + 1.0, 2.5), spatial=spatial)
+    side = _LONG_SIDE_IN
+    ax: Any = new_axes(side + 2.6, side + 1.0, spatial=True) if spatial else map_axes(low, high, side)
     frame_of_map(ax, low, high)
     entries = draw_map(ax, mission.map, image, spatial=is_spatial(ax)) if mission.map is not None else []
     look = {"color": robot_style(0).color, "zorder": 3}

@@ -9,7 +9,7 @@ import numpy as np
 
 from muster.mission.model import Mission
 from muster.motion.grid import Grid
-from muster.report.canvas import add_legend, add_title, frame_of_map, limits, new_axes
+from muster.report.canvas import add_legend, add_title, frame_of_map, limits, map_axes
 from muster.report.floor import draw_map, map_corners
 from muster.report.styles import PALETTE, TEXT
 from muster.traffic.mission_roadmap import MissionRoadmap
@@ -45,11 +45,10 @@ def plot_roadmap(
     roadmap = made.roadmap
     corners = [corner[:2] for corner in map_corners(mission.map, image)] if mission.map is not None else []
     low, high = limits(np.concatenate([roadmap.points, np.reshape(corners, (-1, 2))]), 0.03, on_ground=False)
-    width, height = _LONG_SIDE_IN * (high - low) / (high - low).max()
-    ax: Any = new_axes(width + 2.6, max(height + 1.0, 2.5))
+    ax: Any = map_axes(low, high, _LONG_SIDE_IN)
     frame_of_map(ax, low, high)
     entries = draw_map(ax, mission.map, image, spatial=False) if mission.map is not None else []
-    inch_per_m = width / (high - low)[0]
+    inch_per_m = _LONG_SIDE_IN / (high - low).max()
     entries = [
         *_draw_lanes(ax, roadmap, passages, inch_per_m),
         *_draw_arrows(ax, roadmap),

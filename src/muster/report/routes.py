@@ -19,6 +19,7 @@ from muster.report.canvas import (
     frame_of_map,
     is_spatial,
     limits,
+    map_axes,
     named_rows,
     new_axes,
     note_entries,
@@ -186,8 +187,7 @@ def _own_axes(scene: _Scene) -> Axes:
     if scene.dimensions == 3:
         return new_axes(8.8, max(6.8, legend_height), spatial=True)
     low, high = _limits(scene, 2)
-    width, height = _LONG_SIDE_IN * (high - low) / (high - low).max()
-    return new_axes(width + 2.6, max(height + 1.0, legend_height))
+    return map_axes(low, high, _LONG_SIDE_IN, legend_height)
 
 
 def _draw_ground(ax: Any, scene: _Scene) -> list[tuple[Any, str]]:

@@ -166,7 +166,7 @@ class ReservedTraffic:
 
     def _falls_short(self, part: _Part) -> bool:
         """Whether the moves of a robot end before its goal, and it is coming near to where they end."""
-        away = part.goal is not None and math.dist(self._order.end(part.number), part.goal) > _AT_GOAL_M
+        away = self._away_m(part) > _AT_GOAL_M
         return away and not part.broken and self._order.metres_left(part.number) < 2 * AHEAD_M
 
     def _goal(self, part: _Part) -> Point | None:
@@ -204,22 +204,26 @@ class ReservedTraffic:
             part.port.waits_for, part.to_go = "", False
             return
         grant = self._order.grant(part.number)
-        part.port.waits_for = self._parts[grant.waits_for].robot.id if grant.waits_for >= 0 else ""
         part.to_go = grant.metres > _MOVED_M
-        if not part.port.waits_for and self._falls_short(part) and not grant.points:
-            part.port.waits_for = self._nearest(part)
-        left_m = self._order.metres_left(part.number)
-        goal = part.goal
-        part.port.left_m = left_m + (0.0 if goal is None else math.dist(self._order.end(part.number), goal))
-        at_goal = grant.last and part.port.arrives and goal is not None
-        at_goal = at_goal and math.dist(self._order.end(part.number), goal or (0.0, 0.0)) <= _AT_GOAL_M
-        if not grant.points and not at_goal:
-            return
-        said = part.port.heard
-        height = said.position[2] if said is not None else 0.0
-        if part.port.go([(x, y, height) for x, y in grant.points], to_goal=at_goal):
-            part.moves_passed = self._order.passed(part.number)
-        part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
+        part.port.left_m = self._order.metres_left(part.number) + self._away_m(part)
+        part.port.waits_for = self._held_up_by(part, grant)
+        to_goal = grant.last and part.port.arrives and self._away_m(part) <= _AT_GOAL_M
+        if grant.points or to_goal:
+            said = part.port.heard
+            height = said.position[2] if said is not None else 0.0
+            if part.port.go([(x, y, height) for x, y in grant.points], to_goal=to_goal):
+                part.moves_passed = self._order.passed(part.number)
+            part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
+
+    def _away_m(self, part: _Part) -> float:
+        """Metres from where the moves of a robot end to its goal; 0 without one."""
+        return 0.0 if part.goal is None else math.dist(self._order.end(part.number), part.goal)
+
+    def _held_up_by(self, part: _Part, grant: core.Grant) -> str:
+        """The robot that comes first, or stands next to one that has found no way; empty where nobody holds it up."""
+        if grant.waits_for >= 0:
+            return self._parts[grant.waits_for].robot.id
+        return self._nearest(part) if self._falls_short(part) and not grant.points else ""
 
     def _nearest(self, part: _Part) -> str:
         """The robot next to one that has found no way."""
