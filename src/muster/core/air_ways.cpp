@@ -146,7 +146,7 @@ std::vector<Spot> AirWays::way(Spot a, Spot b) const {
 std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tree) const {
   if (!from.free || !to.free) return {};
   if (air_->sees(from.at, to.at)) return {from.at, to.at};
-  constexpr double kWorthPulling = 1.005;
+  constexpr double kWorthPulling = 1.03;
   std::map<std::vector<int>, String> strings;  // by their edges
   for (const int last : candidates(to, tree)) {
     String string;
