@@ -117,6 +117,20 @@ tasks:
     assert parse_yaml(yaml_text(read), FILE) == read
 
 
+def test_faults_of_prerequisites_with_lags_are_told_where_the_task_has_others():
+    text = """schema: muster/1
+robots: [{id: r_0, position: [0, 0]}]
+tasks:
+  - {id: a, position: [1, here], prerequisites: [{task: b, after_s: 5}]}
+"""
+    with pytest.raises(MissionError) as refused:
+        parse_yaml(text, FILE)
+    assert [(one.field, one.value) for one in refused.value.findings] == [
+        ("tasks[0].position[1]", '"here"'),
+        ("tasks[0].prerequisites[0]", '"b"'),
+    ]
+
+
 def test_in_python_lags_stand_beside_or_inside_prerequisites():
     beside = Task(id="b", position=(0, 0), prerequisites=("a",), lags={"a": Lag(after_s=2)})
     assert beside == Task(id="b", position=(0, 0), prerequisites=[{"task": "a", "after_s": 2}])

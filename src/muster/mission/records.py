@@ -193,8 +193,9 @@ class Record:
                 values[f.name] = read
             elif required(f):
                 faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
-        if len(faults) == before and not any(item is INVALID for item in values.values()):
-            values |= self.of.settled(values)
+        whole = len(faults) == before and not any(item is INVALID for item in values.values())
+        values |= self.of.settled({key: item for key, item in values.items() if item is not INVALID})
+        if whole:
             faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(values))
         return self._instance(values)
 

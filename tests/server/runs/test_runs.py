@@ -340,7 +340,7 @@ def test_what_is_refused_is_written_down(store):
         # infinity is no JSON: it cannot be written down
         ("run.start", "no plan 99", None),
         ("run.cancel", "no run 99", None),
-        ("run.stop", "verb: stop; expected pause, resume, speed, cancel, event", None),
+        ("run.stop", "verb: stop; expected pause, resume, speed, cancel, event, orders", None),
         ("run.event", "data: half a character; expected text in UTF-8", None),
     ]
     assert [action.data for action in store.actions.list() if action.verb == "run.cancel"] == [{"run": 99, "data": {}}]

@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from muster.execution import Standing
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.near_matches import did_you_mean
@@ -17,6 +16,9 @@ from muster.motion.avoidance_names import AVOIDANCE
 from muster.motion.laws import LAWS
 from muster.planning.options import options_from
 from muster.running.worlds import WORLDS
+
+if TYPE_CHECKING:
+    from muster.execution import Standing
 
 _PLANNING = {"seed": int, "ignore": list, "planning": dict, "stay": bool, "until_s": float}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
@@ -149,6 +151,8 @@ def standing_of(settings: Mapping[str, Any]) -> Standing | None:
     """The fleet that stays on duty by `stay` and `until_s`; None: it ends when its tasks are done."""
     if not settings.get("stay"):
         return None
+    from muster.execution import Standing
+
     return Standing(until_s=settings.get("until_s", math.inf))
 
 
