@@ -96,3 +96,10 @@ def test_what_a_graph_of_lanes_may_not_be():
         with pytest.raises(MissionError) as error:
             lanes(*edges)
         assert error.value.findings[0].value == value
+
+
+def test_lanes_of_any_length_have_points_that_can_be_counted():
+    far = Lanes(nodes={"a": (0, 0), "b": (1e16, 0)}, edges=(Lane(start="a", end="b", both_ways=True),))
+    roadmap = Roadmap.of_lanes(far, RADIUS)
+    assert len(roadmap.points) < 50_000
+    np.testing.assert_allclose(roadmap.lengths_m, 1e16 / (len(roadmap.edges) / 2))

@@ -42,7 +42,13 @@ def closed_lanes(lanes: Lanes, radius_m: float, finder: PathFinder | None) -> li
 
 
 def lane_network(
-    lanes: Lanes, radius_m: float, apart_m: float, places: Floats, space: GridSpace | PolygonSpace | None
+    lanes: Lanes,
+    radius_m: float,
+    apart_m: float,
+    places: Floats,
+    space: GridSpace | PolygonSpace | None,
+    *,
+    most_points: int,
 ) -> tuple[Network, Floats]:
     """The directed network of the lanes that robots of a radius can drive, and the greatest speed (m,) on its edges.
 
@@ -52,6 +58,8 @@ def lane_network(
     ----------
     apart_m
         two robots whose centres are so far apart do not touch.
+    most_points
+        on all lanes together, about: longer lanes have points further apart.
     places
         (k, 2) metres: each is joined to the nearest point that it can be driven to straight.
     space
@@ -66,6 +74,7 @@ def lane_network(
     edges: list[tuple[int, int]] = []
     clearance: list[float] = []
     speeds: list[float] = []
+    apart_m = max(apart_m, sum(_length_m(lanes, lane) for lane in lanes.edges) / most_points)
     for number, lane in enumerate(lanes.edges):
         if number in closed:
             continue
@@ -84,6 +93,10 @@ def lane_network(
         made = with_place(made, place, at, finder, nodes, both_ways=True)
     speeds += [math.inf] * (len(made.edges) - len(speeds))
     return made, np.array(speeds)
+
+
+def _length_m(lanes: Lanes, lane: Lane) -> float:
+    return math.dist(lanes.nodes[lane.start][:2], lanes.nodes[lane.end][:2])
 
 
 def _between(start: Floats, end: Floats, capacity: int | None, apart_m: float) -> Iterator[Floats]:

@@ -191,7 +191,7 @@ class Roadmap:
         apart_m, points = _checked(radius_m, margin_m, places)
         if not isinstance(space, GridSpace | PolygonSpace | None):
             raise ParameterError("space: with heights; expected the plane, or None")
-        made, speeds = lane_network(lanes, radius_m, apart_m, points, space)
+        made, speeds = lane_network(lanes, radius_m, apart_m, points, space, most_points=_MOST_POINTS)
         return cls.joined(made, radius_m, margin_m, speed_mps=speeds, names=tuple(lanes.nodes))
 
     @classmethod
