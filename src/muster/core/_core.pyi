@@ -732,6 +732,8 @@ class CrowdWorld:
 
     def slow(self, robot: int, factor: float) -> None: ...
 
+    def leave_to_traffic(self, robot: int) -> None: ...
+
     def believe(self, robot: int, place: Sequence[float], heading: float, spread: float) -> None:
         """
         Where a robot takes itself to be now, within a standard deviation in metres: it goes by that.

@@ -158,6 +158,7 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
       .def("fail", &CrowdWorld::fail, "robot"_a)
       .def("recover", &CrowdWorld::recover, "robot"_a)
       .def("slow", &CrowdWorld::slow, "robot"_a, "factor"_a)
+      .def("leave_to_traffic", &CrowdWorld::leave_to_traffic, "robot"_a)
       .def(
           "believe",
           [](CrowdWorld& w, int robot, Place place, double heading, double spread) {

@@ -129,6 +129,7 @@ struct CrowdRobot {
   double slowed = 1.0;
   double exact = 1e-3;  // metres: nearer than this to a place is there
   bool failed = false;
+  bool in_traffic = false;  // who orders it says when its way is free: it goes straight, and brakes at most
   bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
 
   double travelled = 0.0, odometry = 0.0;
@@ -158,10 +159,11 @@ struct CrowdRobot {
   double half_track() const { return 0.5 * kTrack * (body.radius > 0.0 ? body.radius : kNominalRadius); }
   bool under_way() const { return velocity != Vec<3>{}; }
   // It has nothing to do that could not be done elsewhere as well.
-  bool has_time() const { return !failed && body.radius > 0.0 && (phase == Phase::idle || waits); }
+  bool has_time() const { return !failed && !in_traffic && body.radius > 0.0 && (phase == Phase::idle || waits); }
   // It makes room, or is not back yet.
   bool is_away(double time) const {
-    return phase == Phase::idle && !failed && body.radius > 0.0 && (asked_until >= time || position != post);
+    return phase == Phase::idle && !failed && !in_traffic && body.radius > 0.0 &&
+           (asked_until >= time || position != post);
   }
   const Vec<3>& goal() const { return !aside.empty() ? aside.back() : phase == Phase::idle ? post : way[next].at; }
   // It stays where it is whatever comes: at work, out of order, or at its post and not asked to make room.
@@ -170,7 +172,9 @@ struct CrowdRobot {
     return failed || phase == Phase::holding || (phase == Phase::idle && !is_away(time));
   }
   // It is moved by others too. Where it holds or turns it stays, also in the step in which it comes to a stand.
-  bool gives_way(double time) const { return phase != Phase::holding && phase != Phase::turning && !stands(time); }
+  bool gives_way(double time) const {
+    return !in_traffic && phase != Phase::holding && phase != Phase::turning && !stands(time);
+  }
 };
 
 inline double wrapped(double angle) { return std::remainder(angle, 2.0 * std::acos(-1.0)); }

@@ -87,6 +87,7 @@ class CrowdWorld {
   void fail(int i);
   void recover(int i) { robots_[i].failed = false; }
   void slow(int i, double factor) { robots_[i].slowed = factor; }
+  void leave_to_traffic(int i) { robots_[i].in_traffic = true; }
   // Where a robot takes itself to be at the end of the last step, and within which spread (metres, one standard
   // deviation). It goes where its way points are by that, until it is told anew. Others, walls and work at a place it
   // perceives from where it is.

@@ -39,7 +39,10 @@ class RobotsInTraffic:
 
     def join(self, robot: Robot) -> None:
         """Take in a robot that is in the world."""
-        self._ports[robot.id] = self._manager.managed(robot, self._robots.ports[robot.id])
+        port = self._robots.ports[robot.id]
+        self._ports[robot.id] = self._manager.managed(robot, port)
+        if self._ports[robot.id] is not port:
+            self._world.leave_to_traffic(robot.id)
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         """See `RobotsInWorld`: up to a time, or until a robot has passed a way point of its order."""

@@ -24,7 +24,7 @@ from muster.execution import (
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.avoidance_names import AUTO, NONE
+from muster.motion.avoidance_names import AUTO
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
@@ -35,7 +35,8 @@ from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
-from muster.traffic.managers import FREE, manager_named
+from muster.traffic.managers import manager_named
+from muster.traffic.names import DEFAULT
 from muster.verification import verify
 
 if TYPE_CHECKING:
@@ -65,7 +66,8 @@ class Simulation:
     avoidance
         how robots pass each other: auto (the method that jams least), orca, rvo, hrvo, avo or none.
     traffic
-        free: robots pass each other as they meet; reserve: in the order of one plan for all, without avoidance.
+        free: robots pass each other as they meet; reserve: robots that drive pass in the order of one plan for all,
+        and go round nothing; auto: reserve where the mission gives lanes or its map has passages for one robot.
     law
         how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise
@@ -108,7 +110,7 @@ class Simulation:
         seed: int = 0,
         dt_s: float = 0.1,
         avoidance: str = AUTO,
-        traffic: str = FREE,
+        traffic: str = DEFAULT,
         law: str = "profile",
         noise: Noise = NO_NOISE,
         wind: Wind = CALM,
@@ -125,7 +127,8 @@ class Simulation:
     ) -> None:
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
-        manager = manager_named(traffic, mission, seed)
+        world_map = None if robot_paths is None else robot_paths.world
+        manager = manager_named(traffic, mission, seed, world=world_map)
         self._world = recorded_world(
             world,
             mission,
@@ -136,7 +139,7 @@ class Simulation:
             rotor_level=rotor_level,
             seed=seed,
             dt_s=dt_s,
-            avoidance=avoidance if manager is None else NONE,
+            avoidance=avoidance,
             noise=noise,
         )
         if on_world is not None:

@@ -115,6 +115,10 @@ class SimulatedWorld(Protocol):
         """Multiply a robot's top speed by `factor`, above 0 to 1, from now on."""
         ...
 
+    def leave_to_traffic(self, robot: str) -> None:
+        """From now on who orders a robot says when its way is free: it goes straight, and only brakes for others."""
+        ...
+
     def believe(self, robot: str, pose: Floats, spread_m: float) -> None:
         """Let a robot take itself to be at a pose (4,) of x, y, z and heading, as of now.
 

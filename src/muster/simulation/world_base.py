@@ -245,6 +245,9 @@ class WorldBase(SimulatedWorld, ABC):
             raise ParameterError(f"factor: {factor}; expected above 0 to 1")
         self._crowd.slow(self._number(robot), factor)
 
+    def leave_to_traffic(self, robot: str) -> None:
+        self._crowd.leave_to_traffic(self._number(robot))
+
     def believe(self, robot: str, pose: Floats, spread_m: float) -> None:
         x, y, z, heading = map(float, pose)
         self._crowd.believe(self._number(robot), (x, y, z), heading, spread_m)

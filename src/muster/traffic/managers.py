@@ -6,39 +6,57 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
-from muster.motion.map_world import Body, World
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.map_world import World
 from muster.traffic.manager import TrafficManager
+from muster.traffic.mission_roadmap import MissionRoadmap
+from muster.traffic.names import AUTO, RESERVE, TRAFFIC
 from muster.traffic.reserved import ReservedTraffic
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmap import MARGIN_M
 from muster.traffic.roadmap_plan import RoadmapPlan
 
-FREE, RESERVE = TRAFFIC = ("free", "reserve")
-"""Robots pass each other as they meet, or in the order of one plan for all."""
 
-
-def manager_named(name: str, mission: Mission, seed: int = 0) -> TrafficManager | None:
+def manager_named(
+    name: str, mission: Mission, seed: int = 0, *, world: World | None = None, margin_m: float = MARGIN_M
+) -> TrafficManager | None:
     """The manager of a mission's traffic; None where robots pass each other as they meet.
+
+    With `auto` traffic is by reservation where the mission gives lanes, or its map has passages for one robot.
+
+    Parameters
+    ----------
+    world
+        of the mission, where it is at hand.
+    margin_m
+        what robots keep between them beyond touching.
 
     Raises
     ------
     ParameterError
-        if there is none of that name.
+        if there is none of that name, or `reserve` is asked for where no two robots drive on one roadmap.
     MissionError, MissingExtraError
         as `World.of`.
     """
     if name not in TRAFFIC:
         raise ParameterError(f"traffic: {shown(name)}; expected {', '.join(TRAFFIC)}{did_you_mean(str(name), TRAFFIC)}")
-    return _reserved(mission, seed) if name == RESERVE else None
+    if name not in (AUTO, RESERVE):
+        return None
+    reason = _reason_against(mission)
+    if reason and name == RESERVE:
+        raise ParameterError(f"traffic: {name}; expected free: {reason}")
+    if reason or (name == AUTO and mission.lanes is None and mission.travel_rule != "map"):
+        return None
+    mapped = mission.travel_rule == "map"
+    if mapped and world is None:
+        world = World.of(mission)
+    shared = MissionRoadmap.of(mission, world if mapped else None, margin_m=margin_m)
+    if name == AUTO and mission.lanes is None and not shared.roadmap.narrow.any():
+        return None
+    return ReservedTraffic(RoadmapPlan(shared.roadmap, shared.clear, seed), margin_m=margin_m)
 
 
-def _reserved(mission: Mission, seed: int) -> TrafficManager:
-    """Traffic by reservation, over the mission's map where it has one."""
-    widest = Body(max((robot.radius_m for robot in mission.all_robots), default=0.0), "ground")
-    places = [robot.position[:2] for robot in mission.all_robots] + [task.position[:2] for task in mission.tasks]
-    if mission.map is None or mission.travel_rule != "map":
-        return ReservedTraffic(RoadmapPlan(Roadmap.of(None, widest.radius_m, places), lambda _: True, seed))
-    world = World.of(mission)
-    paths = RobotPaths(world)
-    roadmap = Roadmap.of(world.free_space(widest.radius_m, widest.kind, three_d=False), widest.radius_m, places)
-    return ReservedTraffic(RoadmapPlan(roadmap, lambda points: paths.clear(widest, points), seed))
+def _reason_against(mission: Mission) -> str:
+    """Why robots of a mission cannot share a roadmap; empty where they can."""
+    driving = [robot for robot in mission.all_robots if robot.kind == "ground" and robot.radius_m > 0]
+    if len(driving) < 2:
+        return "fewer than two robots of kind ground have a radius above 0"
+    return ""

@@ -9,6 +9,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Point, Robot
 from muster.motion.actions import TaskMotion, plan
 from muster.motion.free_space import GridSpace, PolygonSpace
+from muster.motion.grid import Floats
 from muster.motion.map_world import World
 from muster.motion.paths import PathFinder
 from muster.traffic.given_lanes import ClosedLane, closed_lanes
@@ -30,12 +31,15 @@ class MissionRoadmap:
         where no way leads there.
     closed
         the lanes of the mission that the widest robot cannot drive.
+    finder
+        of paths for the widest robot; None where there is no map.
     """
 
     roadmap: Roadmap
     robots: tuple[Robot, ...]
     point_of: Mapping[Point, int]
     closed: tuple[ClosedLane, ...] = ()
+    finder: PathFinder | None = None
 
     @classmethod
     def of(cls, mission: Mission, world: World | None = None, *, margin_m: float = MARGIN_M) -> MissionRoadmap:
@@ -49,23 +53,29 @@ class MissionRoadmap:
             as `World.of`.
         """
         robots = tuple(robot for robot in mission.robots if robot.kind == "ground") or mission.robots
-        widest = max(robots, key=lambda robot: robot.radius_m)
+        sharing = (*robots, *(robot for robot in mission.newcomers if robot.kind == robots[0].kind))
+        widest = max(sharing, key=lambda robot: robot.radius_m)
         if widest.radius_m <= 0:
             raise ParameterError(
                 "radius_m: 0 for all robots; expected a robot with a radius above 0: others share any lane"
             )
-        places = list(dict.fromkeys(place[:2] for place in _places(mission, robots)))
+        places = list(dict.fromkeys(place[:2] for place in _places(mission, sharing)))
         space = None
-        if mission.map is not None:
+        if mission.map is not None and mission.travel_rule == "map":
             space = (world or World.of(mission)).free_space(widest.radius_m, widest.kind, three_d=False)
             assert isinstance(space, GridSpace | PolygonSpace)
+        finder = None if space is None else PathFinder(space)
         closed: list[ClosedLane] = []
         if mission.lanes is None:
             roadmap = Roadmap.of(space, widest.radius_m, places, margin_m=margin_m)
         else:
             roadmap = Roadmap.of_lanes(mission.lanes, widest.radius_m, places, space=space, margin_m=margin_m)
-            closed = closed_lanes(mission.lanes, widest.radius_m, None if space is None else PathFinder(space))
-        return cls(roadmap, robots, dict(zip(places, roadmap.places.tolist(), strict=True)), tuple(closed))
+            closed = closed_lanes(mission.lanes, widest.radius_m, finder)
+        return cls(roadmap, robots, dict(zip(places, roadmap.places.tolist(), strict=True)), tuple(closed), finder)
+
+    def clear(self, points: Floats) -> bool:
+        """Whether the straight way along points, (n, 2) metres, is free for the widest robot."""
+        return self.finder is None or self.finder.clear(points)
 
     def points(self, places: Iterator[Point] | list[Point]) -> list[int]:
         """The points of places of the mission."""

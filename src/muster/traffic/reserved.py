@@ -15,9 +15,8 @@ from muster import core
 from muster.mission.model import Robot
 from muster.motion.port import RobotPort
 from muster.traffic.managed_port import ManagedPort
+from muster.traffic.roadmap import MARGIN_M
 
-MARGIN_M = 0.02
-"""What is left between two robots that pass."""
 AHEAD_M = 2.0
 """For how many metres a robot may have begun moves, which a new plan does not change."""
 PLAN_EVERY_S = 1.0
@@ -102,18 +101,24 @@ class ReservedTraffic:
     ----------
     plan
         plans moves of all robots.
+    margin_m
+        what is left between two robots that pass.
     """
 
     plan: Planner
     plans: int = 0
-    _order: core.PassingOrder = field(default_factory=lambda: core.PassingOrder(margin=MARGIN_M, ahead=AHEAD_M))
+    margin_m: float = MARGIN_M
+    _order: core.PassingOrder = field(init=False)
     _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
     _parts: list[_Part] = field(default_factory=list)
     _planned_s: float = -math.inf
 
+    def __post_init__(self) -> None:
+        self._order = core.PassingOrder(margin=self.margin_m, ahead=AHEAD_M)
+
     def managed(self, robot: Robot, port: RobotPort) -> RobotPort:
-        """The port by which a robot is ordered; the port itself where nobody can run into it."""
-        if robot.radius_m <= 0:
+        """The port by which a robot is ordered; the port itself where no other that drives can run into it."""
+        if robot.radius_m <= 0 or robot.kind != "ground":
             return port
         managed = ManagedPort(port)
         self._waiting.append((robot, managed))
