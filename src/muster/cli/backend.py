@@ -75,6 +75,7 @@ class Backend(Protocol):
         seed: int,
         dt_s: float,
         avoidance: str,
+        traffic: str,
         law: str,
         noise: Noise,
         pose: str | None,

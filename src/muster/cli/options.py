@@ -16,6 +16,7 @@ from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
 from muster.motion.avoidance_names import AUTO, AVOIDANCE
+from muster.traffic.names import DEFAULT, TRAFFIC
 
 if TYPE_CHECKING:
     from muster.verification import Verdict
@@ -188,6 +189,18 @@ def avoidance_option(verb: Verb) -> Verb:
         default=AUTO,
         show_default=True,
         help="How robots pass each other; auto: simulated in the plane by hrvo, else by orca.",
+    )(verb)
+
+
+def traffic_option(verb: Verb) -> Verb:
+    """--traffic."""
+    return click.option(
+        "--traffic",
+        type=click.Choice(TRAFFIC),
+        default=DEFAULT,
+        show_default=True,
+        help="Who passes first: reserve, by one plan for all that drive; free, as they meet. auto: reserve where the "
+        "mission gives lanes or its map has passages for one.",
     )(verb)
 
 

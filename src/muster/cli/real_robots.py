@@ -22,6 +22,7 @@ from muster.cli.options import (
     quiet_option,
     require_admissible,
     require_complete_option,
+    traffic_option,
 )
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.planning_options import planning_options, request_of
@@ -52,6 +53,7 @@ class RealRunOptions:
     html: Path | None
     plot: Path | None
     gantt: Path | None
+    traffic: str
     foxglove: int | None
     require_complete: bool
     form: str
@@ -71,6 +73,7 @@ def real_options(verb: Verb) -> Verb:
     declared = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]"),
         planning_options(time_limit_s=2.0),
+        traffic_option,
         record_option,
         drawing_options,
         foxglove_option,
@@ -187,6 +190,7 @@ def carried_out(
                 seed=options.planning.seed,
                 planning=options.planning,
                 ignore=options.planning.ignore,
+                traffic=options.traffic,
                 record=file,
                 observers=(*observers, *viewers),
                 on_event=None if options.quiet else print_event,

@@ -27,6 +27,7 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
     say_of_plan,
+    traffic_option,
 )
 from muster.cli.outputs import require_drawable, require_folder, require_writable
 from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
@@ -92,6 +93,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
     help="kinematic, physics, or a world of an installed package.",
 )
 @avoidance_option
+@traffic_option
 @click.option("--law", type=click.Choice(LAWS), default="profile", show_default=True, help="How robots move.")
 @click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
 @click.option(
@@ -137,6 +139,7 @@ def command(
     negotiate: bool,
     world: World,
     avoidance: str,
+    traffic: str,
     law: str,
     dt: float,
     speed: float | None,
@@ -207,6 +210,7 @@ def command(
             seed=options.seed,
             dt_s=dt,
             avoidance=avoidance,
+            traffic=traffic,
             law=law,
             noise=noise,
             pose=pose,

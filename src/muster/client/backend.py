@@ -107,6 +107,7 @@ class ServerBackend:
         seed: int,
         dt_s: float,
         avoidance: str,
+        traffic: str,
         law: str,
         noise: Noise,
         pose: str | None,
@@ -121,7 +122,7 @@ class ServerBackend:
     ) -> tuple[Report, float | None]:
         if not isinstance(plan, Plan):
             raise ParameterError(f"plan: {type(plan).__name__}; expected a Plan for a server")
-        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "law": law}
+        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "traffic": traffic, "law": law}
         settings["ignore"] = list(ignore)
         if planning is not None and (replanning := _replanning(planning)):
             settings["planning"] = replanning

@@ -12,6 +12,7 @@ from muster.mission.plan import Plan
 from muster.planning.options import PlanningOptions
 from muster.planning.request import require_mission
 from muster.running.recorded import recorded
+from muster.traffic.names import DEFAULT
 
 if TYPE_CHECKING:
     import threading
@@ -29,6 +30,7 @@ def carry_out(
     planning: PlanningOptions | None = None,
     ignore: str | Collection[str] = (),
     standing: Standing | None = None,
+    traffic: str = DEFAULT,
     record: str | Path | None = None,
     observers: Sequence[Recorder] = (),
     on_event: Callable[[ExecutionEvent], None] | None = None,
@@ -48,6 +50,9 @@ def carry_out(
         rules that do not hold, whatever the plan says of itself.
     standing
         for a fleet that stays on duty: until when, and for which orders.
+    traffic
+        who says which robot passes first: free, robots pass each other as they meet; reserve, in the order of one plan
+        for all that drive; auto, reserve where the mission gives lanes or its map has passages for one robot.
     record
         a file (.mcap) for the record of the run; needs the extra `record`.
     observers
@@ -79,6 +84,7 @@ def carry_out(
             planning=planning,
             ignore=ignore,
             standing=standing,
+            traffic=traffic,
             recorder=recorder,
             on_event=on_event,
             halt=halt,

@@ -31,7 +31,10 @@ from muster.motion.port import RobotPort
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
 from muster.running.fleet_clock import FleetWithMissionClock
+from muster.running.fleet_in_traffic import FleetInTraffic
 from muster.running.replanning import planning_of
+from muster.running.traffic_choice import manager_for
+from muster.traffic.names import DEFAULT
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Report
@@ -52,6 +55,7 @@ def carry_out_live(
     planning: PlanningOptions | None = None,
     ignore: str | Collection[str] = (),
     standing: Standing | None = None,
+    traffic: str = DEFAULT,
     recorder: Recorder | None = None,
     on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
@@ -72,6 +76,8 @@ def carry_out_live(
         rules that do not hold, whatever the plan says of itself.
     standing
         for a fleet that stays on duty: until when, and for which orders.
+    traffic
+        who says which robot passes first; see `Simulation`.
     recorder
         receives all events, and the positions that robots report.
     on_event
@@ -82,7 +88,17 @@ def carry_out_live(
     ParameterError
         if the plan names robots or tasks that the mission does not have, or a robot has no port.
     """
-    live = Live(mission, plan, fleet, seed=seed, planning=planning, ignore=ignore, standing=standing, recorder=recorder)
+    live = Live(
+        mission,
+        plan,
+        fleet,
+        seed=seed,
+        planning=planning,
+        ignore=ignore,
+        standing=standing,
+        traffic=traffic,
+        recorder=recorder,
+    )
     halt, told = halt or threading.Event(), 0
     try:
         while not halt.is_set():
@@ -117,6 +133,8 @@ class Live:
         rules that do not hold, whatever the plan says of itself.
     standing
         for a fleet that stays on duty: until when, and for which orders.
+    traffic
+        who says which robot passes first; see `Simulation`.
     recorder
         receives all events, and the positions that robots report.
     past, begin_s
@@ -138,12 +156,15 @@ class Live:
         planning: PlanningOptions | None = None,
         ignore: str | Collection[str] = (),
         standing: Standing | None = None,
+        traffic: str = DEFAULT,
         recorder: Recorder | None = None,
         past: CompletedWork | None = None,
         begin_s: float = 0.0,
     ) -> None:
-        self._fleet, self._recorder = FleetWithMissionClock(fleet, begin_s), recorder
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+        manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
+        managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
+        self._fleet, self._recorder = FleetWithMissionClock(managed, begin_s), recorder
         travel = travel_of(mission, robot_paths)
         replan, self._standing = planning_of(mission, standing, planning, travel, seed, repeatable=False)
         self.executor = Executor(

@@ -33,9 +33,9 @@ from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.replanning import planning_of
 from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
+from muster.running.traffic_choice import manager_for
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
-from muster.traffic.managers import manager_named
 from muster.traffic.names import DEFAULT
 from muster.verification import verify
 
@@ -67,7 +67,8 @@ class Simulation:
         how robots pass each other: auto (the method that jams least), orca, rvo, hrvo, avo or none.
     traffic
         free: robots pass each other as they meet; reserve: robots that drive pass in the order of one plan for all,
-        and go round nothing; auto: reserve where the mission gives lanes or its map has passages for one robot.
+        and go round nothing; auto: reserve where the mission gives lanes or its map has passages for one robot, and
+        no avoidance and no other law than profile is asked for.
     law
         how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise
@@ -127,8 +128,15 @@ class Simulation:
     ) -> None:
         robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
         travel = travel_of(mission, robot_paths)
-        world_map = None if robot_paths is None else robot_paths.world
-        manager = manager_named(traffic, mission, seed, world=world_map)
+        manager = manager_for(
+            traffic,
+            mission,
+            seed=seed,
+            avoidance=avoidance,
+            law=law,
+            exact=world == "kinematic" and noise == NO_NOISE and pose is None and localise is None,
+            world=None if robot_paths is None else robot_paths.world,
+        )
         self._world = recorded_world(
             world,
             mission,

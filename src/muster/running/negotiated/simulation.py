@@ -30,6 +30,7 @@ from muster.running.simulation import OnWorld
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.simulation import CALM, NO_NOISE, Noise, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
+from muster.traffic.names import DEFAULT, RESERVE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +61,7 @@ def negotiate_and_carry_out(
     seed: int = 0,
     dt_s: float = 0.1,
     avoidance: str = AUTO,
+    traffic: str = DEFAULT,
     law: str = "profile",
     noise: Noise = NO_NOISE,
     wind: Wind = CALM,
@@ -82,6 +84,8 @@ def negotiate_and_carry_out(
     ----------
     problem
         the mission, without robots that join later.
+    traffic
+        auto or free: nobody says which robot passes first.
     speed
         the speed-up over real time, at most 10; None: 1. Messages travel in real time: the faster robots move, the
         longer communication takes in the mission's time.
@@ -91,12 +95,14 @@ def negotiate_and_carry_out(
     Raises
     ------
     ParameterError
-        if `speed` is larger.
+        if `speed` is larger, or traffic by reservation is asked for.
     MusterError
         if there is no agreement in time, or a robot cannot take part.
     """
     if speed is not None and speed > MOST_SPEED:
         raise ParameterError(f"speed: {speed:g}; expected at most {MOST_SPEED:g}, as robots talk in real time")
+    if traffic == RESERVE:
+        raise ParameterError(f"traffic: {traffic}; expected free: without a centre nobody plans for all")
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         bodies = recorded_world(

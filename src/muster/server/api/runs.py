@@ -34,7 +34,7 @@ class NewRun(Body):
     settings: dict[Name, Any] = Field(
         default={},
         max_length=50,
-        description="`seed`, `dt_s`, `avoidance`, `law`, `noise`, `pose`, `localise`; of a bridge what it needs.",
+        description="`seed`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`; a bridge has its own.",
     )
 
 

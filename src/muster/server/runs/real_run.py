@@ -14,6 +14,7 @@ from muster.motion.port import Telemetry
 from muster.planning.options import PlanningOptions
 from muster.running.live import Live, elsewhere, with_reported_starts
 from muster.server.runs.crash_recovery import recovered_from
+from muster.traffic.names import DEFAULT
 
 _OF_WORK = ("sets_out", "arrives", "starts", "ends")
 LOOK_S = 0.1
@@ -47,6 +48,7 @@ class RealRun:
         seed: int = 0,
         planning: PlanningOptions | None = None,
         standing: Standing | None = None,
+        traffic: str = DEFAULT,
         log: Sequence[Mapping[str, Any]] = (),
         begin_s: float = 0.0,
         at_end: Callable[[], None] = lambda: None,
@@ -63,6 +65,7 @@ class RealRun:
             seed=seed,
             planning=planning,
             standing=standing,
+            traffic=traffic,
             ignore=found.plan.ignored,
             recorder=gauged,
             past=found.past if log else None,

@@ -16,11 +16,12 @@ from muster.motion.avoidance_names import AVOIDANCE
 from muster.motion.laws import LAWS
 from muster.planning.options import options_from
 from muster.running.worlds import WORLDS
+from muster.traffic.names import TRAFFIC
 
 if TYPE_CHECKING:
     from muster.execution import Standing
 
-_PLANNING = {"seed": int, "ignore": list, "planning": dict, "stay": bool, "until_s": float}
+_PLANNING = {"seed": int, "ignore": list, "planning": dict, "stay": bool, "until_s": float, "traffic": str}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
 _WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
@@ -53,6 +54,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": AVOIDANCE,
+    "traffic": TRAFFIC,
     "pose": ("true", "estimate"),
     "law": LAWS,
     "odometry": ("map", "start"),

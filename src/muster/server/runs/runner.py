@@ -129,6 +129,7 @@ def _world_run(
             seed=settings.get("seed", 0),
             planning=checked_options(settings.get("planning", {})),
             standing=standing_of(settings),
+            traffic=settings.get("traffic", DEFAULT),
             log=log,
             begin_s=begin["until_s"],
             at_end=at_end,

@@ -23,6 +23,11 @@ _SPEEDS = {
 }
 _SIMULATED = {"kinematic": "simulated", "physics": "simulated with physics"}  # others by their names
 _AVOIDANCE = {"auto": "as jams least", "orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "avo": "AVO", "none": "not at all"}
+_TRAFFIC = {
+    "auto": "in planned order where there is room for one",
+    "reserve": "in planned order",
+    "free": "as robots meet",
+}
 _LAWS = {
     "profile": "speed profiles, turns on the spot",
     "thesis": "control laws of the thesis",
@@ -78,9 +83,15 @@ def _text(label: str, value: str = "") -> ui.input:
 def _simulated(_: PlanEntry, __: int) -> Reading:
     with ui.expansion("More").classes("full"):
         avoidance = _choice("How robots pass each other", _AVOIDANCE, "auto")
+        traffic = _choice("Who passes first", _TRAFFIC, "auto")
         law = _choice("How robots move", _LAWS, "profile")
         seed = ui.number("Seed", value=0, min=0, precision=0).props("outlined dense").classes("full")
-    return lambda: {"avoidance": avoidance.value, "law": law.value, "seed": int(seed.value or 0)}
+    return lambda: {
+        "avoidance": avoidance.value,
+        "traffic": traffic.value,
+        "law": law.value,
+        "seed": int(seed.value or 0),
+    }
 
 
 def _unset(_: PlanEntry, __: int) -> Reading:
