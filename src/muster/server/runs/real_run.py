@@ -32,6 +32,8 @@ class RealRun:
         the mission time at which the run starts or resumes.
     standing
         of a fleet that stays on duty.
+    traffic
+        who says which robot passes first; see `Simulation`.
     at_end
         called when all tasks are done.
     """
