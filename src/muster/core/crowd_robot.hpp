@@ -138,6 +138,7 @@ struct CrowdRobot {
   double wheel_way = kNoWheels, wheel_turn = kNoWheels;  // by encoders, in this step
 
   bool turned_aside = false;  // whether in the last step it did not get the velocity that it wanted
+  bool braked = false;        // whether the right of way of others was why
   double approach = 0.0;      // m/s by which it comes nearer to its way point, over about the last half second
   Patience patience;
   Trail trail;

@@ -239,7 +239,9 @@ void CrowdWorld::yield(const AgentTree<3>& tree) {
       robot.ahead = steering.ahead_braked + share * (steering.ahead_wanted - steering.ahead_braked);
       robot.yaw_rate = steering.yaw_rate;
     }
-    robot.turned_aside = share < 1.0 - kAside || norm(chosen_[i] - course_[i]) > kAside * robot.top_speed();
+    robot.braked = share < 1.0 - kAside;
+    const bool left_course = robot.braked || norm(chosen_[i] - course_[i]) > kAside * robot.top_speed();
+    robot.turned_aside = left_course && !robot.in_traffic;
   }
 }
 
