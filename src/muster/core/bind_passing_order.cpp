@@ -33,12 +33,13 @@ class CheckedOrder {
   CheckedOrder(double margin, double ahead) : order_(margin, ahead) {}
 
   int add(Pair place, double radius) { return robots_ = order_.add(point_of(place), radius) + 1, robots_ - 1; }
-  bool append(int robot, Pair to) { return checked(robot).append(robot, point_of(to)); }
+  bool append(int robot, Pair to, bool leaves) { return checked(robot).append(robot, point_of(to), leaves); }
   void drop_ahead() { order_.drop_ahead(); }
   void cut() { order_.cut(); }
   void progress(int robot, int passed, Pair near) { checked(robot).progress(robot, passed, point_of(near)); }
   PassingOrder::Grant grant(int robot) { return checked(robot).grant(robot); }
   Pair end(int robot) { return pair_of(checked(robot).end(robot)); }
+  Pair stand(int robot) { return pair_of(checked(robot).stand(robot)); }
   int passed(int robot) { return checked(robot).passed(robot); }
   double metres_left(int robot) { return checked(robot).metres_left(robot); }
 
@@ -62,7 +63,7 @@ void bind_passing_order(nb::module_& m) {
       .def_ro("ended", &PassingOrder::Grant::ended, "How many of these are ends of moves.")
       .def_ro("metres", &PassingOrder::Grant::metres, "From where the robot is.")
       .def_ro("waits_for", &PassingOrder::Grant::waits_for, "The robot that passes first; -1: none.")
-      .def_ro("last", &PassingOrder::Grant::last, "Whether all moves of the robot are granted.");
+      .def_ro("last", &PassingOrder::Grant::last, "Whether all its moves are granted but those by which it leaves.");
 
   nb::class_<CheckedOrder>(m, "PassingOrder",
                            "The order in which robots pass: one sequence of straight moves, by order and not by clock "
@@ -70,16 +71,18 @@ void bind_passing_order(nb::module_& m) {
       .def(nb::init<double, double>(), nb::kw_only(), "margin"_a, "ahead"_a,
            "Metres that are left between robots, and for which a robot may have begun moves.")
       .def("add", &CheckedOrder::add, "place"_a, "radius"_a, "A robot that stands; returns its number.")
-      .def("append", &CheckedOrder::append, "robot"_a, "to"_a,
-           "A move from where the robot's moves end; False where another would stand in the way.")
+      .def("append", &CheckedOrder::append, "robot"_a, "to"_a, "leaves"_a = false,
+           "A move from where the robot's moves end; False where another would stand in the way. `leaves`: it leaves "
+           "the place to which it was to go. Nobody is let go along such moves, but others are planned after them.")
       .def("drop_ahead", &CheckedOrder::drop_ahead, "Drop all moves that have not begun.")
       .def("cut", &CheckedOrder::cut, "Let all moves end where robots have been let go to.")
       .def("progress", &CheckedOrder::progress, "robot"_a, "passed"_a, "near"_a,
            "A robot has passed the ends of so many of its moves in all, and is near a place.")
       .def("grant", &CheckedOrder::grant, "robot"_a, "How far a robot may go now; what it is told it keeps.")
       .def("end", &CheckedOrder::end, "robot"_a, "Where a robot is after all its moves.")
+      .def("stand", &CheckedOrder::stand, "robot"_a, "Where it is before it leaves.")
       .def("passed", &CheckedOrder::passed, "robot"_a, "Moves that a robot has finished since it was added.")
-      .def("metres_left", &CheckedOrder::metres_left, "robot"_a, "Metres that a robot has still to go.");
+      .def("metres_left", &CheckedOrder::metres_left, "robot"_a, "Metres that a robot has still to go before it leaves.");
 }
 
 }  // namespace muster

@@ -33,9 +33,9 @@ Traveller traveller_of(int start, const Stops& stops, double radius, double spee
   return who;
 }
 
-std::tuple<std::vector<std::tuple<double, int, int>>, std::vector<double>, std::vector<int>> told(const Paths& paths) {
-  std::vector<std::tuple<double, int, int>> moves;
-  for (const TimedMove& move : paths.moves) moves.emplace_back(move.start, move.traveller, move.edge);
+std::tuple<std::vector<std::tuple<double, int, int, bool>>, std::vector<double>, std::vector<int>> told(const Paths& paths) {
+  std::vector<std::tuple<double, int, int, bool>> moves;
+  for (const TimedMove& move : paths.moves) moves.emplace_back(move.start, move.traveller, move.edge, move.leaves);
   return {std::move(moves), paths.ends, paths.order};
 }
 

@@ -37,7 +37,7 @@ int PassingOrder::add(Point place, double radius) {
   return static_cast<int>(bots_.size()) - 1;
 }
 
-bool PassingOrder::append(int robot, Point to) {
+bool PassingOrder::append(int robot, Point to, bool leaves) {
   Bot& bot = bots_[robot];
   const Point from = bot.end;
   for (int other = 0; other < static_cast<int>(bots_.size()); ++other) {
@@ -45,7 +45,7 @@ bool PassingOrder::append(int robot, Point to) {
     const double gap = other == robot ? std::numeric_limits<double>::infinity() : segment_gap(stands, from, to);
     if (gap < apart(robot, other) - kRounding && gap < distance(stands, from) - kRounding) return false;
   }
-  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, {}};
+  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, leaves, {}};
   for (std::size_t number = first_; number < first_ + moves_.size(); ++number) {
     const Move& before = move(number);
     if (before.robot < 0 || before.robot == robot) continue;
@@ -133,11 +133,18 @@ std::pair<double, int> PassingOrder::limit(const Move& m) const {
   return {least, waits_for};
 }
 
+Point PassingOrder::stand(int robot) const {
+  const Bot& bot = bots_[robot];
+  const auto leaving = std::ranges::find_if(bot.moves, [&](std::size_t number) { return move(number).leaves; });
+  return leaving == bot.moves.end() ? bot.end : move(*leaving).from;
+}
+
 PassingOrder::Grant PassingOrder::grant(int robot) {
   Bot& bot = bots_[robot];
   Grant found{{}, 0, 0.0, -1, true};
   for (const std::size_t number : bot.moves) {
     Move& m = move(number);
+    if (m.leaves) break;
     if (!m.begun && found.metres >= ahead_) {
       found.last = false;
       break;
@@ -167,7 +174,8 @@ PassingOrder::Grant PassingOrder::grant(int robot) {
 
 double PassingOrder::metres_left(int robot) const {
   double metres = 0.0;
-  for (const std::size_t number : bots_[robot].moves) metres += move(number).length - move(number).at;
+  for (const std::size_t number : bots_[robot].moves)
+    if (!move(number).leaves) metres += move(number).length - move(number).at;
   return metres;
 }
 

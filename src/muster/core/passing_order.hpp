@@ -3,6 +3,9 @@
 // A move is a straight way of one robot. The sequence is such that each move is free while all other robots stand where
 // their earlier moves have left them. A robot goes on along its moves as far as it keeps away from what is left of all
 // earlier moves of others. So whatever is late delays only who comes later, and nobody waits in a circle.
+//
+// By its last moves a robot may leave the place to which it was to go. Nobody is let go along these: they stand for what
+// it will do when it has done there what it is to do, so that others can be planned past that place.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +33,8 @@ class PassingOrder {
   int add(Point place, double radius);
 
   // Appends a move of a robot from where its moves end. False, and nothing is appended, where another robot would stand
-  // in the way; one that is too near at the beginning may be left.
-  bool append(int robot, Point to);
+  // in the way; one that is too near at the beginning may be left. `leaves`: it leaves the place to which it was to go.
+  bool append(int robot, Point to, bool leaves = false);
 
   // Drops all moves that have not begun.
   void drop_ahead();
@@ -48,15 +51,17 @@ class PassingOrder {
     int ended;                  // how many of these points are ends of moves
     double metres;              // from where it is
     int waits_for;              // the robot that comes first; -1: none
-    bool last;                  // whether all its moves are granted
+    bool last;                  // whether all its moves are granted but those by which it leaves
   };
   Grant grant(int robot);
 
   // Where a robot is when all its moves are done.
   Point end(int robot) const { return bots_[robot].end; }
+  // Where it is before it leaves.
+  Point stand(int robot) const;
   // Moves that a robot has finished since it was added.
   int passed(int robot) const { return bots_[robot].passed; }
-  // Metres that a robot has still to go.
+  // Metres that a robot has still to go before it leaves.
   double metres_left(int robot) const;
 
  private:
@@ -67,6 +72,7 @@ class PassingOrder {
     double at = 0.0;       // metres that the robot has gone of it
     double granted = 0.0;  // metres to which it has been let go
     bool begun = false;
+    bool leaves = false;
     std::vector<std::size_t> earlier;  // moves of others that come near it, in order
   };
   struct Bot {

@@ -123,13 +123,17 @@ double SafeIntervals::leaves_by(const Traveller& who) {
   return until;
 }
 
-bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, double& end) {
+std::optional<SafeIntervals::Way> SafeIntervals::path(const Traveller& who) {
   std::ranges::fill(known_, false);
   const DirectedGraph& graph = roadmap_->graph();
   const int legs = static_cast<int>(who.stops.size());
   std::vector<const std::vector<double>*> to_stop;
   std::vector<double> after(legs + 1, 0.0);  // seconds from a stop to the last
   for (const Stop& stop : who.stops) to_stop.push_back(&metres_to(stop.point));
+  if (legs > 0 && who.stays) {  // where another stays for good nobody can: that is seen without a search
+    const std::vector<Span>& at_last = safe(who, who.stops.back().point);
+    if (at_last.empty() || at_last.back().until < kNever) return std::nullopt;
+  }
   for (int leg = legs - 1; leg > 0; --leg)
     after[leg] = after[leg + 1] + (*to_stop[leg])[who.stops[leg - 1].point] / who.speed + who.stops[leg].hold;
   const auto remaining = [&](int leg, int point) {
@@ -162,7 +166,8 @@ bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, do
     return label.interval < 0 ? start : safe(who, graph.head(label.edge))[label.interval];
   };
   offer({0.0, who.ready, 0, -1, -1, -1, 0.0}, who.start);
-  int found = -1;
+  const bool rests = legs == 0 || !who.stays;
+  int found = -1, there_first = -1;
   while (!queue.empty()) {
     const Item item = queue.pop();
     const Label label = labels[item.label];
@@ -181,7 +186,8 @@ bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, do
         on.ready = held;
         on.parent = item.label;
         on.start = kNever;  // no move
-        if (last) {
+        if (last && there_first < 0) there_first = static_cast<int>(labels.size());
+        if (last && who.stays) {
           on.key = held;
           labels.push_back(on);
           queue.push({held, static_cast<int>(labels.size()) - 1, true});
@@ -190,7 +196,7 @@ bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, do
         }
       }
     }
-    if (legs == 0 && here.until == kNever)
+    if (label.leg == legs && rests && here.until == kNever)
       queue.push({label.ready + (rests_[point] ? 0.0 : kRestingInTheWay), item.label, true});
     for (int edge = graph.begin(point); edge < graph.end(point); ++edge) {
       const double angle =
@@ -208,33 +214,38 @@ bool SafeIntervals::path(const Traveller& who, std::vector<TimedMove>& moves, do
       }
     }
   }
-  if (found < 0) return false;
-  end = labels[found].ready;
-  for (int k = found; k >= 0; k = labels[k].parent)
-    if (labels[k].edge >= 0 && labels[k].start < kNever) moves.push_back({labels[k].start, 0, labels[k].edge});
-  std::ranges::reverse(moves);
-  return true;
+  const bool stands_free = found >= 0;
+  if (!stands_free) found = there_first;  // nowhere to rest afterwards
+  if (found < 0) return std::nullopt;
+  Way way{{}, labels[found].ready, stands_free ? kNever : labels[found].ready};
+  for (int k = found; k >= 0; k = labels[k].parent) {
+    const bool leaves = legs > 0 && labels[k].leg == legs;
+    if (leaves) way.end = labels[k].ready;
+    if (labels[k].edge >= 0 && labels[k].start < kNever) way.moves.push_back({labels[k].start, 0, labels[k].edge, leaves});
+  }
+  std::ranges::reverse(way.moves);
+  return way;
 }
 
-void SafeIntervals::reserve(const Traveller& who, std::span<const TimedMove> moves, double end) {
+void SafeIntervals::reserve(const Traveller& who, const Way& way) {
   const double after = tail(who);
   int point = who.start;
   double from = -kNever;
-  for (const TimedMove& move : moves) {
+  for (const TimedMove& move : way.moves) {
     stays_[point].push_back({from, move.start + after, who.radius});
     for (const auto& near : roadmap_->near(move.edge))
       passes_[near.point].push_back({move.start, near.metres, who.radius});
     point = roadmap_->graph().head(move.edge);
     from = move.start;
   }
-  stays_[point].push_back({from, who.fixed || who.stays || who.stops.empty() ? kNever : end, who.radius});
+  stays_[point].push_back({from, way.until, who.radius});
 }
 
 Paths SafeIntervals::in_order(std::span<const Traveller> travellers, std::span<const int> order) {
   clear();
   Paths paths{{}, std::vector<double>(travellers.size(), kNever), {order.begin(), order.end()}};
   for (const int k : order)
-    if (travellers[k].fixed) reserve(travellers[k], {}, paths.ends[k] = 0.0);
+    if (travellers[k].fixed) reserve(travellers[k], {{}, paths.ends[k] = 0.0, kNever});
   // Those that come later in the order get some time to leave where they start.
   for (const int k : order) {
     const Traveller& who = travellers[k];
@@ -244,13 +255,10 @@ Paths SafeIntervals::in_order(std::span<const Traveller> travellers, std::span<c
     const Traveller& who = travellers[k];
     if (who.fixed) continue;
     std::erase_if(stays_[who.start], [](const Stay& stay) { return stay.from == -kNever; });
-    std::vector<TimedMove> moves;
-    if (path(who, moves, paths.ends[k])) {
-      reserve(who, moves, paths.ends[k]);
-    } else {
-      stays_[who.start].push_back({-kNever, kNever, who.radius});
-    }
-    for (TimedMove& move : moves) {
+    const Way way = path(who).value_or(Way{{}, kNever, kNever});
+    paths.ends[k] = way.end;
+    reserve(who, way);
+    for (TimedMove move : way.moves) {
       move.traveller = k;
       paths.moves.push_back(move);
     }

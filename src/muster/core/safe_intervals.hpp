@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,12 +27,13 @@ struct Traveller {
   double radius, speed, yaw_rate, acceleration;
   double ready;  // seconds for which it stays at its start
   bool fixed;    // it never leaves
-  bool stays;    // it stays at its last stop for good; else it is gone from there when it has held
+  bool stays;    // it stays at its last stop for good; else it leaves when it has held, to rest anywhere
 };
 
 struct TimedMove {
   double start;  // seconds
   int traveller, edge;
+  bool leaves;  // it leaves its last stop
 };
 
 struct Paths {
@@ -75,8 +77,13 @@ class SafeIntervals {
   void clear();
   double apart(const Traveller& who, double radius) const;
   double tail(const Traveller& who) const;
-  bool path(const Traveller& who, std::vector<TimedMove>& moves, double& end);
-  void reserve(const Traveller& who, std::span<const TimedMove> moves, double end);
+  struct Way {
+    std::vector<TimedMove> moves;
+    double end;    // when it has held at its last stop
+    double until;  // to which it stays where its moves end
+  };
+  std::optional<Way> path(const Traveller& who);
+  void reserve(const Traveller& who, const Way& way);
   // The intervals in which a robot may be at a point.
   const std::vector<Span>& safe(const Traveller& who, int point);
   // When a robot must have left where it starts: it is there, whoever stands near.

@@ -46,7 +46,7 @@ class Traveller:
     ready_s, hold_s
         seconds for which it stays at its start, and at its goal.
     stays
-        whether it stays at its goal for good; else it is expected to leave then.
+        whether it stays at its goal for good; else it leaves then.
     fixed
         whether it stays at its start in any case.
     """
@@ -62,10 +62,11 @@ class Traveller:
 
 
 class Move(NamedTuple):
-    """A straight move of a traveller, by its number among all, to a place in metres."""
+    """A straight move of a traveller, by its number among all, to a place in metres; `leaves`: away from its goal."""
 
     traveller: int
     to: Point
+    leaves: bool = False
 
 
 Planner = Callable[[Sequence[Traveller]], Iterable[Move]]
@@ -82,6 +83,7 @@ class _Part:
     moves_passed: int = 0  # ends of moves, by the orders before the last
     ends: int = 0  # how many of the places of the last order are ends of moves
     goal: Point | None = None  # by the last plan
+    arrives: bool = False  # whether it has something to do there, by the last plan
     to_go: bool = False  # whether it has been let go further than where it is
     stood: Point = (0.0, 0.0)
     moved_s: float = -math.inf  # when it last moved, or had no reason to
@@ -162,8 +164,7 @@ class ReservedTraffic:
                 self._planned_s = -math.inf
 
     def _plan_is_due(self, now: float) -> bool:
-        goals = [self._goal(part) for part in self._parts]
-        if any(goal != part.goal for goal, part in zip(goals, self._parts, strict=True)):
+        if any((self._goal(part), part.port.arrives) != (part.goal, part.arrives) for part in self._parts):
             return True
         if now - self._planned_s < PLAN_EVERY_S:
             return False
@@ -183,11 +184,11 @@ class ReservedTraffic:
         self._order.drop_ahead()
         travellers = []
         for part in self._parts:
-            part.goal = self._goal(part)
+            part.goal, part.arrives = self._goal(part), part.port.arrives
             travellers.append(self._traveller(part))
         stopped = set[int]()
-        for traveller, to in self.plan(travellers):
-            if traveller not in stopped and not self._order.append(self._parts[traveller].number, to):
+        for traveller, to, leaves in self.plan(travellers):
+            if traveller not in stopped and not self._order.append(self._parts[traveller].number, to, leaves):
                 stopped.add(traveller)
 
     def _traveller(self, part: _Part) -> Traveller:
@@ -222,7 +223,7 @@ class ReservedTraffic:
 
     def _away_m(self, part: _Part) -> float:
         """Metres from where the moves of a robot end to its goal; 0 without one."""
-        return 0.0 if part.goal is None else math.dist(self._order.end(part.number), part.goal)
+        return 0.0 if part.goal is None else math.dist(self._order.stand(part.number), part.goal)
 
     def _held_up_by(self, part: _Part, grant: core.Grant) -> str:
         """The robot that comes first, or stands next to one that has found no way; empty where nobody holds it up."""

@@ -49,9 +49,9 @@ class RoadmapPlan:
         """Moves in an order in which they are free, as far as paths are found."""
         on = self._network([place for who in travellers for place in (who.start, who.goal) if place is not None])
         moves = self._by_safe_intervals(on, travellers)
-        for traveller, edge in self._by_inheritance(on, travellers) if moves is None else moves:
+        for traveller, edge, leaves in self._by_inheritance(on, travellers) if moves is None else moves:
             x, y = on.roadmap.points[on.roadmap.edges[edge, 1]]
-            yield Move(traveller, (float(x), float(y)))
+            yield Move(traveller, (float(x), float(y)), leaves)
 
     def _network(self, places: Sequence[Point]) -> _Network:
         """The roadmap with these places, as it was for the last plan where that has them."""
@@ -59,18 +59,18 @@ class RoadmapPlan:
             self._known = _Network.of(with_places(self.roadmap, self.clear, places))
         return self._known
 
-    def _by_safe_intervals(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int]] | None:
-        """Moves as (traveller, edge); None where some find no path."""
+    def _by_safe_intervals(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, bool]] | None:
+        """Moves as (traveller, edge, leaves); None where some find no path."""
         ranks = {name: k for k, name in enumerate(self._priorities)}
         metres = [on.metres(who) for who in travellers]
         first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
         told = [_told(who, on.number) for who in travellers]
         moves, ends, order = on.intervals.best_of(told, order=first, tries=_TRIES, seed=self.seed)
         self._priorities = [travellers[k].robot.id for k in order]
-        return None if math.inf in ends else [(traveller, edge) for _, traveller, edge in moves]
+        return None if math.inf in ends else [(traveller, edge, leaves) for _, traveller, edge, leaves in moves]
 
-    def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int]]:
-        """Moves as (traveller, edge), as far as the horizon."""
+    def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, bool]]:
+        """Moves as (traveller, edge, leaves), as far as the horizon."""
         found = on.planner.planned(
             [on.number[who.start] for who in travellers],
             [None if who.goal is None else on.number[who.goal] for who in travellers],
@@ -80,7 +80,7 @@ class RoadmapPlan:
             seed=self.seed,
             params=Parameters(horizon=_HORIZON * len(travellers)),
         )
-        return found.moves
+        return [(traveller, edge, False) for traveller, edge in found.moves]
 
 
 @dataclass(frozen=True)
