@@ -830,7 +830,7 @@ class Grant:
 
     @property
     def last(self) -> bool:
-        """Whether all moves of the robot are granted."""
+        """Whether all its moves are granted but those by which it leaves."""
 
 class PassingOrder:
     """
@@ -845,9 +845,9 @@ class PassingOrder:
     def add(self, place: tuple[float, float], radius: float) -> int:
         """A robot that stands; returns its number."""
 
-    def append(self, robot: int, to: tuple[float, float]) -> bool:
+    def append(self, robot: int, to: tuple[float, float], leaves: bool = False) -> bool:
         """
-        A move from where the robot's moves end; False where another would stand in the way.
+        A move from where the robot's moves end; False where another would stand in the way. `leaves`: it leaves the place to which it was to go. Nobody is let go along such moves, but others are planned after them.
         """
 
     def drop_ahead(self) -> None:
@@ -867,11 +867,14 @@ class PassingOrder:
     def end(self, robot: int) -> tuple[float, float]:
         """Where a robot is after all its moves."""
 
+    def stand(self, robot: int) -> tuple[float, float]:
+        """Where it is before it leaves."""
+
     def passed(self, robot: int) -> int:
         """Moves that a robot has finished since it was added."""
 
     def metres_left(self, robot: int) -> float:
-        """Metres that a robot has still to go."""
+        """Metres that a robot has still to go before it leaves."""
 
 class Traveller:
     """A robot for which a path over a roadmap is sought."""
@@ -891,7 +894,7 @@ class SafeIntervals:
     def metres_to(self, goal: int) -> list[float]:
         """What it costs to come to a point from each; inf where there is no way."""
 
-    def best_of(self, travellers: Sequence[Traveller], *, order: Sequence[int], tries: int, seed: int) -> tuple[list[tuple[float, int, int]], list[float], list[int]]:
+    def best_of(self, travellers: Sequence[Traveller], *, order: Sequence[int], tries: int, seed: int) -> tuple[list[tuple[float, int, int, bool]], list[float], list[int]]:
         """
         Moves (seconds, traveller, edge) in order; when each has held at its last stop, inf where it finds no path; and the order of travellers in which these were found, the best of several from the one given on.
         """
