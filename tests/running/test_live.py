@@ -13,6 +13,7 @@ from muster.mission.model import Event, Mission, Robot, Task
 from muster.report.record import read_record
 from muster.running.live import with_reported_starts
 from muster.simulation import KinematicWorld
+from muster_studies.jams import scenes
 
 
 class WorldAsFleet:
@@ -197,3 +198,22 @@ def test_the_clock_of_a_mission_begins_with_it(tmp_path):
     recording = read_record(tmp_path / "record.mcap")
     assert recording.tracks.times_s[0] == pytest.approx(0.0, abs=0.2)
     assert recording.duration_s == pytest.approx(report.mission_time_s)
+
+
+def test_a_fleet_passes_a_door_in_the_order_of_one_plan():
+    """The robots' own avoidance is the local layer: nobody touches, and all get through."""
+    there = scenes.one_way_door("differential-drive", 0, 5)
+    fleet = WorldAsFleet(there)
+    report = flown(there, fleet)
+    assert len(report.tasks_done) == len(there.tasks)
+    assert fleet.world.contacts == ()
+    assert report.waiting_by_cause_s["traffic"] > 0
+
+
+def test_a_robot_that_joins_a_fleet_is_in_its_traffic():
+    there = mission()
+    late = Robot(id="r_late", position=(0.0, 8.0), radius_m=0.2)
+    fleet = WorldAsFleet(there, [Event(at_s=1.0, robot_joins=late)])
+    report = flown(there, fleet, traffic="reserve")
+    assert len(report.tasks_done) == 4
+    assert fleet.world.contacts == ()

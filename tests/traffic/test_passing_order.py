@@ -76,3 +76,21 @@ def test_moves_are_cut_where_robots_have_been_let_go_to(order):
 def test_a_robot_that_is_not_there_is_refused(order):
     with pytest.raises(ValueError, match="robot: not in the order"):
         order.grant(0)
+
+
+def test_nobody_is_let_go_along_moves_by_which_it_leaves_but_others_are_planned_after_them():
+    order = PassingOrder(margin=0.0, ahead=2.0)
+    first, second = order.add((0.0, 0.0), 0.3), order.add((-2.0, 0.0), 0.3)
+    assert order.append(first, (1.0, 0.0))
+    assert not order.append(second, (3.0, 0.0))
+    assert order.append(first, (1.0, 2.0), leaves=True)
+    assert order.append(second, (3.0, 0.0))
+    assert (order.stand(first), order.end(first)) == ((1.0, 0.0), (1.0, 2.0))
+    grant = order.grant(first)
+    assert (grant.points, grant.last) == ([(1.0, 0.0)], True)
+    order.progress(first, 1, (1.0, 0.0))
+    assert order.grant(first).points == []
+    assert order.metres_left(first) == 0.0
+    assert order.grant(second).waits_for == first
+    order.drop_ahead()
+    assert order.end(first) == (1.0, 0.0)
