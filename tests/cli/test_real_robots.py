@@ -17,6 +17,7 @@ from muster.running.live import wait_for_robots
 
 ASKED = {
     **dict.fromkeys(("plan", "record", "html", "plot", "gantt", "foxglove")),
+    "traffic": "auto",
     "planning": PlanningOptions(time_limit=0.1),
     "require_complete": False,
     "form": "table",

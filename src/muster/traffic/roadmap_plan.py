@@ -59,7 +59,9 @@ class RoadmapPlan:
             self._known = _Network.of(with_places(self.roadmap, self.clear, places))
         return self._known
 
-    def _by_safe_intervals(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, bool]] | None:
+    def _by_safe_intervals(
+        self, on: _Network, travellers: Sequence[Traveller]
+    ) -> Sequence[tuple[int, int, bool]] | None:
         """Moves as (traveller, edge, leaves); None where some find no path."""
         ranks = {name: k for k, name in enumerate(self._priorities)}
         metres = [on.metres(who) for who in travellers]
