@@ -845,6 +845,11 @@ class PassingOrder:
     def add(self, place: tuple[float, float], radius: float) -> int:
         """A robot that stands; returns its number."""
 
+    def stands(self, robot: int, place: tuple[float, float]) -> None:
+        """
+        A robot stands elsewhere than was thought; nothing changes where it has moves.
+        """
+
     def append(self, robot: int, to: tuple[float, float], leaves: bool = False) -> bool:
         """
         A move from where the robot's moves end; False where another would stand in the way. `leaves`: it leaves the place to which it was to go. Nobody is let go along such moves, but others are planned after them.

@@ -33,6 +33,7 @@ class CheckedOrder {
   CheckedOrder(double margin, double ahead) : order_(margin, ahead) {}
 
   int add(Pair place, double radius) { return robots_ = order_.add(point_of(place), radius) + 1, robots_ - 1; }
+  void stands(int robot, Pair place) { checked(robot).stands(robot, point_of(place)); }
   bool append(int robot, Pair to, bool leaves) { return checked(robot).append(robot, point_of(to), leaves); }
   void drop_ahead() { order_.drop_ahead(); }
   void cut() { order_.cut(); }
@@ -71,6 +72,8 @@ void bind_passing_order(nb::module_& m) {
       .def(nb::init<double, double>(), nb::kw_only(), "margin"_a, "ahead"_a,
            "Metres that are left between robots, and for which a robot may have begun moves.")
       .def("add", &CheckedOrder::add, "place"_a, "radius"_a, "A robot that stands; returns its number.")
+      .def("stands", &CheckedOrder::stands, "robot"_a, "place"_a,
+           "A robot stands elsewhere than was thought; nothing changes where it has moves.")
       .def("append", &CheckedOrder::append, "robot"_a, "to"_a, "leaves"_a = false,
            "A move from where the robot's moves end; False where another would stand in the way. `leaves`: it leaves "
            "the place to which it was to go. Nobody is let go along such moves, but others are planned after them.")

@@ -96,6 +96,18 @@ Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, doubl
   return velocity;
 }
 
+Vec<3> along_walls(const CrowdRobot& robot, Vec<3> velocity, double dt) {
+  const Braking braking{dt, robot.body.acceleration};
+  for (const Upright& face : robot.near_faces) {
+    const Vec<3> way = face.closest(robot.position) - robot.position;
+    const double away = norm(way);
+    if (away <= 0.0) continue;
+    const double into = dot(velocity, way) / away, most = braking.speed(std::max(0.0, away - robot.body.radius));
+    if (into > most) velocity = velocity - ((into - most) / away) * way;
+  }
+  return velocity;
+}
+
 Vec<3> closest_on_piece(const Vec<3>& p, const Vec<3>& from, const Vec<3>& to) {
   const Vec<3> along = to - from;
   const double squared = dot(along, along);

@@ -15,6 +15,9 @@ struct Tolerances {
 // holds or turns, at the last, and at corners that it cannot take. Undisturbed it lands exactly on where it stops.
 Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, double dt);
 
+// A velocity without what of it leads into walls: who errs in where it is goes along them.
+Vec<3> along_walls(const CrowdRobot& robot, Vec<3> velocity, double dt);
+
 // As fast as lets it stop there.
 Vec<3> straight_to(const CrowdRobot& robot, const Vec<3>& place, double dt);
 

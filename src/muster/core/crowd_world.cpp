@@ -195,7 +195,9 @@ void CrowdWorld::want(const AgentTree<3>& tree) {
   const Manners manners(robots_, walls_, tree, time(), settings_.dt, settings_.space, almost);
   for (int i = 0; i < static_cast<int>(n); ++i) {
     if (robots_[i].is_away(time())) wanted_[i] = course_[i] = manners.course_without_order(i);
-    if (course_[i] != Vec<3>{} && robots_[i].body.radius > 0.0 && !robots_[i].in_traffic)
+    if (robots_[i].in_traffic)
+      wanted_[i] = course_[i] = along_walls(robots_[i], course_[i], settings_.dt);
+    else if (course_[i] != Vec<3>{} && robots_[i].body.radius > 0.0)
       wanted_[i] = manners.wanted(i, course_[i]);
   }
 }

@@ -37,6 +37,10 @@ int PassingOrder::add(Point place, double radius) {
   return static_cast<int>(bots_.size()) - 1;
 }
 
+void PassingOrder::stands(int robot, Point place) {
+  if (bots_[robot].moves.empty()) bots_[robot].end = place;
+}
+
 bool PassingOrder::append(int robot, Point to, bool leaves) {
   Bot& bot = bots_[robot];
   const Point from = bot.end;

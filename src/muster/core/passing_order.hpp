@@ -32,6 +32,9 @@ class PassingOrder {
   // Adds a robot that stands; returns its number.
   int add(Point place, double radius);
 
+  // A robot stands elsewhere than was thought; nothing changes where it has moves.
+  void stands(int robot, Point place);
+
   // Appends a move of a robot from where its moves end. False, and nothing is appended, where another robot would stand
   // in the way; one that is too near at the beginning may be left. `leaves`: it leaves the place to which it was to go.
   bool append(int robot, Point to, bool leaves = false);

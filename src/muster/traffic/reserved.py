@@ -185,11 +185,18 @@ class ReservedTraffic:
         travellers = []
         for part in self._parts:
             part.goal, part.arrives = self._goal(part), part.port.arrives
+            self._find_again(part)
             travellers.append(self._traveller(part))
         stopped = set[int]()
         for traveller, to, leaves in self.plan(travellers):
             if traveller not in stopped and not self._order.append(self._parts[traveller].number, to, leaves):
                 stopped.add(traveller)
+
+    def _find_again(self, part: _Part) -> None:
+        """A robot that is to go on stands where it is now said to be: first words may err, and robots are pushed."""
+        to_go_on = part.goal is None or self._away_m(part) > _AT_GOAL_M
+        if to_go_on and not part.port.busy and math.dist(self._order.end(part.number), part.near) > _MOVED_M:
+            self._order.stands(part.number, part.near)
 
     def _traveller(self, part: _Part) -> Traveller:
         said, hold_s = part.port.heard, part.port.hold_s

@@ -23,6 +23,8 @@ _HORIZON = 10
 """Moves of each robot that are planned where some find no path by themselves."""
 _ENTRIES = 6
 """Points of the roadmap to which a place beside it is joined, at most."""
+_BLOCKED_M = (0.0, 0.1, 0.3)
+"""Metres at a place beside it that may be blocked, where else no point is seen: robots err in where they are."""
 
 
 @dataclass
@@ -115,9 +117,7 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
     points = np.concatenate([roadmap.points, fresh])
     edges = [roadmap.edges]
     for k in range(len(roadmap.points), len(points)):
-        apart = np.linalg.norm(points[:k] - points[k], axis=1)
-        nearest = np.argsort(apart)[: 4 * _ENTRIES]
-        seen = [j for j in nearest.tolist() if clear(points[[k, j]])][:_ENTRIES]
+        seen = _seen(clear, points, k)
         edges.append(np.array([pair for j in seen for pair in ((k, j), (j, k))], dtype=np.int64).reshape(-1, 2))
     joined = np.concatenate(edges)
     order = np.lexsort(joined.T[::-1])
@@ -133,6 +133,19 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
         reach_m=metres,
         speed_mps=np.append(roadmap.speed_mps, np.full(more, np.inf))[order],
     )
+
+
+def _seen(clear: Callable[[Floats], bool], points: Floats, k: int) -> list[int]:
+    """The nearest of the points before one to which the way is free, but for metres in which a robot may err."""
+    apart = np.linalg.norm(points[:k] - points[k], axis=1)
+    nearest = np.argsort(apart)[: 4 * _ENTRIES]
+    for blocked_m in _BLOCKED_M:
+        share = np.minimum(1.0, blocked_m / np.maximum(apart, _SAME_M))[:, None]
+        begin = points[k] + share * (points[:k] - points[k])
+        seen = [j for j in nearest.tolist() if clear(np.stack([begin[j], points[j]]))]
+        if seen:
+            return seen[:_ENTRIES]
+    return []
 
 
 def _told(who: Traveller, number: Mapping[Point, int]) -> core.Traveller:
