@@ -205,7 +205,7 @@ def edges(mission):
 # --- missions --------------------------------------------------------------------------------------------------------
 
 
-@examples(150)
+@examples(75)
 @given(mission=st.one_of(tiny_missions(tabled=False), missions()))
 def test_valid_missions(folder, mission):
     path = folder / "mission.yaml"
@@ -213,7 +213,7 @@ def test_valid_missions(folder, mission):
     survives(folder, path)
 
 
-@examples(200)
+@examples(100)
 @given(text=st.one_of(st.sampled_from(SHIPPED), tiny_missions(tabled=False).map(yaml_text)), some=changes)
 def test_changed_text(folder, text, some):
     path = folder / "mission.yaml"
@@ -221,7 +221,7 @@ def test_changed_text(folder, text, some):
     survives(folder, path)
 
 
-@examples(200)
+@examples(100)
 @given(
     mission=st.one_of(tiny_missions(tabled=False), missions()),
     some=st.lists(st.tuples(share, st.sampled_from(EXTREMES)), min_size=1, max_size=3),
@@ -236,7 +236,7 @@ def test_changed_values(folder, mission, some):
     survives(folder, path)
 
 
-@examples(60)
+@examples(30)
 @given(data=st.binary(max_size=200))
 @example(data=b"")
 @example(data=b"\xff\xfe\x00")
@@ -264,7 +264,7 @@ tasks:
 """
 
 
-@examples(80)
+@examples(40)
 @given(
     objective=st.sampled_from(["total", "max", "total+max", "average", "makespan"]),
     usage=st.sampled_from(["distance", "time"]),
@@ -285,7 +285,7 @@ ROBOTS = "id,type,x,y,work_capacity\nr_0,beta,0,0,50\nr_1,tau,2,0,inf\n"
 TABLE = "robot_type,D,E\nbeta,0.9,0.7\ntau,0.5,0.9\n"
 
 
-@examples(100)
+@examples(50)
 @given(which=st.integers(0, 2), some=changes)
 def test_changed_csv(folder, which, some):
     texts = [TASKS.encode(), ROBOTS.encode(), TABLE.encode()]
@@ -311,7 +311,7 @@ EOF
 """
 
 
-@examples(80)
+@examples(40)
 @given(some=changes, depot=st.sampled_from(["1", "3", "9", "x", ""]))
 def test_changed_tsplib(folder, some, depot):
     path = folder / "places.tsp"
@@ -333,7 +333,7 @@ tasks:
 WAYS = "from,r_0,r_1,1,2\nr_0,0,1,2,inf\nr_1,1,0,3,4.5\n1,2,3,0,1e3\n2,inf,4.5,1e3,0\n"
 
 
-@examples(80)
+@examples(40)
 @given(some=changes, in_table=st.sampled_from([True, True, False]))
 def test_changed_travel_table(folder, some, in_table):
     (folder / "beta.csv").write_bytes(all_changed(WAYS, some if in_table else []))
@@ -374,7 +374,7 @@ def solved(folder):
     return mission, muster("solve", mission, "--iterations", 5, "--format", "json")[1]
 
 
-@examples(120)
+@examples(60)
 @given(some=changes)
 def test_changed_plan_text(folder, solved, some):
     mission, text = solved
@@ -383,7 +383,7 @@ def test_changed_plan_text(folder, solved, some):
     judged(folder, mission, plan)
 
 
-@examples(120)
+@examples(60)
 @given(some=st.lists(st.tuples(share, st.sampled_from(EXTREMES)), min_size=1, max_size=3))
 def test_changed_plan_values(folder, solved, some):
     mission, text = solved
@@ -399,7 +399,7 @@ def test_changed_plan_values(folder, solved, some):
 ids = st.sampled_from([str(k) for k in range(11)]) | plain_words
 
 
-@examples(100)
+@examples(50)
 @given(
     routes=st.lists(
         st.builds(Route, st.sampled_from(["r_0", "r_1", "R0", "R1", "r_9"]), st.lists(ids, max_size=6).map(tuple)),

@@ -19,10 +19,10 @@ OTHERS = tuple(product(WINNERS, PLACEMENTS))
 
 
 def cut_down(mission, tasks=60, robots=8):
-    """The mission with its first robots and tasks alone, if it has many; none of these tasks waits for another then."""
+    """The mission with its first robots and tasks alone, if it has many; none of these tasks asks for another then."""
     if len(mission.tasks) <= tasks and len(mission.robots) <= 12:
         return mission
-    few = tuple(replace(task, prerequisites=()) for task in mission.tasks[:tasks])
+    few = tuple(replace(task, prerequisites=(), same_robot_as=()) for task in mission.tasks[:tasks])
     return replace(mission, tasks=few, robots=mission.robots[:robots], events=())
 
 

@@ -62,7 +62,8 @@ def test_markdown_has_every_row_and_the_command(compared):
 
 
 def test_a_markdown_file_is_written(monkeypatch, tmp_path):
-    arguments = ["study", "allocators", "--tables", "6T-2R", "--iterations", "1", "-o", str(tmp_path / "t.md")]
+    arguments = ["study", "allocators", "--tables", "6T-2R", "--iterations", "1", "--workers", "1"]
+    arguments += ["-o", str(tmp_path / "t.md")]
     monkeypatch.setattr("sys.argv", ["muster", *arguments])
     assert run(arguments) == 0
     text = (tmp_path / "t.md").read_text()

@@ -24,6 +24,8 @@ if find_spec("mujoco") is None or find_spec("scipy") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)
 
 EFFORT = Effort(seeds=2, iterations=100)
+QUICK = ("--seeds", "1", "--iterations", "100")
+"""What the command is given to find what is found already."""
 TEAM = ("handBot", "eyeBot", "rangeBot")
 
 
@@ -116,10 +118,12 @@ def test_at_the_beginning_all_places_are_the_same(found):
 
 
 def test_the_same_seed_finds_the_same(found):
-    for first, second in (searches(EFFORT, [world]) for world in ("kinematic", "physics")):
-        again, before, other = first.perform(), found[first], found[second]
-        assert np.array_equal(again.flown[BELIEVED].positions, before.flown[BELIEVED].positions)
-        assert [one.place.mean.tolist() for one in again.seen] == [one.place.mean.tolist() for one in before.seen]
+    """Errors are those of the same sensors in both worlds, so the faster one is flown again."""
+    first, _ = searches(EFFORT, ["kinematic"])
+    again, before = first.perform(), found[first]
+    assert np.array_equal(again.flown[BELIEVED].positions, before.flown[BELIEVED].positions)
+    assert [one.place.mean.tolist() for one in again.seen] == [one.place.mean.tolist() for one in before.seen]
+    for before, other in (map(found.get, searches(EFFORT, [world])) for world in ("kinematic", "physics")):
         assert [one.place.mean.tolist() for one in other.seen] != [one.place.mean.tolist() for one in before.seen]
 
 
@@ -190,7 +194,7 @@ def test_it_is_a_study_and_says_what_the_paper_does_not_print(capsys, monkeypatc
     monkeypatch.setenv("COLUMNS", "120")
     assert study_named("market-5").tables == ("Figure 7", "Figure 8", "Goals", "Targets", "Localisation")
     text, folder = tmp_path / "study.txt", tmp_path / "pictures"
-    assert muster(["study", "market-5", "--seeds", "1", "-o", str(text), "--plot", str(folder)]) == 0
+    assert muster(["study", "market-5", *QUICK, "-o", str(text), "--plot", str(folder)]) == 0
     words = " ".join(text.read_text(encoding="utf-8").split())
     assert "it prints no number" in words
     assert "steer by odometry and laser landmarks" in words
@@ -199,7 +203,6 @@ def test_it_is_a_study_and_says_what_the_paper_does_not_print(capsys, monkeypatc
 
 
 def test_json(capsys):
-    arguments = ["--tables", "Targets", "--seeds", "1", "--iterations", "100", "--format", "json"]
-    assert muster(["study", "market-5", *arguments]) == 0
+    assert muster(["study", "market-5", *QUICK, "--tables", "Targets", "--format", "json"]) == 0
     (table,) = json.loads(capsys.readouterr().out)["tables"]
     assert [row["survivor"] for row in table["rows"]] == [*SURVIVORS, "none of them"] * 2

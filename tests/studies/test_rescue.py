@@ -200,8 +200,9 @@ def test_iterations_are_the_markets():
     assert undisturbed(Effort(iterations=7)) == Flight(team=ARENA, iterations=7)
 
 
-def test_a_line_of_the_tables_fits_120_columns(capsys, monkeypatch, tmp_path):
+def test_a_line_of_the_tables_fits_120_columns(rescue_report, capsys, monkeypatch, tmp_path):
     monkeypatch.setenv("COLUMNS", "120")
+    monkeypatch.setattr(type(study_named("rescue")), "run", lambda *_: rescue_report)
     file = tmp_path / "rescue.txt"
     assert muster(["study", "rescue", "--seeds", "1", "-o", str(file)]) == 0
     assert capsys.readouterr().err == ""
@@ -210,7 +211,8 @@ def test_a_line_of_the_tables_fits_120_columns(capsys, monkeypatch, tmp_path):
 
 def test_json_and_pictures(tmp_path, capsys):
     pytest.importorskip("matplotlib")
-    arguments = ["--tables", "Figure 7,Figure 8", "--seeds", "1", "--format", "json", "--plot", str(tmp_path / "new")]
+    arguments = ["--tables", "Figure 7,Figure 8", "--seeds", "1", "--iterations", "100", "--format", "json"]
+    arguments += ["--plot", str(tmp_path / "new")]
     assert muster(["study", "rescue", *arguments]) == 0
     out, err = capsys.readouterr()
     assert [table["number"] for table in json.loads(out)["tables"]] == ["Figure 7", "Figure 8"]

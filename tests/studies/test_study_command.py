@@ -91,15 +91,16 @@ def test_other_quick_studies_print_all_tables(capsys, tmp_path, name):
 @pytest.mark.parametrize(("name", "seeds"), [("auction-5", None), ("market-rescue", 2)])
 def test_seeds_are_told_where_something_is_random(capsys, name, seeds):
     tables = STUDIES[name].tables[0]
-    assert run(["study", name, "--tables", tables, "--seeds", "2", "--iterations", "1", "--workers", "1"]) == 0
+    arguments = ["study", name, "--tables", tables, "--seeds", "2", "--iterations", "1", "--workers", "1"]
+    assert run(arguments) == 0
     assert ("seeds 0 to 1" in capsys.readouterr().out) == (seeds is not None)
-    assert run(["study", name, "--tables", tables, "--seeds", "2", "--iterations", "1", "--format", "json"]) == 0
+    assert run([*arguments, "--format", "json"]) == 0
     assert json.loads(capsys.readouterr().out)["seeds"] == seeds
 
 
 def test_json_on_standard_output(capsys, tmp_path):
     file = tmp_path / "tables"
-    arguments = ["--format", "json", "--tables", "3.5, 3.16", "-q", "-o", str(file)]
+    arguments = ["--format", "json", "--tables", "3.5, 3.16", "--workers", "1", "-q", "-o", str(file)]
     assert run(["study", "thesis-3.3", *arguments]) == 0
     out = capsys.readouterr().out
     assert [table["number"] for table in json.loads(out)["tables"]] == ["3.5", "3.16"]

@@ -172,7 +172,7 @@ def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is(ros, one):
 
 
 def test_a_plan_is_carried_out_from_where_the_robot_stands(ros, one, tmp_path):
-    plan = solve(load(tmp_path / one)).as_dict()
+    plan = solve(load(tmp_path / one), "greedy").as_dict()
     (route,) = plan["routes"]
     route["tasks"] = ["t_1", "t_2"]  # from where it stands the other way round would be shorter
     (tmp_path / "plan.json").write_text(json.dumps(plan), encoding="utf-8")

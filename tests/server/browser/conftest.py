@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -25,10 +26,9 @@ FLAGS = (
 )
 
 
-@pytest.fixture(scope="module")
-def served(tmp_path_factory):
-    """The address of `muster serve` with a database of its own."""
-    folder = tmp_path_factory.mktemp("served")
+@contextmanager
+def serving(folder):
+    """The address of `muster serve` with a database of its own in this folder."""
     command = [sys.executable, "-c", "from muster.cli.main import main; main()", "serve", "--port", "0"]
     command += ["--db", f"sqlite:///{folder / 'muster.db'}"]
     log = folder / "log"
@@ -42,6 +42,12 @@ def served(tmp_path_factory):
         server.terminate()
         assert server.wait(30) == 0, log.read_text()
     assert "Traceback" not in log.read_text(), log.read_text()
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    with serving(tmp_path_factory.mktemp("served")) as origin:
+        yield origin
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,36 @@
+"""One server for all of these tests; each that edits has a mission of its own."""
+
+import pytest
+from tests.server.browser.conftest import serving
+
+from muster.client import Client
+
+YARD = """\
+schema: muster/1
+name: small
+rules: {objective: total+max}
+robots:
+  - {id: r_0, position: [0, 0], speed_mps: 1}
+  - {id: r_1, position: [3, 0], speed_mps: 1}
+tasks:
+  - {id: 1, position: [5, 8]}
+"""
+
+
+@pytest.fixture(scope="session")
+def served(tmp_path_factory):
+    with serving(tmp_path_factory.mktemp("served")) as origin:
+        yield origin
+
+
+@pytest.fixture
+def page(watched):
+    yield watched.page
+    watched.require_clean()
+
+
+@pytest.fixture
+def yard(served, request):
+    """The id of a mission of two robots and a task, in its first version."""
+    with Client(served) as client:
+        return client.missions.create(YARD, name=request.node.name).id

@@ -1,0 +1,67 @@
+"""Missions are planned, explained, exported, compared and carried out."""
+
+import json
+import re
+
+import pytest
+from playwright.sync_api import expect
+from tests.server.browser.missions_and_plan.plan_view import SLOW_MS, plan_view
+
+from muster.client import Client
+
+pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
+
+
+def test_focus_is_seen_and_words_on_buttons_are_read_in_the_dark(watched, page):
+    """Quasar says otherwise of both, and that it is important."""
+    plan_view(watched, "6T-2R")
+    page.keyboard.press("Tab")
+    page.locator("#plan").focus()
+    expect(page.locator("#plan")).to_have_css("outline-style", "solid")
+    page.emulate_media(color_scheme="dark")
+    expect(page.locator("#plan")).to_have_css("color", "rgb(23, 24, 27)")
+    page.emulate_media(color_scheme="light")
+    expect(page.locator("#plan")).to_have_css("color", "rgb(255, 255, 255)")
+
+
+def test_a_run_that_failed_before_it_began_has_no_record_to_show(watched, page):
+    with Client(watched.origin) as client:
+        run = client.start(client.plan("yard", iterations=1).wait(), avoidance="rvo")
+        run.wait()
+    watched.open(f"/records/{run.id}")
+    page.get_by_text("the mission is in space").wait_for()
+    page.get_by_text("What users did").wait_for()
+    assert page.locator("iframe, .downloads").count() == 0
+
+
+def test_planning_shows_the_answer_says_why_and_exports(watched, page):
+    plan_view(watched, "31T-6R50")
+    page.get_by_label("Time limit, s").fill("1")
+    page.click("#plan")
+    page.wait_for_selector("table.robots", timeout=SLOW_MS)
+    assert page.locator("dl.figures").inner_text().count("31 of 31") == 1
+    expect(page.locator(".gantt rect.work")).to_have_count(31)
+    page.locator(".chip", has_text=re.compile("^30$")).click()
+    page.click("#why")
+    page.get_by_text(re.compile("^Task 30 is done by")).wait_for(timeout=SLOW_MS)
+    page.click("#export")
+    with page.expect_download() as kept:
+        page.get_by_text("Plan file (JSON)").click()
+    assert json.loads(kept.value.path().read_text())["schema"] == "muster-plan/1"
+    page.click("#export")
+    greyed = page.locator(".q-item.disabled", has_text="GeoJSON")
+    assert "needs origin_wgs84" in greyed.inner_text()
+    page.keyboard.press("Escape")
+    watched.shoot("plan")
+
+
+def test_two_plans_are_compared_side_by_side(watched, page):
+    plan_view(watched, "31T-6R50")
+    page.get_by_label("Allocator").click()
+    page.get_by_role("option", name="greedy", exact=True).click()
+    page.click("#plan")
+    page.get_by_text("Left out (4)").wait_for(timeout=SLOW_MS)
+    page.get_by_role("button", name="Compare").click()
+    page.get_by_text(re.compile("tasks are done by another robot")).wait_for(timeout=SLOW_MS)
+    assert page.locator(".muster-map").count() == 2
+    watched.shoot("compare")
