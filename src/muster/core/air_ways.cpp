@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
+// Ways as much longer than the shortest on samples are looked at: pulled straight they may be shorter.
+constexpr double kWorthTightening = 1.03;
+
 struct Open {
   double key;
   int node;
@@ -83,6 +86,7 @@ void AirWays::build(int threads, const Pause& pause) {
       pieces_[piece.other].push_back({static_cast<int>(k), piece.length});
     }
   }
+  built_ = true;
 }
 
 // Finds which nodes after this one it sees. Whether a piece is taut at an upright edge is the same for all samples of
@@ -136,10 +140,51 @@ void AirWays::grow(const Seat& from, Tree& tree) const {
   }
 }
 
-std::vector<Spot> AirWays::way(Spot a, Spot b) const {
+// A* in the graph that is not built: a sample looks around when its turn comes, and only at samples by which a way may
+// lead that is worth tightening. What the tree has of such ways is what `grow` finds.
+void AirWays::grow_towards(const Seat& from, const Seat& to, Tree& tree, const Pause& pause) const {
+  tree.length.assign(nodes_.size(), kFar);
+  tree.parent.assign(nodes_.size(), -1);
+  std::vector<double> last(nodes_.size(), kFar), left(nodes_.size());  // metres to the goal, if it is seen; as it flies
+  for (const Piece& piece : to.nodes) last[piece.other] = piece.length;
+  for (std::size_t k = 0; k < nodes_.size(); ++k) left[k] = distance(nodes_[k].at, to.at);
+  std::vector<bool> looked(nodes_.size());
+  double most = kFar;
+  Heap<Open> open;
+  const auto pays = [&](std::size_t k, double length) { return length < tree.length[k] && length + left[k] <= most; };
+  const auto reach = [&](std::size_t k, double length, int parent) {
+    tree.length[k] = length;
+    tree.parent[k] = parent;
+    most = std::min(most, kWorthTightening * (length + last[k]));
+    open.push({length + left[k], static_cast<int>(k)});
+  };
+  for (const Piece& piece : from.nodes) reach(static_cast<std::size_t>(piece.other), piece.length, -1);
+  std::size_t blocker = 0;
+  Pauses pauses(pause);
+  while (!open.empty() && open.top().key <= most) {
+    const auto here = static_cast<std::size_t>(open.pop().node);
+    if (looked[here]) continue;
+    looked[here] = true;
+    ++looks_;
+    pauses.next();
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      const Spot d = nodes_[k].at - nodes_[here].at;
+      const double length = tree.length[here] + std::sqrt(dot(d, d));
+      if (k == here || !pays(k, length) || !taut(nodes_[here], d) || !taut(nodes_[k], d)) continue;
+      if (air_->sees(nodes_[here].at, nodes_[k].at, blocker)) reach(k, length, static_cast<int>(here));
+    }
+  }
+}
+
+std::vector<Spot> AirWays::way(Spot a, Spot b, const Pause& pause) const {
+  if (air_->free(a) && air_->free(b) && air_->sees(a, b)) return {a, b};
   const Seat from = seat(a), to = seat(b);
   Tree tree;
-  grow(from, tree);
+  if (built_) {
+    grow(from, tree);
+  } else {
+    grow_towards(from, to, tree, pause);
+  }
   return way(from, to, tree);
 }
 
@@ -176,7 +221,6 @@ std::vector<Spot> AirWays::way(const Seat& from, const Seat& to, const Tree& tre
 
 // The best last node of each edge, for what is second between samples may be first when it is pulled straight.
 std::vector<int> AirWays::candidates(const Seat& to, const Tree& tree) const {
-  constexpr double kWorthTightening = 1.03;
   constexpr std::size_t kMost = 8;
   std::map<int, Open> best;  // of each edge
   double least = kFar;

@@ -1,6 +1,7 @@
 // Short ways through the air over and around prisms.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -19,10 +20,13 @@ class AirWays {
   AirWays(std::shared_ptr<const Air> air, double rise, double run) : air_(std::move(air)) { sample(rise, run); }
 
   void build(int threads, const Pause& pause);
+  bool built() const { return built_; }
+  // Whether ways have looked around as many samples as there are, so that to build pays ([karlin1988]).
+  bool graph_pays() const { return looks_ >= samples(); }
   const Air& air() const { return *air_; }
   std::size_t samples() const { return nodes_.size(); }
   // A way with its ends; empty if there is none.
-  std::vector<Spot> way(Spot from, Spot to) const;
+  std::vector<Spot> way(Spot from, Spot to, const Pause& pause) const;
   // The lengths from places[i], `first` <= i < `last`, to all places: of way(i, j). Zero on the diagonal.
   std::vector<double> lengths(const std::vector<Spot>& places, int first, int last, int threads,
                               const Pause& pause) const;
@@ -51,6 +55,7 @@ class AirWays {
   void look_around(std::size_t node, std::size_t& blocker);
   Seat seat(Spot p) const;
   void grow(const Seat& from, Tree& tree) const;
+  void grow_towards(const Seat& from, const Seat& to, Tree& tree, const Pause& pause) const;
   std::vector<Spot> way(const Seat& from, const Seat& to, const Tree& tree) const;
   std::vector<int> candidates(const Seat& to, const Tree& tree) const;
   void tighten(std::vector<Spot>& way, std::vector<int>& edges) const;
@@ -66,6 +71,8 @@ class AirWays {
   std::vector<Node> nodes_;
   std::vector<std::size_t> next_edge_;  // of each node: the first after it on another edge
   std::vector<std::vector<Piece>> pieces_;
+  bool built_ = false;
+  mutable std::atomic<std::size_t> looks_ = 0;  // around samples, without the graph
 };
 
 }  // namespace muster

@@ -74,7 +74,10 @@ void bind_air(nb::module_& m) {
       .def(
           "build", [](AirWays& w, int threads) { w.build(threads, hear_signals); }, "threads"_a,
           nb::call_guard<nb::gil_scoped_release>(),
-          "Find which samples see each other; before it there are no ways but straight ones.")
+          "Find which samples see each other: lengths need it, and ways are faster then.")
+      .def_prop_ro("built", &AirWays::built)
+      .def_prop_ro("graph_pays", &AirWays::graph_pays,
+                   "Whether ways have looked around as many samples as there are, so that to build pays.")
       .def_prop_ro("samples", &AirWays::samples)
       .def(
           "free", [](const AirWays& w, const Triple& p) { return w.air().free(spot(p)); }, "point"_a)
@@ -87,7 +90,7 @@ void bind_air(nb::module_& m) {
             std::vector<Spot> found;
             {
               const nb::gil_scoped_release unlocked;
-              found = w.way(spot(a), spot(b));
+              found = w.way(spot(a), spot(b), hear_signals);
             }
             return table_of(found);
           },

@@ -22,6 +22,7 @@ BENCHES: Mapping[str, str] = MappingProxyType(
         "start-up": "start_up:start_up",
         "path": "motion:across_a_grid",
         "travel": "motion:travel",
+        "paths": "paths:paths",
         "simulation": "simulation:simulation",
         "physics": "physics:physics",
         "lasers": "lasers:lasers",

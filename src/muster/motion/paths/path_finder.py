@@ -210,15 +210,11 @@ class _InAir:
             rise=(height or width) / 16,
             run=width / 100,
         )
-        self._built = False
 
-    def _ready(self, places: Floats, threads: int) -> core.AirWays:
+    def _reaching(self, places: Floats) -> core.AirWays:
         if len(places) and places[:, 2].max() > self._top:
             self._top = float(places[:, 2].max())
             self._sample()
-        if not self._built:
-            self._ways.build(threads)
-            self._built = True
         return self._ways
 
     def sees(self, a: Floats, b: Floats) -> bool:
@@ -226,14 +222,18 @@ class _InAir:
 
     def way(self, start: Floats, goal: Floats) -> Floats:
         """Searched from the lesser point, so that both directions have the same length."""
-        ways = self._ready(np.stack([start, goal]), 1)
+        ways = self._reaching(np.stack([start, goal]))
+        if ways.graph_pays and not ways.built:
+            ways.build(1)
         if tuple(start) <= tuple(goal):
             return ways.way(_triple(start), _triple(goal))
         return ways.way(_triple(goal), _triple(start))[::-1]
 
     def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
         places, where = np.unique(np.concatenate([exits, entries]), axis=0, return_inverse=True)
-        ways = self._ready(places, threads)
+        ways = self._reaching(places)
+        if not ways.built:
+            ways.build(threads)
         rows = [
             ways.lengths(places, first=first, last=last, threads=threads)
             for first, last in _blocks(len(places), threads)
