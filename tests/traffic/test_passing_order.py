@@ -78,12 +78,12 @@ def test_a_robot_that_is_not_there_is_refused(order):
         order.grant(0)
 
 
-def test_nobody_is_let_go_along_moves_by_which_it_leaves_but_others_are_planned_after_them():
+def test_robots_are_led_from_stop_to_stop_and_others_are_planned_after_all_of_them():
     order = PassingOrder(margin=0.0, ahead=2.0)
     first, second = order.add((0.0, 0.0), 0.3), order.add((-2.0, 0.0), 0.3)
     assert order.append(first, (1.0, 0.0))
     assert not order.append(second, (3.0, 0.0))
-    assert order.append(first, (1.0, 2.0), leaves=True)
+    assert order.append(first, (1.0, 2.0), stop=1)
     assert order.append(second, (3.0, 0.0))
     assert (order.stand(first), order.end(first)) == ((1.0, 0.0), (1.0, 2.0))
     grant = order.grant(first)
@@ -92,5 +92,18 @@ def test_nobody_is_let_go_along_moves_by_which_it_leaves_but_others_are_planned_
     assert order.grant(first).points == []
     assert order.metres_left(first) == 0.0
     assert order.grant(second).waits_for == first
-    order.drop_ahead()
-    assert order.end(first) == (1.0, 0.0)
+    order.lead(first, 1)
+    assert (order.stand(first), order.metres_left(first)) == ((1.0, 2.0), 2.0)
+    assert order.grant(first).points == [(1.0, 2.0)]
+    order.progress(first, 2, (1.0, 2.0))
+    assert order.grant(second).points == [(3.0, 0.0)]
+
+
+def test_a_robot_that_stands_elsewhere_than_was_thought_is_there():
+    order = PassingOrder(margin=0.0, ahead=2.0)
+    robot = order.add((0.0, 0.0), 0.3)
+    order.stands(robot, (0.1, 0.0))
+    assert order.end(robot) == (0.1, 0.0)
+    order.append(robot, (1.0, 0.0))
+    order.stands(robot, (0.3, 0.3))
+    assert order.end(robot) == (1.0, 0.0)

@@ -566,7 +566,16 @@ class AirWays:
 
     def build(self, threads: int) -> None:
         """
-        Find which samples see each other; before it there are no ways but straight ones.
+        Find which samples see each other: lengths need it, and ways are faster then.
+        """
+
+    @property
+    def built(self) -> bool: ...
+
+    @property
+    def graph_pays(self) -> bool:
+        """
+        Whether ways have looked around as many samples as there are, so that to build pays.
         """
 
     @property
@@ -830,7 +839,7 @@ class Grant:
 
     @property
     def last(self) -> bool:
-        """Whether all its moves are granted but those by which it leaves."""
+        """Whether all its moves to its stop are granted."""
 
 class PassingOrder:
     """
@@ -850,9 +859,14 @@ class PassingOrder:
         A robot stands elsewhere than was thought; nothing changes where it has moves.
         """
 
-    def append(self, robot: int, to: tuple[float, float], leaves: bool = False) -> bool:
+    def append(self, robot: int, to: tuple[float, float], stop: int = 0) -> bool:
         """
-        A move from where the robot's moves end; False where another would stand in the way. `leaves`: it leaves the place to which it was to go. Nobody is let go along such moves, but others are planned after them.
+        A move from where the robot's moves end; False where another would stand in the way. `stop`: the number of the stop to which it leads.
+        """
+
+    def lead(self, robot: int, stop: int) -> None:
+        """
+        Let a robot go as far as this stop of its moves, 0 at first; others are planned after the rest, too.
         """
 
     def drop_ahead(self) -> None:
@@ -860,6 +874,11 @@ class PassingOrder:
 
     def cut(self) -> None:
         """Let all moves end where robots have been let go to."""
+
+    def stop(self, robot: int, place: tuple[float, float]) -> None:
+        """
+        A robot that has been let go further stands here, for all that is known: its moves are dropped.
+        """
 
     def progress(self, robot: int, passed: int, near: tuple[float, float]) -> None:
         """
@@ -873,13 +892,13 @@ class PassingOrder:
         """Where a robot is after all its moves."""
 
     def stand(self, robot: int) -> tuple[float, float]:
-        """Where it is before it leaves."""
+        """Where its stop is."""
 
     def passed(self, robot: int) -> int:
         """Moves that a robot has finished since it was added."""
 
     def metres_left(self, robot: int) -> float:
-        """Metres that a robot has still to go before it leaves."""
+        """Metres that a robot has still to go to its stop."""
 
 class Traveller:
     """A robot for which a path over a roadmap is sought."""
@@ -899,9 +918,9 @@ class SafeIntervals:
     def metres_to(self, goal: int) -> list[float]:
         """What it costs to come to a point from each; inf where there is no way."""
 
-    def best_of(self, travellers: Sequence[Traveller], *, order: Sequence[int], tries: int, seed: int) -> tuple[list[tuple[float, int, int, bool]], list[float], list[int]]:
+    def best_of(self, travellers: Sequence[Traveller], *, order: Sequence[int], tries: int, seed: int) -> tuple[list[tuple[float, int, int, int]], list[float], list[int]]:
         """
-        Moves (seconds, traveller, edge) in order; when each has held at its last stop, inf where it finds no path; and the order of travellers in which these were found, the best of several from the one given on.
+        Moves (seconds, traveller, edge, the number of the stop to which it leads) in order; when each has held at its last stop, inf where it finds no path, NaN where those that are fixed cut it off; and the order of travellers in which these were found. The first is the one given; then few travellers at a time are planned anew, until so many ways as `tries` have been sought for each.
         """
 
 class DirectedGraph:

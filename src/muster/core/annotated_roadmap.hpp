@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -36,6 +37,11 @@ class AnnotatedRoadmap {
     for (const Near& near_one : near_) {
       if (near_one.point < 0 || near_one.point >= graph_.size()) throw std::invalid_argument("near is no point");
     }
+    for (int edge = 0; edge < graph_.edges(); ++edge) {
+      const Point way = along(edge);
+      lengths_.push_back(std::hypot(way.x, way.y));
+      directions_.push_back(std::atan2(way.y, way.x));
+    }
   }
 
   const DirectedGraph& graph() const { return graph_; }
@@ -51,19 +57,13 @@ class AnnotatedRoadmap {
     return false;
   }
   Point place(int point) const { return points_[point]; }
-  double length(int edge) const {
-    const Point way = along(edge);
-    return std::hypot(way.x, way.y);
-  }
-  // Radians from east, anticlockwise.
-  double direction(int edge) const {
-    const Point way = along(edge);
-    return std::atan2(way.y, way.x);
-  }
+  double length(int edge) const { return lengths_[edge]; }
   // Radians from one edge to the next, without sign.
-  double turn(int edge, int next) const {
-    const Point a = along(edge), b = along(next);
-    return std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
+  double turn(int edge, int next) const { return turn_from(directions_[edge], next); }
+  // Radians from a heading, from east and anticlockwise, to that of an edge, without sign; 0 from NaN.
+  double turn_from(double heading, int edge) const {
+    const double by = std::abs(std::remainder(directions_[edge] - heading, 2.0 * std::numbers::pi));
+    return std::isnan(by) ? 0.0 : by;
   }
 
  private:
@@ -76,6 +76,7 @@ class AnnotatedRoadmap {
   DirectedGraph graph_;
   std::vector<int> near_first_;
   std::vector<Near> near_;
+  std::vector<double> lengths_, directions_;  // of edges
 };
 
 }  // namespace muster

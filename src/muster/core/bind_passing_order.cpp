@@ -34,9 +34,11 @@ class CheckedOrder {
 
   int add(Pair place, double radius) { return robots_ = order_.add(point_of(place), radius) + 1, robots_ - 1; }
   void stands(int robot, Pair place) { checked(robot).stands(robot, point_of(place)); }
-  bool append(int robot, Pair to, bool leaves) { return checked(robot).append(robot, point_of(to), leaves); }
+  bool append(int robot, Pair to, int stop) { return checked(robot).append(robot, point_of(to), stop); }
+  void lead(int robot, int stop) { checked(robot).lead(robot, stop); }
   void drop_ahead() { order_.drop_ahead(); }
   void cut() { order_.cut(); }
+  void stop(int robot, Pair place) { checked(robot).stop(robot, point_of(place)); }
   void progress(int robot, int passed, Pair near) { checked(robot).progress(robot, passed, point_of(near)); }
   PassingOrder::Grant grant(int robot) { return checked(robot).grant(robot); }
   Pair end(int robot) { return pair_of(checked(robot).end(robot)); }
@@ -64,7 +66,7 @@ void bind_passing_order(nb::module_& m) {
       .def_ro("ended", &PassingOrder::Grant::ended, "How many of these are ends of moves.")
       .def_ro("metres", &PassingOrder::Grant::metres, "From where the robot is.")
       .def_ro("waits_for", &PassingOrder::Grant::waits_for, "The robot that passes first; -1: none.")
-      .def_ro("last", &PassingOrder::Grant::last, "Whether all its moves are granted but those by which it leaves.");
+      .def_ro("last", &PassingOrder::Grant::last, "Whether all its moves to its stop are granted.");
 
   nb::class_<CheckedOrder>(m, "PassingOrder",
                            "The order in which robots pass: one sequence of straight moves, by order and not by clock "
@@ -74,18 +76,22 @@ void bind_passing_order(nb::module_& m) {
       .def("add", &CheckedOrder::add, "place"_a, "radius"_a, "A robot that stands; returns its number.")
       .def("stands", &CheckedOrder::stands, "robot"_a, "place"_a,
            "A robot stands elsewhere than was thought; nothing changes where it has moves.")
-      .def("append", &CheckedOrder::append, "robot"_a, "to"_a, "leaves"_a = false,
-           "A move from where the robot's moves end; False where another would stand in the way. `leaves`: it leaves "
-           "the place to which it was to go. Nobody is let go along such moves, but others are planned after them.")
+      .def("append", &CheckedOrder::append, "robot"_a, "to"_a, "stop"_a = 0,
+           "A move from where the robot's moves end; False where another would stand in the way. `stop`: the number of "
+           "the stop to which it leads.")
+      .def("lead", &CheckedOrder::lead, "robot"_a, "stop"_a,
+           "Let a robot go as far as this stop of its moves, 0 at first; others are planned after the rest, too.")
       .def("drop_ahead", &CheckedOrder::drop_ahead, "Drop all moves that have not begun.")
       .def("cut", &CheckedOrder::cut, "Let all moves end where robots have been let go to.")
+      .def("stop", &CheckedOrder::stop, "robot"_a, "place"_a,
+           "A robot that has been let go further stands here, for all that is known: its moves are dropped.")
       .def("progress", &CheckedOrder::progress, "robot"_a, "passed"_a, "near"_a,
            "A robot has passed the ends of so many of its moves in all, and is near a place.")
       .def("grant", &CheckedOrder::grant, "robot"_a, "How far a robot may go now; what it is told it keeps.")
       .def("end", &CheckedOrder::end, "robot"_a, "Where a robot is after all its moves.")
-      .def("stand", &CheckedOrder::stand, "robot"_a, "Where it is before it leaves.")
+      .def("stand", &CheckedOrder::stand, "robot"_a, "Where its stop is.")
       .def("passed", &CheckedOrder::passed, "robot"_a, "Moves that a robot has finished since it was added.")
-      .def("metres_left", &CheckedOrder::metres_left, "robot"_a, "Metres that a robot has still to go before it leaves.");
+      .def("metres_left", &CheckedOrder::metres_left, "robot"_a, "Metres that a robot has still to go to its stop.");
 }
 
 }  // namespace muster

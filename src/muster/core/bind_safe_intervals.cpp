@@ -14,6 +14,7 @@
 
 #include "bindings.hpp"
 #include "safe_intervals.hpp"
+#include "shared_ways.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -21,6 +22,8 @@ using namespace nb::literals;
 namespace muster {
 
 namespace {
+
+constexpr int kTriesWhereLost = 4;  // times as many where some find no path
 
 using Stops = std::vector<std::pair<int, double>>;
 
@@ -33,9 +36,10 @@ Traveller traveller_of(int start, const Stops& stops, double radius, double spee
   return who;
 }
 
-std::tuple<std::vector<std::tuple<double, int, int, bool>>, std::vector<double>, std::vector<int>> told(const Paths& paths) {
-  std::vector<std::tuple<double, int, int, bool>> moves;
-  for (const TimedMove& move : paths.moves) moves.emplace_back(move.start, move.traveller, move.edge, move.leaves);
+std::tuple<std::vector<std::tuple<double, int, int, int>>, std::vector<double>, std::vector<int>> told(
+    const Paths& paths) {
+  std::vector<std::tuple<double, int, int, int>> moves;
+  for (const TimedMove& move : paths.moves) moves.emplace_back(move.start, move.traveller, move.edge, move.stop);
   return {std::move(moves), paths.ends, paths.order};
 }
 
@@ -84,11 +88,15 @@ void bind_safe_intervals(nb::module_& m) {
              std::uint64_t seed) {
             check(self, travellers, order, tries);
             const nb::gil_scoped_release free;
-            return told(self.best_of(travellers, std::move(order), tries, seed));
+            SharedWays ways(self, travellers, std::move(order), seed);
+            ways.improve(tries, kTriesWhereLost * tries);
+            return told(ways.paths());
           },
           "travellers"_a, nb::kw_only(), "order"_a, "tries"_a, "seed"_a,
-          "Moves (seconds, traveller, edge) in order; when each has held at its last stop, inf where it finds no path; "
-          "and the order of travellers in which these were found, the best of several from the one given on.");
+          "Moves (seconds, traveller, edge, the number of the stop to which it leads) in order; when each has held at "
+          "its last stop, inf where it finds no path, NaN where those that are fixed cut it off; and the order of "
+          "travellers in which these were found. The first is the one given; then few travellers at a time are planned "
+          "anew, until so many ways as `tries` have been sought for each.");
 }
 
 }  // namespace muster

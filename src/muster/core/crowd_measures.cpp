@@ -50,7 +50,9 @@ void CrowdWorld::measure(int i, int k) {
 
 int CrowdWorld::held_up_by(int i) const {
   const CrowdRobot& robot = robots_[i];
-  if (robot.phase != Phase::going || !(robot.turned_aside || robot.braked) || robot.approach >= kHardly * robot.top_speed()) return -1;
+  if (robot.phase != Phase::going || !(robot.turned_aside || robot.braked) ||
+      robot.approach >= kHardly * robot.top_speed())
+    return -1;
   const double stop = Braking{settings_.dt, robot.body.acceleration}.distance(robot.top_speed());
   const Vec<3> way = robot.goal() - robot.position;
   const double far = norm(way), share = far > 0.0 ? std::min(1.0, (stop + robot.body.radius) / far) : 0.0;

@@ -130,7 +130,7 @@ struct CrowdRobot {
   double exact = 1e-3;  // metres: nearer than this to a place is there
   bool failed = false;
   bool in_traffic = false;  // who orders it says when its way is free: it goes straight, and brakes at most
-  bool stopping = false;  // the last order is done or cancelled, and it does not stand yet
+  bool stopping = false;    // the last order is done or cancelled, and it does not stand yet
 
   double travelled = 0.0, odometry = 0.0;
   double counts = 1.0;                              // metres by which odometry goes on for a metre of way, in this step

@@ -33,7 +33,7 @@ double segment_gap(Point a_from, Point a_to, Point b_from, Point b_to) {
 }
 
 int PassingOrder::add(Point place, double radius) {
-  bots_.push_back({radius, place, 0, {}});
+  bots_.push_back({radius, place, 0, 0, {}});
   return static_cast<int>(bots_.size()) - 1;
 }
 
@@ -41,7 +41,7 @@ void PassingOrder::stands(int robot, Point place) {
   if (bots_[robot].moves.empty()) bots_[robot].end = place;
 }
 
-bool PassingOrder::append(int robot, Point to, bool leaves) {
+bool PassingOrder::append(int robot, Point to, int stop) {
   Bot& bot = bots_[robot];
   const Point from = bot.end;
   for (int other = 0; other < static_cast<int>(bots_.size()); ++other) {
@@ -49,7 +49,7 @@ bool PassingOrder::append(int robot, Point to, bool leaves) {
     const double gap = other == robot ? std::numeric_limits<double>::infinity() : segment_gap(stands, from, to);
     if (gap < apart(robot, other) - kRounding && gap < distance(stands, from) - kRounding) return false;
   }
-  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, leaves, {}};
+  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, stop, {}};
   for (std::size_t number = first_; number < first_ + moves_.size(); ++number) {
     const Move& before = move(number);
     if (before.robot < 0 || before.robot == robot) continue;
@@ -79,6 +79,17 @@ void PassingOrder::cut() {
     Move& last = move(bot.moves.back());  // those before it are granted whole
     bot.end = last.to = place(last, last.granted);
     last.length = last.granted;
+  }
+}
+
+void PassingOrder::stop(int robot, Point place) {
+  Bot& bot = bots_[robot];
+  for (const std::size_t number : bot.moves) move(number).robot = -1;
+  bot.moves.clear();
+  bot.end = place;
+  while (!moves_.empty() && moves_.front().robot < 0) {
+    moves_.pop_front();
+    ++first_;
   }
 }
 
@@ -139,8 +150,8 @@ std::pair<double, int> PassingOrder::limit(const Move& m) const {
 
 Point PassingOrder::stand(int robot) const {
   const Bot& bot = bots_[robot];
-  const auto leaving = std::ranges::find_if(bot.moves, [&](std::size_t number) { return move(number).leaves; });
-  return leaving == bot.moves.end() ? bot.end : move(*leaving).from;
+  const auto later = std::ranges::find_if(bot.moves, [&](std::size_t number) { return move(number).stop > bot.stop; });
+  return later == bot.moves.end() ? bot.end : move(*later).from;
 }
 
 PassingOrder::Grant PassingOrder::grant(int robot) {
@@ -148,7 +159,7 @@ PassingOrder::Grant PassingOrder::grant(int robot) {
   Grant found{{}, 0, 0.0, -1, true};
   for (const std::size_t number : bot.moves) {
     Move& m = move(number);
-    if (m.leaves) break;
+    if (m.stop > bot.stop) break;
     if (!m.begun && found.metres >= ahead_) {
       found.last = false;
       break;
@@ -179,7 +190,7 @@ PassingOrder::Grant PassingOrder::grant(int robot) {
 double PassingOrder::metres_left(int robot) const {
   double metres = 0.0;
   for (const std::size_t number : bots_[robot].moves)
-    if (!move(number).leaves) metres += move(number).length - move(number).at;
+    if (move(number).stop <= bots_[robot].stop) metres += move(number).length - move(number).at;
   return metres;
 }
 

@@ -4,8 +4,8 @@
 // their earlier moves have left them. A robot goes on along its moves as far as it keeps away from what is left of all
 // earlier moves of others. So whatever is late delays only who comes later, and nobody waits in a circle.
 //
-// By its last moves a robot may leave the place to which it was to go. Nobody is let go along these: they stand for what
-// it will do when it has done there what it is to do, so that others can be planned past that place.
+// Moves lead to stops, at which robots do what they are to do. A robot is let go as far as the stop that it is told;
+// its later moves stand for what it will do then, so that others can be planned past that stop.
 #pragma once
 
 #include <cstddef>
@@ -36,14 +36,21 @@ class PassingOrder {
   void stands(int robot, Point place);
 
   // Appends a move of a robot from where its moves end. False, and nothing is appended, where another robot would stand
-  // in the way; one that is too near at the beginning may be left. `leaves`: it leaves the place to which it was to go.
-  bool append(int robot, Point to, bool leaves = false);
+  // in the way; one that is too near at the beginning may be left. `stop`: the number, from 0, of the stop to which it
+  // leads.
+  bool append(int robot, Point to, int stop = 0);
+
+  // A robot may go as far as this stop of its moves.
+  void lead(int robot, int stop) { bots_[robot].stop = stop; }
 
   // Drops all moves that have not begun.
   void drop_ahead();
 
   // All moves end where robots have been let go to, and what has not begun is dropped.
   void cut();
+
+  // A robot that has been let go further stands here, for all that is known: its moves are dropped.
+  void stop(int robot, Point place);
 
   // A robot has come so far: it has passed the ends of so many of its moves in all, and is near this place.
   void progress(int robot, int passed, Point near);
@@ -54,17 +61,17 @@ class PassingOrder {
     int ended;                  // how many of these points are ends of moves
     double metres;              // from where it is
     int waits_for;              // the robot that comes first; -1: none
-    bool last;                  // whether all its moves are granted but those by which it leaves
+    bool last;                  // whether all its moves to its stop are granted
   };
   Grant grant(int robot);
 
   // Where a robot is when all its moves are done.
   Point end(int robot) const { return bots_[robot].end; }
-  // Where it is before it leaves.
+  // Where its stop is.
   Point stand(int robot) const;
   // Moves that a robot has finished since it was added.
   int passed(int robot) const { return bots_[robot].passed; }
-  // Metres that a robot has still to go before it leaves.
+  // Metres that a robot has still to go to its stop.
   double metres_left(int robot) const;
 
  private:
@@ -75,13 +82,14 @@ class PassingOrder {
     double at = 0.0;       // metres that the robot has gone of it
     double granted = 0.0;  // metres to which it has been let go
     bool begun = false;
-    bool leaves = false;
+    int stop = 0;
     std::vector<std::size_t> earlier;  // moves of others that come near it, in order
   };
   struct Bot {
     double radius;
     Point end;
     int passed = 0;                 // moves ended since it was added
+    int stop = 0;                   // as far as which it may go
     std::deque<std::size_t> moves;  // unfinished, in order
   };
 

@@ -6,11 +6,9 @@
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
-#include <unordered_map>
 #include <utility>
 
 #include "heap.hpp"
-#include "random.hpp"
 
 namespace muster {
 
@@ -20,13 +18,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;
 constexpr double kNearly = 1e-6;  // metres by which two may be nearer
 constexpr double kTailsToLeave = 4.0;
-constexpr int kTriesWhereLost = 4;         // times as many orders are tried where some find no path
 constexpr double kRestingInTheWay = 10.0;  // seconds that a path may be longer to rest out of the way
-
-double turned(double from, double to) {
-  const double by = std::abs(std::remainder(to - from, 2.0 * std::numbers::pi));
-  return std::isnan(by) ? 0.0 : by;
-}
 
 }  // namespace
 
@@ -38,6 +30,10 @@ SafeIntervals::SafeIntervals(std::shared_ptr<const AnnotatedRoadmap> roadmap, st
       passes_(points()),
       safe_(points()),
       known_(points()),
+      taken_(roadmap_->graph().edges()),
+      known_edge_(roadmap_->graph().edges()),
+      by_edge_(roadmap_->graph().edges() + 1),
+      by_point_(points()),
       around_(points()) {
   if (static_cast<int>(rests_.size()) != points()) throw std::invalid_argument("rests: expected one for each point");
   find_around();
@@ -60,6 +56,18 @@ void SafeIntervals::find_around() {
       if (j < k) around_[by_x[j]].push_back({by_x[k], gap});
     }
   }
+}
+
+double& SafeIntervals::Least::at(int row, int state) {
+  std::vector<double>& times = rows_[row];
+  if (times.empty()) used_.push_back(row);
+  if (static_cast<int>(times.size()) <= state) times.resize(state + 1, kNever);
+  return times[state];
+}
+
+void SafeIntervals::Least::clear() {
+  for (const int row : used_) rows_[row].clear();
+  used_.clear();
 }
 
 void SafeIntervals::clear() {
@@ -100,16 +108,31 @@ const std::vector<SafeIntervals::Span>& SafeIntervals::safe(const Traveller& who
   return found;
 }
 
-double SafeIntervals::earliest(const Traveller& who, int edge, double from, double until) const {
+const std::vector<SafeIntervals::Span>& SafeIntervals::taken(const Traveller& who, int edge) {
+  std::vector<Span>& found = taken_[edge];
+  if (known_edge_[edge]) return found;
+  known_edge_[edge] = true;
+  found.clear();
   const double before = tail(who);
-  for (bool moved = true; moved && from <= until;) {
-    moved = false;
-    for (const auto& near : roadmap_->near(edge))
-      for (const Stay& stay : stays_[near.point])
-        if (near.metres < apart(who, stay.radius) && from > stay.from - before && from < stay.until - kRounding) {
-          from = stay.until;
-          moved = true;
-        }
+  for (const auto& near : roadmap_->near(edge))
+    for (const Stay& stay : stays_[near.point])
+      if (near.metres < apart(who, stay.radius)) found.push_back({stay.from - before, stay.until});
+  std::ranges::sort(found, {}, &Span::from);
+  std::size_t kept = 0;
+  for (const Span& span : found) {
+    if (kept > 0 && span.from < found[kept - 1].until - kRounding)
+      found[kept - 1].until = std::max(found[kept - 1].until, span.until);
+    else
+      found[kept++] = span;
+  }
+  found.resize(kept);
+  return found;
+}
+
+double SafeIntervals::earliest(const Traveller& who, int edge, double from, double until) {
+  for (const Span& span : taken(who, edge)) {
+    if (from <= span.from) break;
+    if (from < span.until - kRounding) from = span.until;
   }
   return from <= until ? from : kNever;
 }
@@ -123,8 +146,9 @@ double SafeIntervals::leaves_by(const Traveller& who) {
   return until;
 }
 
-std::optional<SafeIntervals::Way> SafeIntervals::path(const Traveller& who) {
+std::optional<Way> SafeIntervals::path(const Traveller& who) {
   std::ranges::fill(known_, false);
+  std::ranges::fill(known_edge_, false);
   const DirectedGraph& graph = roadmap_->graph();
   const int legs = static_cast<int>(who.stops.size());
   std::vector<const std::vector<double>*> to_stop;
@@ -148,16 +172,18 @@ std::optional<SafeIntervals::Way> SafeIntervals::path(const Traveller& who) {
     bool rest;
   };
   Heap<Item> queue;
-  std::unordered_map<std::uint64_t, double> best;
+  by_edge_.clear();
+  by_point_.clear();
+  // Who comes this much later in the same interval is no better whatever way it faces.
+  const double worst = std::numbers::pi / who.yaw_rate + 1.5 * stop_s;
   const auto offer = [&](Label label, int point) {
     label.key = label.ready + remaining(label.leg, point);
     if (!(label.key < kNever)) return;
-    const std::uint64_t key = (static_cast<std::uint64_t>(label.leg) << 52) ^
-                              (static_cast<std::uint64_t>(label.edge + 1) << 20) ^
-                              static_cast<std::uint64_t>(label.interval);
-    const auto [at, fresh] = best.try_emplace(key, label.ready);
-    if (!fresh && at->second <= label.ready + kRounding) return;
-    at->second = label.ready;
+    const int state = (label.interval + 1) * (legs + 1) + label.leg;
+    double &at_point = by_point_.at(point, state), &by_edge = by_edge_.at(label.edge + 1, state);
+    if (by_edge <= label.ready + kRounding || at_point + worst < label.ready) return;
+    by_edge = label.ready;
+    at_point = std::min(at_point, label.ready);
     labels.push_back(label);
     queue.push({label.key, static_cast<int>(labels.size()) - 1, false});
   };
@@ -175,10 +201,11 @@ std::optional<SafeIntervals::Way> SafeIntervals::path(const Traveller& who) {
       found = item.label;
       break;
     }
+    if (label.ready > by_edge_.at(label.edge + 1, (label.interval + 1) * (legs + 1) + label.leg)) continue;
     const int point = label.edge < 0 ? who.start : graph.head(label.edge);
     const Span here = interval_of(label);
     if (label.leg < legs && who.stops[label.leg].point == point) {
-      const double held = label.ready + who.stops[label.leg].hold;
+      const double held = label.ready + 0.5 * stop_s + who.stops[label.leg].hold;
       const bool last = label.leg + 1 == legs;
       if (here.until >= held && (!last || !who.stays || here.until == kNever)) {
         Label on = label;
@@ -198,17 +225,19 @@ std::optional<SafeIntervals::Way> SafeIntervals::path(const Traveller& who) {
     }
     if (label.leg == legs && rests && here.until == kNever)
       queue.push({label.ready + (rests_[point] ? 0.0 : kRestingInTheWay), item.label, true});
+    const bool stands = label.edge < 0 || label.start == kNever;
     for (int edge = graph.begin(point); edge < graph.end(point); ++edge) {
-      const double angle =
-          turned(label.edge < 0 ? who.heading : roadmap_->direction(label.edge), roadmap_->direction(edge));
-      const double turning = angle / who.yaw_rate + stop_s * std::min(1.0, angle / (0.5 * std::numbers::pi));
+      const double angle = label.edge < 0 ? roadmap_->turn_from(who.heading, edge) : roadmap_->turn(label.edge, edge);
+      const double slowed = stands ? 0.5 : std::min(1.0, angle / (0.5 * std::numbers::pi));
+      const double turning = angle / who.yaw_rate + slowed * stop_s;
       const std::vector<Span>& there = safe(who, graph.head(edge));
       for (int k = 0; k < static_cast<int>(there.size()); ++k) {
         const double from = std::max(label.ready + turning, there[k].from),
                      until = std::min(here.until, there[k].until);
         const double set_out = from <= until ? earliest(who, edge, from, until) : kNever;
         if (set_out == kNever) continue;
-        const double arrives = set_out + roadmap_->length(edge) / who.speed;
+        const double waited = set_out - label.ready - turning;
+        const double arrives = set_out + roadmap_->length(edge) / who.speed + std::min(waited, 0.5 * stop_s);
         if (arrives > there[k].until) continue;
         offer({0.0, arrives, label.leg, edge, k, item.label, set_out}, graph.head(edge));
       }
@@ -219,77 +248,54 @@ std::optional<SafeIntervals::Way> SafeIntervals::path(const Traveller& who) {
   if (found < 0) return std::nullopt;
   Way way{{}, labels[found].ready, stands_free ? kNever : labels[found].ready};
   for (int k = found; k >= 0; k = labels[k].parent) {
-    const bool leaves = legs > 0 && labels[k].leg == legs;
-    if (leaves) way.end = labels[k].ready;
-    if (labels[k].edge >= 0 && labels[k].start < kNever) way.moves.push_back({labels[k].start, 0, labels[k].edge, leaves});
+    if (legs > 0 && labels[k].leg == legs) way.end = labels[k].ready;
+    if (labels[k].edge >= 0 && labels[k].start < kNever)
+      way.moves.push_back({labels[k].start, 0, labels[k].edge, labels[k].leg});
   }
   std::ranges::reverse(way.moves);
   return way;
 }
 
-void SafeIntervals::reserve(const Traveller& who, const Way& way) {
+Way SafeIntervals::way(const Traveller& who) { return path(who).value_or(Way{{}, kNever, kNever}); }
+
+void SafeIntervals::reserve(int robot, const Traveller& who, const Way& way) {
   const double after = tail(who);
   int point = who.start;
   double from = -kNever;
   for (const TimedMove& move : way.moves) {
-    stays_[point].push_back({from, move.start + after, who.radius});
+    stays_[point].push_back({robot, from, move.start + after, who.radius});
     for (const auto& near : roadmap_->near(move.edge))
-      passes_[near.point].push_back({move.start, near.metres, who.radius});
+      passes_[near.point].push_back({robot, move.start, near.metres, who.radius});
     point = roadmap_->graph().head(move.edge);
     from = move.start;
   }
-  stays_[point].push_back({from, way.until, who.radius});
+  stays_[point].push_back({robot, from, way.until, who.radius});
 }
 
-Paths SafeIntervals::in_order(std::span<const Traveller> travellers, std::span<const int> order) {
-  clear();
-  Paths paths{{}, std::vector<double>(travellers.size(), kNever), {order.begin(), order.end()}};
-  for (const int k : order)
-    if (travellers[k].fixed) reserve(travellers[k], {{}, paths.ends[k] = 0.0, kNever});
-  // Those that come later in the order get some time to leave where they start.
-  for (const int k : order) {
-    const Traveller& who = travellers[k];
-    if (!who.fixed) stays_[who.start].push_back({-kNever, who.ready + kTailsToLeave * tail(who), who.radius});
+void SafeIntervals::release(int robot, const Traveller& who, const Way& way) {
+  erase_stays(robot, who.start);
+  for (const TimedMove& move : way.moves) {
+    erase_stays(robot, roadmap_->graph().head(move.edge));
+    for (const auto& near : roadmap_->near(move.edge))
+      std::erase_if(passes_[near.point], [&](const Pass& pass) { return pass.robot == robot; });
   }
-  for (const int k : order) {
-    const Traveller& who = travellers[k];
-    if (who.fixed) continue;
-    std::erase_if(stays_[who.start], [](const Stay& stay) { return stay.from == -kNever; });
-    const Way way = path(who).value_or(Way{{}, kNever, kNever});
-    paths.ends[k] = way.end;
-    reserve(who, way);
-    for (TimedMove move : way.moves) {
-      move.traveller = k;
-      paths.moves.push_back(move);
-    }
-  }
-  std::ranges::stable_sort(paths.moves, {}, &TimedMove::start);
-  return paths;
 }
 
-Paths SafeIntervals::best_of(std::span<const Traveller> travellers, std::vector<int> order, int tries,
-                             std::uint64_t seed) {
-  const int n = static_cast<int>(travellers.size());
-  Random random(seed);
-  Paths best;
-  std::pair<int, double> least{n + 1, kNever};
-  for (int k = 0; k < tries || (least.first > 0 && k < kTriesWhereLost * tries); ++k) {
-    Paths paths = in_order(travellers, order);
-    int lost = 0;
-    double sum = 0.0;
-    for (int i = 0; i < n; ++i) paths.ends[i] < kNever ? void(sum += paths.ends[i]) : void(++lost);
-    const std::pair<int, double> cost{lost, sum};
-    if (lost > 0) {
-      std::ranges::stable_partition(order, [&](int i) { return paths.ends[i] == kNever; });
-    } else {
-      for (int i = n - 1; i > 0; --i) std::swap(order[i], order[random.below(i + 1)]);
-    }
-    if (cost < least) {
-      least = cost;
-      best = std::move(paths);
-    }
-  }
-  return best;
+void SafeIntervals::erase_stays(int robot, int point) {
+  std::erase_if(stays_[point], [&](const Stay& stay) { return stay.robot == robot; });
+}
+
+void SafeIntervals::reserve_start(int robot, const Traveller& who) {
+  stays_[who.start].push_back({robot, -kNever, who.ready + kTailsToLeave * tail(who), who.radius});
+}
+
+std::vector<int> SafeIntervals::meetings(int robot, const Way& way, int robots) const {
+  std::vector<int> times(robots, 0);
+  for (const TimedMove& move : way.moves)
+    for (const auto& near : roadmap_->near(move.edge))
+      for (const Stay& stay : stays_[near.point])
+        if (stay.robot != robot) ++times[stay.robot];
+  return times;
 }
 
 }  // namespace muster

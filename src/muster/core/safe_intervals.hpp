@@ -1,4 +1,4 @@
-// Paths in continuous time for robots that share a roadmap, one robot after the other [phillips2011].
+// Paths in continuous time for a robot that shares a roadmap with others [phillips2011].
 //
 // Each robot takes the earliest path through the intervals in which the points are safe from those that were planned
 // before it. A robot is at the end of an edge from when it sets out on it, as in a sequence of moves; until
@@ -33,13 +33,13 @@ struct Traveller {
 struct TimedMove {
   double start;  // seconds
   int traveller, edge;
-  bool leaves;  // it leaves its last stop
+  int stop;  // to which it leads: so many are passed
 };
 
-struct Paths {
-  std::vector<TimedMove> moves;  // by start
-  std::vector<double> ends;      // when each has held at its last stop; infinite where no path was found
-  std::vector<int> order;        // in which they were planned
+struct Way {
+  std::vector<TimedMove> moves;
+  double end;    // when it has held at its last stop; infinite where no path was found
+  double until;  // to which it stays where its moves end
 };
 
 class SafeIntervals {
@@ -51,21 +51,30 @@ class SafeIntervals {
   // What it costs to come to a point from each, kept from one plan to the next.
   const std::vector<double>& metres_to(int goal);
 
-  // Paths of all travellers, the first of the order first.
-  Paths in_order(std::span<const Traveller> travellers, std::span<const int> order);
-
-  // The best paths of several orders, the first of which is given: those without a path come first in the next, then
-  // orders are drawn.
-  Paths best_of(std::span<const Traveller> travellers, std::vector<int> order, int tries, std::uint64_t seed);
+  // Nobody is on the roadmap.
+  void clear();
+  // The earliest way among all who are on it; one that stays at its start where there is none.
+  Way way(const Traveller& who);
+  // A robot, by its number, goes that way; it may not be on the roadmap yet.
+  void reserve(int robot, const Traveller& who, const Way& way);
+  // It does so no more.
+  void release(int robot, const Traveller& who, const Way& way);
+  // A robot has no way yet, but stays at its start long enough to leave that.
+  void reserve_start(int robot, const Traveller& who);
+  void release_start(int robot, const Traveller& who) { erase_stays(robot, who.start); }
+  // How often others are where a robot passes.
+  std::vector<int> meetings(int robot, const Way& way, int robots) const;
 
  private:
   struct Span {
     double from, until;
   };
   struct Stay {
+    int robot;
     double from, until, radius;
   };
   struct Pass {
+    int robot;
     double start, gap, radius;
   };
   struct Label {
@@ -74,23 +83,31 @@ class SafeIntervals {
     double start;
   };
 
-  void clear();
   double apart(const Traveller& who, double radius) const;
   double tail(const Traveller& who) const;
-  struct Way {
-    std::vector<TimedMove> moves;
-    double end;    // when it has held at its last stop
-    double until;  // to which it stays where its moves end
-  };
   std::optional<Way> path(const Traveller& who);
-  void reserve(const Traveller& who, const Way& way);
+  void erase_stays(int robot, int point);
   // The intervals in which a robot may be at a point.
   const std::vector<Span>& safe(const Traveller& who, int point);
   // When a robot must have left where it starts: it is there, whoever stands near.
   double leaves_by(const Traveller& who);
   // The earliest time from `from` at which a robot may set out on an edge; infinite from `until` on.
-  double earliest(const Traveller& who, int edge, double from, double until) const;
+  double earliest(const Traveller& who, int edge, double from, double until);
+  // When others are so near to an edge that a robot may not set out on it, in order and apart.
+  const std::vector<Span>& taken(const Traveller& who, int edge);
   void find_around();
+
+  // The least times by row and state; infinite where none has been set since it was cleared.
+  class Least {
+   public:
+    explicit Least(int rows) : rows_(rows) {}
+    double& at(int row, int state);
+    void clear();
+
+   private:
+    std::vector<std::vector<double>> rows_;
+    std::vector<int> used_;
+  };
 
   std::shared_ptr<const AnnotatedRoadmap> roadmap_;
   std::vector<bool> rests_;
@@ -99,6 +116,9 @@ class SafeIntervals {
   std::vector<std::vector<Pass>> passes_;
   std::vector<std::vector<Span>> safe_;
   std::vector<char> known_;  // whether `safe_` of a point is that of the present traveller
+  std::vector<std::vector<Span>> taken_;
+  std::vector<char> known_edge_;  // the same of `taken_` of an edge
+  Least by_edge_, by_point_;      // of the present search: when a robot may go on
   std::vector<std::vector<AnnotatedRoadmap::Near>>
       around_;  // of each point those as near as any edge's, itself included
   GoalTables<std::vector<double>> to_goals_;

@@ -21,6 +21,7 @@ from muster.execution.forecast import Forecast
 from muster.execution.insertion import Insertion
 from muster.execution.monitor import Limits, moves_again
 from muster.execution.orders import IMPROVED, Orders
+from muster.execution.outlooks import Outlooks
 from muster.execution.peers import Peers
 from muster.execution.punctuality import Punctuality
 from muster.execution.reallocation import Reallocation, Revision, reasons_in_one_line, usage_ahead
@@ -123,6 +124,7 @@ class Executor:
         self._dispatch = Dispatch(
             self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, peers
         )
+        self.outlook = Outlooks(self.ledger, self.crew, self._beginning, self._forecast)
         self.traffic = TrafficWaits(self.crew)
         self._supervisor = Supervisor(
             self.crew,

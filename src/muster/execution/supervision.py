@@ -14,6 +14,8 @@ from muster.execution.traffic_waits import Progress, TrafficWaits, plain_place
 
 GIVES_UP_AFTER = 4
 """Times the limit of a jam after which one of its robots gives up its task."""
+AGAIN_AFTER_S = 5.0
+"""For so long a robot waits for one that is out, where another has given up their task for it."""
 LONGEST_ASIDE = 3
 """Times the first time that a robot stands aside at most."""
 
@@ -87,8 +89,11 @@ class Supervisor:
     def _broken_before(self, state: RobotState, now: float) -> RobotState | None:
         """The robot that is out for which another has waited too long."""
         other = self.crew.get(self.traffic.waits_for(state.robot.id))
-        too_long = now - self.traffic.progress[state.robot.id].since_s > self.limits.stuck_after_s
-        return other if other is not None and other.out and too_long else None
+        if other is None or not other.out:
+            return None
+        known = bool(state.route) and self.ledger.blocked_by.get(state.route[0]) == other.robot.id
+        least_s = AGAIN_AFTER_S if known else self.limits.stuck_after_s
+        return other if now - self.traffic.progress[state.robot.id].since_s > least_s else None
 
     def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> Iterator[Change]:
         if state.activity is Activity.RETURNING:

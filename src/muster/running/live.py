@@ -179,6 +179,8 @@ class Live:
             past=past,
             standing=self._standing,
         )
+        if manager is not None:
+            manager.expect(self.executor.outlook)
 
     @property
     def time_s(self) -> float:

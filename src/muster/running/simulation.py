@@ -168,6 +168,8 @@ class Simulation:
             now=self._world.time_s,
             standing=self._standing,
         )
+        if manager is not None:
+            manager.expect(self._executor.outlook)
         self._camera_search = camera_search_for(
             mission, self._world, self._robots.ports, noise=noise, seed=seed, on_look=on_look
         )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import takewhile
+from itertools import groupby, takewhile
 
+from muster.motion.outlook import Visit
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 
 
@@ -90,9 +91,11 @@ class ManagedPort:
         return bool(self._next())
 
     @property
-    def hold_s(self) -> float:
-        """Seconds for which it stays at its goal, at most."""
-        return sum(self._waypoints[k].hold_s for k in self._next())
+    def visits(self) -> list[Visit]:
+        """Where its order leads, its goal first."""
+        left = [point for point in self._waypoints[self.passed :] if not point.via]
+        groups = (list(group) for _, group in groupby(left, key=lambda point: point.position))
+        return [Visit(group[0].position, sum(point.hold_s for point in group)) for group in groups]
 
     @property
     def busy(self) -> bool:
@@ -118,6 +121,12 @@ class ManagedPort:
         self._sent, self._marks, self._numbers = sent, len(places), numbers
         self._sent_order = self._port.send(sent)
         return True
+
+    def halt(self) -> None:
+        """Let the robot stop where it is until it is sent on."""
+        self._passed = self.passed
+        self._sent, self._marks, self._numbers = (), 0, ()
+        self._sent_order = self._port.cancel()
 
     def _next(self) -> tuple[int, ...]:
         """The numbers of the next way points at one place that are no marks."""

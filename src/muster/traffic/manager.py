@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 from muster.mission.model import Robot
+from muster.motion.outlook import Outlook
 from muster.motion.port import RobotPort
 
 LOOK_S = 0.2
@@ -16,6 +18,10 @@ class TrafficManager(Protocol):
 
     def managed(self, robot: Robot, port: RobotPort) -> RobotPort:
         """The port by which a robot is to be ordered from now on."""
+        ...
+
+    def expect(self, outlook: Callable[[str], Outlook]) -> None:
+        """From now on this says where a robot, by its name, will go after where it has been sent."""
         ...
 
     def look(self, now: float) -> None:

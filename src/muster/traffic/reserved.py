@@ -1,98 +1,41 @@
 """Traffic by reservation: robots pass in the order of one plan for all, and wait where another comes first.
 
-The plan is a sequence of straight moves (`core.PassingOrder`, [hoenig2019]). It is made anew when goals change, when
-robots have come to the end of it, and when one stands that should go.
+The plan is a sequence of straight moves (`core.PassingOrder`, [hoenig2019]) by which robots get to several stops, one
+after the other. It is made anew when robots are sent elsewhere than was planned, when they have come near to the end of
+it, and when one stands that should go.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 from muster import core
 from muster.mission.model import Robot
+from muster.motion.outlook import Outlook
 from muster.motion.port import RobotPort
 from muster.traffic.managed_port import ManagedPort
+from muster.traffic.part import Part, planar
 from muster.traffic.roadmap import MARGIN_M
+from muster.traffic.travellers import Planner, Point, Stop, Traveller
 
 AHEAD_M = 2.0
 """For how many metres a robot may have begun moves, which a new plan does not change."""
 PLAN_EVERY_S = 1.0
 """The least time between two plans where nobody has a new goal."""
+STOPS_PLANNED = 120
+"""Stops of all robots to which moves are planned, but `LEAST_STOPS` of each; anew where one has fewer than half of
+these left."""
+LEAST_STOPS = 4
+TOLD_WITHIN_S = 0.5
+"""A robot that has done what it was to do is told within this time where to go next."""
 BROKEN_AFTER_S = 5.0
 """A robot that does not move for so long though its way is free counts as an obstacle until it moves."""
+TRIED_AFTER_S = 10.0
+"""So long after that it is told anew where to go: it may have dropped its order."""
 _MOVED_M = 0.05
 _AT_GOAL_M = 1e-3
-
-Point = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Traveller:
-    """A robot for which moves are planned.
-
-    Parameters
-    ----------
-    robot
-        who it is.
-    start
-        metres, where its moves begin.
-    goal
-        metres, where it is to go; None: anywhere.
-    heading_rad
-        at its start.
-    ready_s, hold_s
-        seconds for which it stays at its start, and at its goal.
-    stays
-        whether it stays at its goal for good; else it leaves then.
-    fixed
-        whether it stays at its start in any case.
-    """
-
-    robot: Robot
-    start: Point
-    goal: Point | None
-    heading_rad: float = 0.0
-    ready_s: float = 0.0
-    hold_s: float = 0.0
-    stays: bool = True
-    fixed: bool = False
-
-
-class Move(NamedTuple):
-    """A straight move of a traveller, by its number among all, to a place in metres; `leaves`: away from its goal."""
-
-    traveller: int
-    to: Point
-    leaves: bool = False
-
-
-Planner = Callable[[Sequence[Traveller]], Iterable[Move]]
-"""Moves of travellers, in an order in which each is free while the others stand."""
-
-
-@dataclass
-class _Part:
-    """A robot in traffic."""
-
-    robot: Robot
-    port: ManagedPort
-    number: int
-    moves_passed: int = 0  # ends of moves, by the orders before the last
-    ends: int = 0  # how many of the places of the last order are ends of moves
-    goal: Point | None = None  # by the last plan
-    arrives: bool = False  # whether it has something to do there, by the last plan
-    to_go: bool = False  # whether it has been let go further than where it is
-    stood: Point = (0.0, 0.0)
-    moved_s: float = -math.inf  # when it last moved, or had no reason to
-    broken: bool = False
-
-    @property
-    def near(self) -> Point:
-        said = self.port.heard
-        return _planar(said.position) if said is not None else self.stood
 
 
 @dataclass
@@ -112,8 +55,9 @@ class ReservedTraffic:
     margin_m: float = MARGIN_M
     _order: core.PassingOrder = field(init=False)
     _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
-    _parts: list[_Part] = field(default_factory=list)
+    _parts: list[Part] = field(default_factory=list)
     _planned_s: float = -math.inf
+    _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
 
     def __post_init__(self) -> None:
         self._order = core.PassingOrder(margin=self.margin_m, ahead=AHEAD_M)
@@ -126,11 +70,16 @@ class ReservedTraffic:
         self._waiting.append((robot, managed))
         return managed
 
+    def expect(self, outlook: Callable[[str], Outlook]) -> None:
+        """See `TrafficManager`."""
+        self._outlook = outlook
+
     def look(self, now: float) -> None:
         """See how far robots are, plan anew where that is due, and send robots on."""
         self._take_in(now)
         for part in self._parts:
             self._order.progress(part.number, part.moves_passed + min(part.port.marks_passed, part.ends), part.near)
+            self._lead_on(part, now)
         self._watch(now)
         if self._plan_is_due(now):
             self._plan_anew(now)
@@ -145,80 +94,143 @@ class ReservedTraffic:
             if said is None:
                 silent.append((robot, port))
                 continue
-            place = _planar(said.position)
+            place = planar(said.position)
             number = self._order.add(place, robot.radius_m)
-            self._parts.append(_Part(robot, port, number, stood=place, moved_s=now))
+            self._parts.append(Part(robot, port, number, stood=place, moved_s=now))
             self._planned_s = -math.inf
         self._waiting = silent
 
     def _watch(self, now: float) -> None:
-        """A robot that does not move though it may stands in the way of the others, until it moves."""
+        """One that does not move though it may stands in the way of the others, until it moves or is tried again."""
         for part in self._parts:
             moved = math.dist(part.near, part.stood) > _MOVED_M
-            if moved or not part.to_go or part.port.busy:
+            if part.broken:
+                if moved or now - part.broken_s >= TRIED_AFTER_S:
+                    self._mend(part, now)
+            elif moved or not part.to_go or part.port.busy:
                 part.stood, part.moved_s = part.near, now
-            broken = part.to_go and now - part.moved_s > BROKEN_AFTER_S
-            if broken != part.broken and (broken or moved):
-                part.broken = broken
-                self._order.cut()
-                self._planned_s = -math.inf
+            elif now - part.moved_s > BROKEN_AFTER_S:
+                self._break(part, now)
+
+    def _break(self, part: Part, now: float) -> None:
+        """What the robot was told holds: it may have dropped it, or go on at any time."""
+        part.broken, part.broken_s = True, now
+        self._order.cut()
+        self._order.stop(part.number, part.near)
+        self._planned_s = -math.inf
+
+    def _mend(self, part: Part, now: float) -> None:
+        """The robot is stopped, and told anew: where it was told to go others may be sent by now."""
+        part.broken, part.stood, part.moved_s = False, part.near, now
+        part.port.halt()
+        self._order.cut()
+        self._order.stop(part.number, part.near)
+        self._planned_s = -math.inf
+
+    def _lead_on(self, part: Part, now: float) -> None:
+        """A robot that goes where it was planned to go next, or has done all, goes on along the moves that it has."""
+        goal, arrives = self._goal(part), part.port.arrives
+        to_next = arrives and goal != part.goal and part.ahead[:1] == [goal]
+        to_rest = goal is None and part.goal is not None and not part.ahead and not part.stays
+        if to_next or to_rest:
+            part.goal, part.arrives, part.ahead = goal, arrives, part.ahead[1:]
+            part.stop += 1
+            self._order.lead(part.number, part.stop)
+        done = part.arrives and not arrives and goal == part.goal
+        part.done_s = min(part.done_s, now) if done else math.inf
 
     def _plan_is_due(self, now: float) -> bool:
-        if any((self._goal(part), part.port.arrives) != (part.goal, part.arrives) for part in self._parts):
+        if any(self._goes_elsewhere(part, now) for part in self._parts):
             return True
         if now - self._planned_s < PLAN_EVERY_S:
             return False
-        return any(self._falls_short(part) for part in self._parts)
+        return any(
+            self._falls_short(part) or (part.more and len(part.ahead) < LEAST_STOPS // 2) for part in self._parts
+        )
 
-    def _falls_short(self, part: _Part) -> bool:
+    def _goes_elsewhere(self, part: Part, now: float) -> bool:
+        """Whether a robot has been sent elsewhere than was planned; one that has done its work is told soon."""
+        goal, arrives = self._goal(part), part.port.arrives
+        if (goal, arrives) == (part.goal, part.arrives):
+            return False
+        if goal != part.goal or arrives:
+            return True
+        last = part.stays and not part.ahead
+        return not last and now - part.done_s >= TOLD_WITHIN_S
+
+    def _falls_short(self, part: Part) -> bool:
         """Whether the moves of a robot end before its goal, and it is coming near to where they end."""
         away = self._away_m(part) > _AT_GOAL_M
         return away and not part.broken and self._order.metres_left(part.number) < 2 * AHEAD_M
 
-    def _goal(self, part: _Part) -> Point | None:
+    def _goal(self, part: Part) -> Point | None:
+        """Where a robot is to go or to stay; None: where it has nothing to do it may be anywhere."""
         goal = part.port.goal
-        return None if goal is None else _planar(goal)
+        if goal is None or not (part.port.arrives or any(self._outlook(part.robot.id))):
+            return None
+        return planar(goal)
 
     def _plan_anew(self, now: float) -> None:
         self._planned_s, self.plans = now, self.plans + 1
         self._order.drop_ahead()
         travellers = []
         for part in self._parts:
-            part.goal, part.arrives = self._goal(part), part.port.arrives
+            part.goal, part.arrives, part.done_s = self._goal(part), part.port.arrives, math.inf
             self._find_again(part)
             travellers.append(self._traveller(part))
         stopped = set[int]()
-        for traveller, to, leaves in self.plan(travellers):
-            if traveller not in stopped and not self._order.append(self._parts[traveller].number, to, leaves):
+        for traveller, to, stop in self.plan(travellers):
+            part = self._parts[traveller]
+            if traveller not in stopped and not self._order.append(part.number, to, part.stop + stop):
                 stopped.add(traveller)
 
-    def _find_again(self, part: _Part) -> None:
+    def _find_again(self, part: Part) -> None:
         """A robot that is to go on stands where it is now said to be: first words may err, and robots are pushed."""
         to_go_on = part.goal is None or self._away_m(part) > _AT_GOAL_M
         if to_go_on and not part.port.busy and math.dist(self._order.end(part.number), part.near) > _MOVED_M:
             self._order.stands(part.number, part.near)
 
-    def _traveller(self, part: _Part) -> Traveller:
-        said, hold_s = part.port.heard, part.port.hold_s
+    def _traveller(self, part: Part) -> Traveller:
+        stops = self._stops(part)
+        part.ahead = [stop.at for stop in stops[1:]]
+        said, busy = part.port.heard, part.port.busy
+        ready_s = stops[0].hold_s if busy else 0.0
         return Traveller(
             robot=part.robot,
             start=self._order.end(part.number),
-            goal=part.goal,
+            stops=(Stop(stops[0].at), *stops[1:]) if busy else tuple(stops),
             heading_rad=0.0 if said is None else said.heading,
-            ready_s=hold_s if part.port.busy else 0.0,
-            hold_s=0.0 if part.port.busy else hold_s,
-            stays=not part.port.arrives,
+            ready_s=ready_s,
+            stays=part.stays,
             fixed=part.broken,
         )
 
-    def _let_go(self, part: _Part) -> None:
+    def _stops(self, part: Part) -> Sequence[Stop]:
+        """Where a robot goes now and then, as far as it is planned; what it does at one place is one stop."""
+        if part.goal is None or not part.arrives:
+            part.more, part.stays = False, part.goal is not None
+            return [] if part.goal is None else [Stop(part.goal)]
+        visits, stays = self._outlook(part.robot.id)
+        stops = list[Stop]()
+        for place, hold_s in (*part.port.visits, *visits):
+            at = planar(place)
+            before = stops.pop().hold_s if stops and stops[-1].at == at else 0.0
+            stops.append(Stop(at, before + hold_s))
+        most = max(LEAST_STOPS, STOPS_PLANNED // len(self._parts))
+        part.more = len(stops) > most
+        part.stays = stays and not part.more
+        return stops[:most]
+
+    def _let_go(self, part: Part) -> None:
         """Send a robot as far as it may go."""
         if part.port.busy:
             part.port.waits_for, part.to_go = "", False
             return
         grant = self._order.grant(part.number)
         part.to_go = grant.metres > _MOVED_M
-        part.port.left_m = self._order.metres_left(part.number) + self._away_m(part)
+        left_m, away_m = self._order.metres_left(part.number), self._away_m(part)
+        if left_m > 0 or away_m <= _AT_GOAL_M or part.port.left_m is None:  # without a way it has come no nearer
+            part.port.left_m = left_m + away_m
         part.port.waits_for = self._held_up_by(part, grant)
         to_goal = grant.last and part.port.arrives and self._away_m(part) <= _AT_GOAL_M
         if grant.points or to_goal:
@@ -228,21 +240,18 @@ class ReservedTraffic:
                 part.moves_passed = self._order.passed(part.number)
             part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
 
-    def _away_m(self, part: _Part) -> float:
+    def _away_m(self, part: Part) -> float:
         """Metres from where the moves of a robot end to its goal; 0 without one."""
         return 0.0 if part.goal is None else math.dist(self._order.stand(part.number), part.goal)
 
-    def _held_up_by(self, part: _Part, grant: core.Grant) -> str:
+    def _held_up_by(self, part: Part, grant: core.Grant) -> str:
         """The robot that comes first, or stands next to one that has found no way; empty where nobody holds it up."""
         if grant.waits_for >= 0:
             return self._parts[grant.waits_for].robot.id
         return self._nearest(part) if self._falls_short(part) and not grant.points else ""
 
-    def _nearest(self, part: _Part) -> str:
-        """The robot next to one that has found no way."""
+    def _nearest(self, part: Part) -> str:
+        """The robot next to one that has found no way; one that is broken, if there is any."""
         others = [other for other in self._parts if other is not part]
-        return min(others, key=lambda other: math.dist(other.near, part.near)).robot.id if others else ""
-
-
-def _planar(place: Sequence[float]) -> Point:
-    return (place[0], place[1])
+        found = min(others, key=lambda other: (not other.broken, math.dist(other.near, part.near)), default=None)
+        return "" if found is None else found.robot.id

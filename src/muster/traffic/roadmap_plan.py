@@ -12,9 +12,9 @@ from muster import core
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.traffic.edge_conflicts import conflicts
-from muster.traffic.reserved import Move, Point, Traveller
 from muster.traffic.roadmap import Roadmap
 from muster.traffic.single_moves import MovePlanner, Parameters
+from muster.traffic.travellers import Move, Point, Traveller
 
 _SAME_M = 1e-6
 _TRIES = 8
@@ -23,6 +23,9 @@ _HORIZON = 10
 """Moves of each robot that are planned where some find no path by themselves."""
 _ENTRIES = 6
 """Points of the roadmap to which a place beside it is joined, at most."""
+_CORNERS = 8
+"""Of the way round a robot that never leaves."""
+_SPARE_M = 0.01
 _BLOCKED_M = (0.0, 0.1, 0.3)
 """Metres at a place beside it that may be blocked, where else no point is seen: robots err in where they are."""
 
@@ -49,11 +52,16 @@ class RoadmapPlan:
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
-        on = self._network([place for who in travellers for place in (who.start, who.goal) if place is not None])
+        places = [place for who in travellers for place in (who.start, *(stop.at for stop in who.stops))]
+        on = self._network([*places, *(place for who in travellers if who.fixed for place in self._around(who))])
         moves = self._by_safe_intervals(on, travellers)
-        for traveller, edge, leaves in self._by_inheritance(on, travellers) if moves is None else moves:
+        if moves is None and any(len(who.stops) > 1 for who in travellers):
+            moves = self._by_safe_intervals(on, [_to_first_stop(who) for who in travellers])
+        if moves is None:
+            moves = self._by_inheritance(on, travellers)
+        for traveller, edge, stop in moves:
             x, y = on.roadmap.points[on.roadmap.edges[edge, 1]]
-            yield Move(traveller, (float(x), float(y)), leaves)
+            yield Move(traveller, (float(x), float(y)), stop)
 
     def _network(self, places: Sequence[Point]) -> _Network:
         """The roadmap with these places, as it was for the last plan where that has them."""
@@ -61,30 +69,39 @@ class RoadmapPlan:
             self._known = _Network.of(with_places(self.roadmap, self.clear, places))
         return self._known
 
+    def _around(self, who: Traveller) -> Iterator[Point]:
+        """Places by which others as wide get round a robot that never leaves, where there is room."""
+        radius_m = (2 * who.robot.radius_m + self.roadmap.margin_m) / math.cos(math.pi / _CORNERS) + _SPARE_M
+        for k in range(_CORNERS):
+            angle = 2 * math.pi * k / _CORNERS
+            place = (who.start[0] + radius_m * math.cos(angle), who.start[1] + radius_m * math.sin(angle))
+            if self.clear(np.array([place, place])):
+                yield place
+
     def _by_safe_intervals(
         self, on: _Network, travellers: Sequence[Traveller]
-    ) -> Sequence[tuple[int, int, bool]] | None:
-        """Moves as (traveller, edge, leaves); None where some find no path."""
+    ) -> Sequence[tuple[int, int, int]] | None:
+        """Moves as (traveller, edge, stop); None where some find no path."""
         ranks = {name: k for k, name in enumerate(self._priorities)}
         metres = [on.metres(who) for who in travellers]
         first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
         told = [_told(who, on.number) for who in travellers]
         moves, ends, order = on.intervals.best_of(told, order=first, tries=_TRIES, seed=self.seed)
         self._priorities = [travellers[k].robot.id for k in order]
-        return None if math.inf in ends else [(traveller, edge, leaves) for _, traveller, edge, leaves in moves]
+        return None if math.inf in ends else [(traveller, edge, stop) for _, traveller, edge, stop in moves]
 
-    def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, bool]]:
-        """Moves as (traveller, edge, leaves), as far as the horizon."""
+    def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, int]]:
+        """Moves as (traveller, edge, stop), to first stops, as far as the horizon."""
         found = on.planner.planned(
             [on.number[who.start] for who in travellers],
-            [None if who.goal is None else on.number[who.goal] for who in travellers],
+            [on.number[who.stops[0].at] if who.stops else None for who in travellers],
             [who.robot.radius_m for who in travellers],
             margin_m=on.roadmap.margin_m,
             pinned=[who.fixed or who.ready_s > 0 for who in travellers],
             seed=self.seed,
             params=Parameters(horizon=_HORIZON * len(travellers)),
         )
-        return [(traveller, edge, False) for traveller, edge in found.moves]
+        return [(traveller, edge, 0) for traveller, edge in found.moves]
 
 
 @dataclass(frozen=True)
@@ -104,8 +121,10 @@ class _Network:
         return cls(roadmap, number, planner, core.SafeIntervals(planner.shared, rests, roadmap.margin_m))
 
     def metres(self, who: Traveller) -> float:
-        """The length of the shortest way to a robot's goal; below 0 without one."""
-        return -1.0 if who.goal is None else self.intervals.metres_to(self.number[who.goal])[self.number[who.start]]
+        """The length of the shortest way to a robot's first stop; below 0 without one."""
+        if not who.stops:
+            return -1.0
+        return self.intervals.metres_to(self.number[who.stops[0].at])[self.number[who.start]]
 
 
 def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Sequence[Point]) -> Roadmap:
@@ -148,11 +167,15 @@ def _seen(clear: Callable[[Floats], bool], points: Floats, k: int) -> list[int]:
     return []
 
 
+def _to_first_stop(who: Traveller) -> Traveller:
+    return replace(who, stops=who.stops[:1], stays=who.stays and len(who.stops) < 2)
+
+
 def _told(who: Traveller, number: Mapping[Point, int]) -> core.Traveller:
     limits, faces = limits_of(who.robot), kinematics_named(who.robot.kinematics).faces_its_way
     return core.Traveller(
         start=number[who.start],
-        stops=[] if who.goal is None else [(number[who.goal], who.hold_s)],
+        stops=[(number[stop.at], stop.hold_s) for stop in who.stops],
         radius=who.robot.radius_m,
         speed=limits.speed_mps,
         heading=who.heading_rad,

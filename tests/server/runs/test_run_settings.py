@@ -20,7 +20,7 @@ BRIDGES = ("ros1", "mavlink")
         (
             "kinematic",
             {"drive": "goals"},
-            "drive: no setting of world kinematic; expected seed, ignore, planning, stay, until_s, traffic, dt_s, avoidance",
+            "drive: no setting of world kinematic; expected seed, ignore, planning, stay, until_s, traffic, dt_s",
         ),
         ("kinematic", {"seed": -1}, "seed: -1; expected a whole number, 0 to"),
         ("kinematic", {"seed": True}, "seed: true; expected a whole number"),

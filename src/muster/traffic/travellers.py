@@ -1,0 +1,64 @@
+"""What a plan of traffic is made of: robots that travel, and their moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from muster.mission.model import Robot
+
+Point = tuple[float, float]
+
+
+class Stop(NamedTuple):
+    """A place in metres, and seconds for which a robot stays there."""
+
+    at: Point
+    hold_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Traveller:
+    """A robot for which moves are planned.
+
+    Parameters
+    ----------
+    robot
+        who it is.
+    start
+        metres, where its moves begin.
+    stops
+        where it is to go, one after the other; none: it may be anywhere.
+    heading_rad
+        at its start.
+    ready_s
+        seconds for which it stays at its start.
+    stays
+        whether it stays at its last stop for good; else it leaves then.
+    fixed
+        whether it stays at its start in any case.
+    """
+
+    robot: Robot
+    start: Point
+    stops: tuple[Stop, ...] = ()
+    heading_rad: float = 0.0
+    ready_s: float = 0.0
+    stays: bool = True
+    fixed: bool = False
+
+
+class Move(NamedTuple):
+    """A straight move of a traveller, by its number among all, to a place in metres.
+
+    `stop` is the number of the stop to which the move leads; that of all its stops for moves after the last.
+    """
+
+    traveller: int
+    to: Point
+    stop: int = 0
+
+
+Planner = Callable[[Sequence[Traveller]], Iterable[Move]]
+"""Moves of travellers, in an order in which each is free while the others stand."""

@@ -1,0 +1,84 @@
+"""A robot in traffic that drops its order while it may drive counts as broken, and is told anew."""
+
+from __future__ import annotations
+
+import pytest
+
+from muster import Robot
+from muster.motion.port import Telemetry, Waypoint
+from muster.traffic.reserved import BROKEN_AFTER_S, TRIED_AFTER_S, ReservedTraffic
+from muster.traffic.travellers import Move
+
+GOAL = (9.0, 0.0, 0.0)
+
+
+class Drive:
+    """A port to a robot that drives at some speed, and notes what is sent to it."""
+
+    robot = "r_0"
+
+    def __init__(self) -> None:
+        self.now, self.x, self.speed = 0.0, 0.0, 0.0
+        self.sent: list[tuple[Waypoint, ...]] = []
+
+    def send(self, waypoints):
+        self.sent.append(tuple(waypoints))
+        return len(self.sent)
+
+    def cancel(self):
+        return self.send(())
+
+    def telemetry(self):
+        return Telemetry(self.now, (self.x, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0), self.x, len(self.sent), 0)
+
+
+class Traffic:
+    """Traffic of one robot that is sent to a goal; its plans, and who was fixed in each."""
+
+    def __init__(self) -> None:
+        self.fixed: list[bool] = []
+        self.traffic, self.drive = ReservedTraffic(self.plan), Drive()
+        self.traffic.managed(Robot(id="r_0", position=(0.0, 0.0), radius_m=0.3), self.drive).send([Waypoint(GOAL)])
+
+    def plan(self, travellers):
+        self.fixed.append(travellers[0].fixed)
+        return [] if travellers[0].fixed else [Move(0, GOAL[:2])]
+
+    def go_on(self, seconds, speed):
+        until_s = self.drive.now + seconds
+        while self.drive.now < until_s:
+            self.drive.now, self.drive.x = self.drive.now + 0.5, self.drive.x + 0.5 * speed
+            self.traffic.look(self.drive.now)
+
+    @property
+    def times_sent(self):
+        return sum(1 for way in self.drive.sent if way and way[-1].position == GOAL)
+
+
+@pytest.fixture
+def traffic():
+    made = Traffic()
+    made.go_on(1.0, speed=0.0)
+    assert made.times_sent == 1
+    return made
+
+
+def test_who_stands_though_it_may_drive_is_told_anew_and_again(traffic):
+    traffic.go_on(BROKEN_AFTER_S + 0.5, speed=0.0)
+    assert (traffic.times_sent, traffic.drive.sent[-1][-1].position) == (1, GOAL)  # what it was told holds
+    traffic.go_on(TRIED_AFTER_S, speed=0.0)
+    assert traffic.times_sent == 2
+    traffic.go_on(BROKEN_AFTER_S + TRIED_AFTER_S + 1.0, speed=0.0)
+    assert traffic.times_sent == 3
+
+
+def test_who_moves_again_is_planned_again_from_where_it_is(traffic):
+    traffic.go_on(BROKEN_AFTER_S + 0.5, speed=0.0)
+    traffic.go_on(1.0, speed=0.5)
+    assert traffic.times_sent == 2
+
+
+def test_who_drives_is_not_told_anew(traffic):
+    traffic.go_on(2 * BROKEN_AFTER_S, speed=0.5)
+    assert traffic.times_sent == 1
+    assert not any(traffic.fixed)
