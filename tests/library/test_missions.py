@@ -57,6 +57,7 @@ COUNTS = {  # robots, tasks
     "market-rescue-arena": (3, 5),
     "scout-and-deliver": (5, 5),
     "six-tags": (1, 18),
+    "warehouse": (20, 60),
     "yard": (4, 18),
 }
 THESIS = ["6T-2R", "11T-2R", "16T-3R", "24T-5R", *(name for name in COUNTS if name.startswith("31T"))]
