@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances disturbances-timed help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances disturbances-timed disturbances-traffic help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -59,6 +59,9 @@ disturbances: $(VENV)/developed
 disturbances-timed: $(VENV)/developed
 	$(BIN)/python -m tests.disturbances.timed $(or $(DISTURBANCES_FLAGS),2000)
 
+disturbances-traffic: $(VENV)/developed
+	$(BIN)/python -m tests.disturbances.traffic $(or $(DISTURBANCES_FLAGS),2000)
+
 standing: $(VENV)/developed
 	$(BIN)/muster bench --only standing,standing-live
 
@@ -77,6 +80,8 @@ help:
 	@echo "make network-figures  time robots in network namespaces, through loss and a cut (root; NETWORK_FLAGS='--robots 20')"
 	@echo "make disturbances  carry out 10,000 random missions in which robots fail and tasks change"
 	@echo "make disturbances-timed  carry out 2,000 with windows, lags, shifts, teams and relations"
+	@echo "make disturbances-traffic  carry out 2,000 in narrow places, where robots stop and come back"
+	@echo "                           (DISTURBANCES_FLAGS='500 --first 1000')"
 	@echo "make check      formatters, linters, types, import contract"
 	@echo "make format     let the formatters change the files"
 	@echo "make stub       make the type stub of the core anew"

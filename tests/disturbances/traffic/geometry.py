@@ -1,0 +1,36 @@
+"""The free space of a mission for bodies that are discs, without the code under test."""
+
+import numpy as np
+import shapely
+
+NEAR_M = 0.15
+"""By which a body may be nearer to a broken one than a way needs, and still leave on its side."""
+
+
+class Space:
+    """Distances to walls, and which places are joined; all zones of the map are closed."""
+
+    def __init__(self, chart):
+        self.inside = shapely.Polygon(chart.boundary)
+        self.walls = shapely.union_all([shapely.Polygon(zone.polygon) for zone in chart.zones])
+        self._faces = shapely.union_all([self.walls, self.inside.exterior])
+        shapely.prepare((self.inside, self._faces))
+
+    def gap_m(self, places):
+        """Metres (n,) from places (n, 2) to the nearest wall; 0 in a wall."""
+        points = shapely.points(places)
+        away = shapely.distance(points, self._faces)
+        return np.where(shapely.covers(self.inside, points), away, 0.0)
+
+    def free(self, radius_m, broken=(), margin_m=0.0):
+        """The parts of the space where the middle of a body may be, among broken ones of the same radius."""
+        room = self.inside.buffer(-radius_m).difference(self.walls.buffer(radius_m))
+        for place in broken:
+            room = room.difference(shapely.Point(place).buffer(2 * radius_m + margin_m))
+        return [part for part in shapely.get_parts(room) if not part.is_empty]
+
+
+def joined(parts, start, goal):
+    """Whether a body at a place comes to another by the parts of a free space."""
+    begin, end = shapely.Point(start), shapely.Point(goal)
+    return any(part.distance(begin) < NEAR_M and part.covers(end) for part in parts)
