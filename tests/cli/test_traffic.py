@@ -97,3 +97,45 @@ def test_robots_without_a_radius_are_refused(muster, tmp_path):
     code, _, err = muster("traffic", file)
     assert code == 2
     assert "radius_m: 0 for all robots; expected a robot with a radius above 0" in err
+
+
+DOOR = """\
+schema: muster/1
+name: door
+rules: {travel: map}
+map:
+  boundary: [[-6, -3], [6, -3], [6, 3], [-6, 3]]
+  zones:
+    - {polygon: [[-0.2, -3], [0.2, -3], [0.2, -0.45], [-0.2, -0.45]]}
+    - {polygon: [[-0.2, 0.45], [0.2, 0.45], [0.2, 3], [-0.2, 3]]}
+robots:
+  - {id: r_0, position: [-2, 0], radius_m: 0.3}
+  - {id: r_1, position: [2, 0], radius_m: 0.3}
+tasks:
+  - {id: east, position: [5, 0], only_robots: [r_0]}
+  - {id: west, position: [-5, 0], only_robots: [r_1]}
+"""
+
+
+def test_the_traffic_of_a_plan_is_forecast(muster, tmp_path):
+    door, plan = tmp_path / "door.yaml", tmp_path / "plan.json"
+    door.write_text(DOOR, encoding="utf-8")
+    assert muster("solve", door, "-q", "-o", plan)[0] == 0
+    code, out, _ = muster("traffic", door, "--plan", plan, "--format", "json")
+    robots = json.loads(out)["plan"]["robots"]
+    assert code == 0
+    assert [row["alone_s"] for row in robots] == pytest.approx([7.0, 7.0], abs=0.5)
+    first, second = sorted(row["with_traffic_s"] for row in robots)
+    assert first == pytest.approx(7.0, abs=0.5)
+    assert second > 8.5
+    assert f"time with traffic {second:.2f} s" in muster("traffic", door, "--plan", plan)[1]
+
+
+def test_a_plan_that_breaks_rules_is_not_forecast(muster, tmp_path):
+    door, plan = tmp_path / "door.yaml", tmp_path / "plan.json"
+    door.write_text(DOOR, encoding="utf-8")
+    routes = [{"robot": "r_0", "tasks": ["west"]}, {"robot": "r_1", "tasks": ["east"]}]
+    plan.write_text(json.dumps({"schema": "muster-plan/1", "routes": routes}), encoding="utf-8")
+    code, _, err = muster("traffic", door, "--plan", plan)
+    assert code == 2
+    assert "the judge rejects this plan" in err

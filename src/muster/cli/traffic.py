@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, MissionFile, format_option, mission_argument, quiet_option
+from muster.cli.options import Finite, MissionFile, format_option, load_plan, mission_argument, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
-from muster.cli.tables import counted, sequence
+from muster.cli.tables import counted, number, sequence
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import json_text
 
 if TYPE_CHECKING:
+    from muster.traffic.forecast import RobotForecast
     from muster.traffic.mission_roadmap import MissionRoadmap
     from muster.traffic.passages import Passage
 
@@ -29,10 +32,18 @@ if TYPE_CHECKING:
     metavar="M",
     help="What two robots keep between them beyond touching, metres.",
 )
+@click.option(
+    "--plan",
+    type=click.Path(exists=True, dir_okay=False, path_type=File),
+    metavar="FILE",
+    help="Forecast how long the plan takes where robots pass in turn.",
+)
 @format_option
 @click.option("--plot", type=click.Path(path_type=File), metavar="FILE", help="Draw the roadmap (.png, .svg, .pdf).")
 @quiet_option
-def command(mission: MissionFile, margin: float, form: str, plot: File | None, quiet: bool, verbose: bool) -> int:
+def command(
+    mission: MissionFile, margin: float, plan: File | None, form: str, plot: File | None, quiet: bool, verbose: bool
+) -> int:
     """Show the roadmap that the robots of a MISSION share: its lanes, passages for one, dead ends and holding places.
 
     It is made of the mission's lanes where it gives them, else of its map, else of the open area around its places, for
@@ -55,11 +66,49 @@ def command(mission: MissionFile, margin: float, form: str, plot: File | None, q
         from muster.report.roadmap_picture import plot_roadmap
 
         save_figure(plot_roadmap(loaded, made, found, image=None if world is None else world.image), plot)
+    forecast = () if plan is None else _forecast(loaded, plan, made, quiet=quiet, verbose=verbose)
     if form == "json":
-        click.echo(json_text(_figures(made, found)), nl=False)
+        told = {} if plan is None else {"plan": {"robots": [asdict(one) for one in forecast]}}
+        click.echo(json_text(_figures(made, found) | told), nl=False)
     else:
         _print(loaded, made, found)
+        if plan is not None:
+            _print_forecast(forecast)
     return DONE
+
+
+def _forecast(
+    mission: Mission, file: File, made: MissionRoadmap, *, quiet: bool, verbose: bool
+) -> tuple[RobotForecast, ...]:
+    from muster.mission.plan import RouteStop
+    from muster.traffic.forecast import forecast
+    from muster.traffic.roadmap_plan import RoadmapPlan
+    from muster.verification import verify
+
+    plan = load_plan(file, mission, quiet=quiet, verbose=verbose)
+    verdict = verify(mission, plan, plan.ignored, plan.objective)
+    if not verdict.valid:
+        details = "; ".join(f"{found.kind} {found.detail}" for found in verdict.violations[:3])
+        raise ParameterError(f"--plan: {file}: the judge rejects this plan: {details}")
+    routes = {
+        route.robot: [RouteStop(one.task, one.arrives_s, one.starts_s, one.ends_s) for one in route.visits]
+        for route in verdict.routes
+    }
+    return forecast(mission, routes, RoadmapPlan(made.roadmap, made.clear))
+
+
+def _print_forecast(forecast: tuple[RobotForecast, ...]) -> None:
+    """Print when robots have ended their routes, and how much of that they wait for others."""
+    from muster.cli.tables import print_table
+
+    rows = [
+        (one.robot, number(one.alone_s), number(one.with_traffic_s), number(max(0.0, one.with_traffic_s - one.alone_s)))
+        for one in forecast
+    ]
+    columns = ("robot", "alone [s]", "with traffic [s]", "more [s]")
+    print_table(columns, rows, right=columns[1:])
+    without_s, with_s = (max(times) for times in zip(*((o.alone_s, o.with_traffic_s) for o in forecast), strict=True))
+    click.echo(f"time with traffic {number(with_s, 's')}, {number(without_s, 's')} without; ways home included")
 
 
 def _warn(mission: Mission, made: MissionRoadmap) -> None:

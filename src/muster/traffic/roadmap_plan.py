@@ -52,8 +52,7 @@ class RoadmapPlan:
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
-        places = [place for who in travellers for place in (who.start, *(stop.at for stop in who.stops))]
-        on = self._network([*places, *(place for who in travellers if who.fixed for place in self._around(who))])
+        on = self._network_for(travellers)
         moves = self._by_safe_intervals(on, travellers)
         if moves is None and any(len(who.stops) > 1 for who in travellers):
             moves = self._by_safe_intervals(on, [_to_first_stop(who) for who in travellers])
@@ -63,8 +62,14 @@ class RoadmapPlan:
             x, y = on.roadmap.points[on.roadmap.edges[edge, 1]]
             yield Move(traveller, (float(x), float(y)), stop)
 
-    def _network(self, places: Sequence[Point]) -> _Network:
-        """The roadmap with these places, as it was for the last plan where that has them."""
+    def ends(self, travellers: Sequence[Traveller]) -> list[float]:
+        """When each has stayed at its last stop, in seconds; inf where no path is found, NaN where none can be."""
+        return self._searched(self._network_for(travellers), travellers)[1]
+
+    def _network_for(self, travellers: Sequence[Traveller]) -> _Network:
+        """The roadmap with their places, as it was for the last plan where that has them."""
+        places = [place for who in travellers for place in (who.start, *(stop.at for stop in who.stops))]
+        places += [place for who in travellers if who.fixed for place in self._around(who)]
         if self._known is None or not self._known.number.keys() >= set(places):
             self._known = _Network.of(with_places(self.roadmap, self.clear, places))
         return self._known
@@ -82,13 +87,19 @@ class RoadmapPlan:
         self, on: _Network, travellers: Sequence[Traveller]
     ) -> Sequence[tuple[int, int, int]] | None:
         """Moves as (traveller, edge, stop); None where some find no path."""
+        moves, ends, order = self._searched(on, travellers)
+        self._priorities = [travellers[k].robot.id for k in order]
+        return None if math.inf in ends else [(traveller, edge, stop) for _, traveller, edge, stop in moves]
+
+    def _searched(
+        self, on: _Network, travellers: Sequence[Traveller]
+    ) -> tuple[list[tuple[float, int, int, int]], list[float], list[int]]:
+        """Moves, ends and the order of travellers: see `core.SafeIntervals.best_of`."""
         ranks = {name: k for k, name in enumerate(self._priorities)}
         metres = [on.metres(who) for who in travellers]
         first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
         told = [_told(who, on.number) for who in travellers]
-        moves, ends, order = on.intervals.best_of(told, order=first, tries=_TRIES, seed=self.seed)
-        self._priorities = [travellers[k].robot.id for k in order]
-        return None if math.inf in ends else [(traveller, edge, stop) for _, traveller, edge, stop in moves]
+        return on.intervals.best_of(told, order=first, tries=_TRIES, seed=self.seed)
 
     def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, int]]:
         """Moves as (traveller, edge, stop), to first stops, as far as the horizon."""

@@ -1,0 +1,80 @@
+"""How long a plan takes where robots pass in turn: the forecast of its traffic, before anybody moves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from muster.mission.model import Mission, Robot
+from muster.mission.plan import RouteStop
+from muster.motion.actions import TaskMotion
+from muster.motion.actions import plan as motion_of
+from muster.traffic.roadmap_plan import RoadmapPlan
+from muster.traffic.travellers import Stop, Traveller
+
+
+@dataclass(frozen=True)
+class RobotForecast:
+    """When a robot has ended its route, its way home included.
+
+    Parameters
+    ----------
+    with_traffic_s
+        seconds, with what it waits for others; inf where no path is found for it.
+    alone_s
+        seconds, were it alone on the roadmap.
+    """
+
+    robot: str
+    with_traffic_s: float
+    alone_s: float
+
+
+def forecast(
+    mission: Mission, routes: Mapping[str, Sequence[RouteStop]], traffic: RoadmapPlan
+) -> tuple[RobotForecast, ...]:
+    """What `traffic` makes of the routes of robots, for each robot that drives.
+
+    A robot stays at each task as long as its route says, waiting for prerequisites, windows and teams included.
+    """
+    driving = [robot for robot in mission.robots if robot.kind == "ground" and robot.radius_m > 0]
+    travellers = [_traveller(mission, robot, routes.get(robot.id, ())) for robot in driving]
+    together = traffic.ends(travellers)
+    alone = [traffic.ends([who])[0] for who in travellers]
+    return tuple(
+        RobotForecast(robot.id, with_traffic_s, max(alone_s, 0.0))
+        for robot, with_traffic_s, alone_s in zip(driving, together, alone, strict=True)
+    )
+
+
+def _traveller(mission: Mission, robot: Robot, route: Sequence[RouteStop]) -> Traveller:
+    home = robot.place_at_end(mission.rules)
+    stops = list(_stops(mission, robot, route))
+    if stops and home is not None:
+        stops.append(Stop((home[0], home[1])))
+    start = (robot.position[0], robot.position[1])
+    return Traveller(
+        robot=robot,
+        start=start,
+        stops=tuple(stops),
+        heading_rad=math.radians(robot.heading_deg or 0.0),
+        ready_s=robot.available_from_s if stops else 0.0,
+        stays=bool(stops) and home is not None,
+    )
+
+
+def _stops(mission: Mission, robot: Robot, route: Sequence[RouteStop]) -> Iterator[Stop]:
+    """Where a robot enters and leaves its tasks, and how long it is at each."""
+    tasks = {task.id: task for task in mission.tasks}
+    for stop in route:
+        motion = motion_of(tasks[stop.task], robot)
+        if not isinstance(motion, TaskMotion):
+            continue
+        (x, y), (to_x, to_y) = motion.entry[:2], motion.exit[:2]
+        moves_s = math.dist((x, y), (to_x, to_y)) / robot.speed_mps
+        if moves_s == 0.0:
+            yield Stop((x, y), stop.end_s - stop.arrive_s)
+            continue
+        yield Stop((x, y), stop.begin_s - stop.arrive_s)
+        yield Stop((to_x, to_y), max(0.0, stop.end_s - stop.begin_s - moves_s))

@@ -1,0 +1,41 @@
+"""The forecast of how long a plan takes in traffic, beside what a run takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from muster import Simulation, solve
+from muster.traffic.forecast import forecast
+from muster.traffic.mission_roadmap import MissionRoadmap
+from muster.traffic.roadmap_plan import RoadmapPlan
+from muster_studies.jams import scenes
+
+
+def forecast_of(mission, plan):
+    shared = MissionRoadmap.of(mission)
+    return forecast(
+        mission, {route.robot: route.stops for route in plan.routes}, RoadmapPlan(shared.roadmap, shared.clear)
+    )
+
+
+@pytest.mark.parametrize("scene", [scenes.aisles, scenes.dead_ends])
+def test_runs_take_as_long_as_forecast(scene):
+    mission = scene("differential-drive", 1, 6)
+    plan = solve(mission, "greedy")
+    told = forecast_of(mission, plan)
+    assert all(0.0 < one.alone_s <= one.with_traffic_s + 1e-9 < math.inf for one in told)
+    assert any(one.with_traffic_s > one.alone_s + 1.0 for one in told)
+    simulation = Simulation(mission, plan, traffic="reserve")
+    while not simulation.done:
+        simulation.advance(simulation.time_s + 10.0)
+    assert max(one.with_traffic_s for one in told) == pytest.approx(simulation.time_s, rel=0.15)
+
+
+def test_robots_without_tasks_stay_where_they_do_not_hinder():
+    mission = scenes.one_way_door("holonomic", 0, 4)
+    plan = solve(mission, "greedy")
+    idle = replace(plan, routes=tuple(replace(route, tasks=(), stops=()) for route in plan.routes))
+    assert [one.with_traffic_s for one in forecast_of(mission, idle)] == [0.0] * 4
