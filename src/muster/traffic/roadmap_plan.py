@@ -17,8 +17,11 @@ from muster.traffic.single_moves import MovePlanner, Parameters
 from muster.traffic.travellers import Move, Point, Traveller
 
 _SAME_M = 1e-6
-_TRIES = 8
-"""Orders of robots that are tried."""
+_WAYS = 160
+"""Ways that are sought to improve a plan, but one for each robot at least."""
+_MOST_BY_INTERVALS = 5_000_000
+"""Travellers times edges up to which whole ways are planned; beyond, all are planned step by step: that takes much
+less time to plan, and more to drive."""
 _HORIZON = 10
 """Moves of each robot that are planned where some find no path by themselves."""
 _ENTRIES = 6
@@ -53,9 +56,8 @@ class RoadmapPlan:
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
         on = self._network_for(travellers)
-        moves = self._by_safe_intervals(on, travellers)
-        if moves is None and any(len(who.stops) > 1 for who in travellers):
-            moves = self._by_safe_intervals(on, [_to_first_stop(who) for who in travellers])
+        whole = len(travellers) * len(on.roadmap.edges) <= _MOST_BY_INTERVALS
+        moves = self._by_safe_intervals(on, travellers) if whole else None
         if moves is None:
             moves = self._by_inheritance(on, travellers)
         for traveller, edge, stop in moves:
@@ -86,8 +88,10 @@ class RoadmapPlan:
     def _by_safe_intervals(
         self, on: _Network, travellers: Sequence[Traveller]
     ) -> Sequence[tuple[int, int, int]] | None:
-        """Moves as (traveller, edge, stop); None where some find no path."""
+        """Moves as (traveller, edge, stop), at least to first stops; None where some find no path."""
         moves, ends, order = self._searched(on, travellers)
+        if math.inf in ends and any(len(who.stops) > 1 for who in travellers):
+            moves, ends, order = self._searched(on, [_to_first_stop(who) for who in travellers])
         self._priorities = [travellers[k].robot.id for k in order]
         return None if math.inf in ends else [(traveller, edge, stop) for _, traveller, edge, stop in moves]
 
@@ -99,7 +103,7 @@ class RoadmapPlan:
         metres = [on.metres(who) for who in travellers]
         first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
         told = [_told(who, on.number) for who in travellers]
-        return on.intervals.best_of(told, order=first, tries=_TRIES, seed=self.seed)
+        return on.intervals.best_of(told, order=first, tries=max(1, _WAYS // max(1, len(told))), seed=self.seed)
 
     def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, int]]:
         """Moves as (traveller, edge, stop), to first stops, as far as the horizon."""
