@@ -4,7 +4,7 @@ import pytest
 
 from muster.mission.consistency import positions
 from muster_studies.jams.scenes import DIFFERENTIAL, KINEMATICS, RADIUS_M, SCENES, SHIFT_M
-from muster_studies.jams.study import JAMS, METHODS, Job, outcome_of
+from muster_studies.jams.study import JAMS, METHODS, RESERVE, Job, outcome_of
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -28,7 +28,7 @@ def test_equal_robots_face_to_face_pass(kinematics, method, seed):
     assert outcome.mission_time_s < 20
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [*METHODS, RESERVE])
 def test_everybody_gets_through_a_one_way_door(method):
     """Before robots that wait were told from stuck ones, 5 of 20 did by the method that was the default."""
     outcome = outcome_of(Job("one-way door, 20", DIFFERENTIAL, method, 0))
@@ -37,4 +37,4 @@ def test_everybody_gets_through_a_one_way_door(method):
 
 
 def test_the_table_has_a_row_for_each_method():
-    assert JAMS.tables == ("methods",)
+    assert JAMS.tables == ("methods", "traffic")

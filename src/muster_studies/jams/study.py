@@ -1,6 +1,6 @@
-"""The study: which method of avoidance jams least in narrow places, with both kinematics.
+"""The study: which method of avoidance jams least in narrow places, and what planned traffic does there.
 
-Nothing but the method keeps robots apart and lets them through: no paths in space and time are planned.
+By a method alone nothing else keeps robots apart and lets them through: no paths in space and time are planned.
 """
 
 from __future__ import annotations
@@ -18,8 +18,11 @@ from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.tables import Cell, Table
 
 METHODS = ("orca", "rvo", "hrvo")
+RESERVE, ALONE = "reserve", "none"
+"""Planned traffic; and robots that drive through each other, which is a bound."""
 SEEDS, QUICK_SEEDS = 5, 1
 _QUICK_SCENES = ("face to face, 2", "one-way door, 20")
+_NARROW_SCENES = ("one-way door, 20", "two-way door, 20", "aisles, 6", "dead ends, 6")
 _NOTES = (
     "done: tasks done in all runs, per cent; s: the median of the mission times, with the way back where there is one; "
     "out: robots put out; jams: told as traffic_jam; touched: pairs of robots. Plans by greedy.",
@@ -28,7 +31,7 @@ _NOTES = (
 
 @dataclass(frozen=True)
 class Job:
-    """One run: a scene by its name, kinematics, a method and a seed."""
+    """One run: a scene by its name, kinematics, a method of avoidance or `RESERVE`, and a seed."""
 
     scene: str
     kinematics: str
@@ -54,7 +57,8 @@ def outcome_of(job: Job) -> Outcome:
     mission = SCENES[job.scene](job.kinematics, job.seed)
     events: list[ExecutionEvent] = []
     plan = solve(mission, "greedy")
-    report = carry_out(mission, plan, avoidance=job.method, seed=job.seed, on_event=events.append)
+    avoidance, traffic = ("auto", RESERVE) if job.method == RESERVE else (job.method, "free")
+    report = carry_out(mission, plan, avoidance=avoidance, traffic=traffic, seed=job.seed, on_event=events.append)
     kinds = [event.kind for event in events]
     return Outcome(
         tasks=len(mission.tasks),
@@ -76,7 +80,7 @@ class Jams:
 
     def jobs(self, effort: Effort) -> Iterator[Job]:
         for scene, kinematics, method in self._rows(effort):
-            yield from self._runs(scene, kinematics, method, effort)
+            yield from _runs(scene, kinematics, method, effort)
 
     def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
         rows = [
@@ -84,7 +88,7 @@ class Jams:
                 scene,
                 kinematics,
                 method,
-                *_figures([found[job] for job in self._runs(scene, kinematics, method, effort)]),
+                *_figures([found[job] for job in _runs(scene, kinematics, method, effort)]),
             )
             for scene, kinematics, method in self._rows(effort)
         ]
@@ -101,9 +105,39 @@ class Jams:
                 for method in METHODS:
                     yield scene, kinematics, method
 
-    def _runs(self, scene: str, kinematics: str, method: str, effort: Effort) -> list[Job]:
-        seeds = effort.seeds or (QUICK_SEEDS if effort.quick else SEEDS)
-        return [Job(scene, kinematics, method, seed) for seed in range(seeds)]
+
+@dataclass(frozen=True)
+class Reserved:
+    """A row for each scene with passages for one, and each kinematics."""
+
+    number: str = "traffic"
+    columns: tuple[str, ...] = ("scene", "kinematics", "runs", "done %", "s", "out", "jams", "touched", "alone s")
+
+    def jobs(self, effort: Effort) -> Iterator[Job]:
+        for scene, kinematics in self._rows(effort):
+            for method in (RESERVE, ALONE):
+                yield from _runs(scene, kinematics, method, effort)
+
+    def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
+        rows = []
+        for scene, kinematics in self._rows(effort):
+            together, alone = (
+                _figures([found[job] for job in _runs(scene, kinematics, method, effort)])
+                for method in (RESERVE, ALONE)
+            )
+            rows.append((scene, kinematics, *together, alone[2]))
+        notes = (*_NOTES, "alone: robots drive through each other.")
+        return Table(self.number, "Planned traffic in narrow places", self.columns, tuple(rows), notes, decimals=1)
+
+    def _rows(self, effort: Effort) -> Iterator[tuple[str, str]]:
+        for scene in _QUICK_SCENES if effort.quick else _NARROW_SCENES:
+            for kinematics in KINEMATICS:
+                yield scene, kinematics
+
+
+def _runs(scene: str, kinematics: str, method: str, effort: Effort) -> list[Job]:
+    seeds = effort.seeds or (QUICK_SEEDS if effort.quick else SEEDS)
+    return [Job(scene, kinematics, method, seed) for seed in range(seeds)]
 
 
 def _figures(runs: list[Outcome]) -> tuple[Cell, ...]:
@@ -113,12 +147,12 @@ def _figures(runs: list[Outcome]) -> tuple[Cell, ...]:
     return len(runs), done, median_s, *counts
 
 
-_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Jams(),)
+_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Jams(), Reserved())
 
 JAMS = Repetition(
     name="jams",
-    summary="which method of avoidance jams least in narrow places",
-    document="no publication: the kinematic world, without planned traffic",
+    summary="which method of avoidance jams least in narrow places, and planned traffic there",
+    document="no publication: the kinematic world",
     reproductions=_TABLES,
     perform=one_by_one(outcome_of),
     seeds=lambda effort: effort.seeds or (QUICK_SEEDS if effort.quick else SEEDS),
