@@ -17,6 +17,7 @@ from muster.traffic.single_moves import MovePlanner, Parameters
 from muster.traffic.travellers import Move, Point, Traveller
 
 _SAME_M = 1e-6
+_THERE_M = 1e-3
 _WAYS = 160
 """Ways that are sought to improve a plan, but one for each robot at least."""
 _MOST_BY_INTERVALS = 5_000_000
@@ -112,7 +113,7 @@ class RoadmapPlan:
             [on.number[who.stops[0].at] if who.stops else None for who in travellers],
             [who.robot.radius_m for who in travellers],
             margin_m=on.roadmap.margin_m,
-            pinned=[who.fixed or who.ready_s > 0 for who in travellers],
+            pinned=[who.fixed or who.ready_s > 0 or _is_there(who) for who in travellers],
             seed=self.seed,
             params=Parameters(horizon=_HORIZON * len(travellers)),
         )
@@ -180,6 +181,12 @@ def _seen(clear: Callable[[Floats], bool], points: Floats, k: int) -> list[int]:
         if seen:
             return seen[:_ENTRIES]
     return []
+
+
+def _is_there(who: Traveller) -> bool:
+    """Whether a robot stands where it is to do something next: it does that first."""
+    rests = who.stays and len(who.stops) == 1 and who.stops[0].hold_s == 0.0
+    return bool(who.stops) and not rests and math.dist(who.start, who.stops[0].at) <= _THERE_M
 
 
 def _to_first_stop(who: Traveller) -> Traveller:
