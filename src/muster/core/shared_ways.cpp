@@ -23,20 +23,22 @@ SharedWays::SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers
     if (travellers_[k].fixed) roadmap_.reserve(k, travellers_[k], ways_[k]);
   for (Traveller& who : travellers_) {
     const bool goes = !who.fixed && !who.stops.empty();
-    if (goes) leave_out_stops(who);
+    alone_.push_back(who.fixed ? Way{{}, 0.0, kNever} : alone(who));
     cut_off_.push_back(goes && who.stops.empty());
-    alone_.push_back(who.fixed ? Way{{}, 0.0, kNever} : roadmap_.way(who));
   }
   std::ranges::copy_if(order_, std::back_inserter(free_), [&](int k) { return !travellers_[k].fixed; });
   plan(free_);
 }
 
-// Stops to which no way leads past those who never leave, and those after them.
-void SharedWays::leave_out_stops(Traveller& who) const {
-  while (!who.stops.empty() && roadmap_.way(who).end == kNever) {
+// Stops to which no way leads past those who never leave, and those after them, are left out.
+Way SharedWays::alone(Traveller& who) const {
+  Way found = roadmap_.way(who);
+  while (!who.stops.empty() && found.end == kNever) {
     who.stops.pop_back();
     who.stays = false;
+    found = roadmap_.way(who);
   }
+  return found;
 }
 
 void SharedWays::improve(int tries, int lost) {

@@ -33,7 +33,7 @@ class SharedWays {
   using Cost = std::pair<int, double>;  // travellers without a way; seconds
 
   Cost cost() const;
-  void leave_out_stops(Traveller& who) const;
+  Way alone(Traveller& who) const;
   void plan(std::span<const int> group);
   void replan(const std::vector<int>& group);
   // Travellers that are planned anew together: one that is late, or has no way, and others that it meets.
