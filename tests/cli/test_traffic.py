@@ -139,3 +139,12 @@ def test_a_plan_that_breaks_rules_is_not_forecast(muster, tmp_path):
     code, _, err = muster("traffic", door, "--plan", plan)
     assert code == 2
     assert "the judge rejects this plan" in err
+
+
+def test_the_traffic_of_drones_is_not_forecast(muster, tmp_path):
+    air, plan = tmp_path / "air.yaml", tmp_path / "plan.json"
+    air.write_text(DOOR.replace("radius_m: 0.3", "radius_m: 0.3, kind: air"), encoding="utf-8")
+    assert muster("solve", air, "-q", "-o", plan)[0] == 0
+    code, _, err = muster("traffic", air, "--plan", plan)
+    assert code == 2
+    assert "no robot is of kind ground with a radius above 0" in err

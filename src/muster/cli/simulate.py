@@ -291,8 +291,7 @@ def _judged(mission: Mission, plan: Plan, file: Path, ignore: tuple[str, ...], *
 
     verdict = verify(mission, plan, ignore, plan.objective)
     if not verdict.valid and not quiet:
-        details = "; ".join(f"{found.kind} {found.detail}" for found in verdict.violations[:3])
-        click.echo(f"warning: {file}: the judge rejects this plan: {details}", err=True)
+        click.echo(f"warning: {file}: the judge rejects this plan: {verdict.first_violations}", err=True)
     return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
 
 

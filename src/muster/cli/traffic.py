@@ -88,8 +88,7 @@ def _forecast(
     plan = load_plan(file, mission, quiet=quiet, verbose=verbose)
     verdict = verify(mission, plan, plan.ignored, plan.objective)
     if not verdict.valid:
-        details = "; ".join(f"{found.kind} {found.detail}" for found in verdict.violations[:3])
-        raise ParameterError(f"--plan: {file}: the judge rejects this plan: {details}")
+        raise ParameterError(f"--plan: {file}: the judge rejects this plan: {verdict.first_violations}")
     routes = {
         route.robot: [RouteStop(one.task, one.arrives_s, one.starts_s, one.ends_s) for one in route.visits]
         for route in verdict.routes
@@ -101,14 +100,21 @@ def _print_forecast(forecast: tuple[RobotForecast, ...]) -> None:
     """Print when robots have ended their routes, and how much of that they wait for others."""
     from muster.cli.tables import print_table
 
-    rows = [
-        (one.robot, number(one.alone_s), number(one.with_traffic_s), number(max(0.0, one.with_traffic_s - one.alone_s)))
-        for one in forecast
-    ]
+    rows = [(one.robot, number(one.alone_s), number(one.with_traffic_s), number(_more_s(one))) for one in forecast]
     columns = ("robot", "alone [s]", "with traffic [s]", "more [s]")
     print_table(columns, rows, right=columns[1:])
-    without_s, with_s = (max(times) for times in zip(*((o.alone_s, o.with_traffic_s) for o in forecast), strict=True))
+    with_s, without_s = _last([one.with_traffic_s for one in forecast]), _last([one.alone_s for one in forecast])
     click.echo(f"time with traffic {number(with_s, 's')}, {number(without_s, 's')} without; ways home included")
+
+
+def _more_s(one: RobotForecast) -> float | None:
+    return None if one.with_traffic_s is None or one.alone_s is None else max(0.0, one.with_traffic_s - one.alone_s)
+
+
+def _last(times_s: list[float | None]) -> float | None:
+    """The greatest; None where one is not known."""
+    known = [time_s for time_s in times_s if time_s is not None]
+    return max(known) if len(known) == len(times_s) else None
 
 
 def _warn(mission: Mission, made: MissionRoadmap) -> None:

@@ -14,8 +14,6 @@ from muster.planning.request import require_mission
 if TYPE_CHECKING:
     from muster.verification import Verdict
 
-_MOST_SHOWN = 3
-
 
 def verify(
     mission: Mission,
@@ -58,7 +56,8 @@ def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: st
 
     verdict = verify(mission, plan, ignored, objective)
     if not verdict.valid:
-        details = "; ".join(f"{v.kind} {v.detail}" for v in verdict.violations[:_MOST_SHOWN])
         internal = "internal error: " if plan.allocator in ALLOCATORS.shipped else ""
-        raise MusterError(f"{internal}allocator {plan.allocator}: the judge rejects its plan: {details}")
+        raise MusterError(
+            f"{internal}allocator {plan.allocator}: the judge rejects its plan: {verdict.first_violations}"
+        )
     return verdict

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import RouteStop
 from muster.motion.actions import TaskMotion
@@ -21,14 +22,14 @@ class RobotForecast:
     Parameters
     ----------
     with_traffic_s
-        seconds, with what it waits for others; inf where no path is found for it.
+        seconds, with what it waits for others; None where no path is found for it.
     alone_s
-        seconds, were it alone on the roadmap.
+        seconds, were it alone on the roadmap; None where no path is found.
     """
 
     robot: str
-    with_traffic_s: float
-    alone_s: float
+    with_traffic_s: float | None
+    alone_s: float | None
 
 
 def forecast(
@@ -37,15 +38,26 @@ def forecast(
     """What `traffic` makes of the routes of robots, for each robot that drives.
 
     A robot stays at each task as long as its route says, waiting for prerequisites, windows and teams included.
+
+    Raises
+    ------
+    ParameterError
+        if no robot is of kind `ground` with a radius above 0.
     """
     driving = [robot for robot in mission.robots if robot.kind == "ground" and robot.radius_m > 0]
+    if not driving:
+        raise ParameterError("no robot is of kind ground with a radius above 0; expected one whose traffic is forecast")
     travellers = [_traveller(mission, robot, routes.get(robot.id, ())) for robot in driving]
     together = traffic.ends(travellers)
     alone = [traffic.ends([who])[0] for who in travellers]
     return tuple(
-        RobotForecast(robot.id, with_traffic_s, max(alone_s, 0.0))
+        RobotForecast(robot.id, _finite(with_traffic_s), _finite(alone_s))
         for robot, with_traffic_s, alone_s in zip(driving, together, alone, strict=True)
     )
+
+
+def _finite(seconds: float) -> float | None:
+    return seconds if math.isfinite(seconds) else None
 
 
 def _traveller(mission: Mission, robot: Robot, route: Sequence[RouteStop]) -> Traveller:

@@ -118,6 +118,11 @@ class Verdict:
         return not self.violations
 
     @property
+    def first_violations(self) -> str:
+        """What is wrong with the plan, in one line: three violations at most."""
+        return "; ".join(f"{found.kind} {found.detail}" for found in self.violations[:3])
+
+    @property
     def waiting_s(self) -> float | None:
         """How long robots wait at tasks, in all; None where they deadlock."""
         if self.makespan_s is None:
