@@ -69,13 +69,17 @@ class Allocator:
             range, the problem has tasks that are to stay and the allocator would move them, or it has rules that the
             allocator cannot keep.
         """
+        self.require_able(problem, seed)
+        outcome = self.outcome(problem, stop, seed, params or self.parameters(), first_routes(problem, start))
+        return finished_plan(problem, stop, outcome, allocator=self.name, seed=seed)
+
+    def require_able(self, problem: Problem, seed: int) -> None:
+        """Refuse what the allocator cannot do, as `solve` says (ParameterError)."""
         if not (isinstance(seed, int) and 0 <= seed < 2**64):
             raise ParameterError(f"seed: {seed}; expected a whole number from 0 to 2**64 - 1")
         refuse_what_is_not_kept(problem, self.name, self.can)
         if problem.fixed and not self.keeps_fixed:
             raise ParameterError(f"fixed: with {self.name}, which would move tasks; expected search, greedy or auction")
-        outcome = self.outcome(problem, stop, seed, params or self.parameters(), _first_routes(problem, start))
-        return finished_plan(problem, stop, outcome, allocator=self.name, seed=seed)
 
     def outcome(self, problem: Problem, stop: Stop, seed: int, params: Any, start: Routes | None) -> Outcome:
         """What the algorithm arrives at from the routes of `start`; its routes are checked."""
@@ -87,7 +91,8 @@ class Allocator:
         return outcome
 
 
-def _first_routes(problem: Problem, start: Plan | None) -> Routes | None:
+def first_routes(problem: Problem, start: Plan | None) -> Routes | None:
+    """The routes to begin with: those of a start plan, else the tasks that are to stay; errors are those of `solve`."""
     beginnings = [list(route) for route in problem.fixed]
     if start is None:
         return beginnings or None
@@ -152,10 +157,7 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
     usages = inspection.usages
     mission = problem.mission
     done = sorted({j for route in lists for j in route})
-    by_robot = {
-        robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route), usage, stops)
-        for robot, route, usage, stops in zip(problem.robots, lists, usages, _stops(problem, inspection), strict=True)
-    }
+    by_robot = {route.robot: route for route in _with_times(problem, lists, inspection)}
     return Plan(
         mission=mission.name,
         allocator=allocator,
@@ -177,6 +179,20 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         history=tuple(stop.history),
         book=outcome.book,
     )
+
+
+def scheduled(problem: Problem, routes: Routes) -> list[Route]:
+    """For each robot of the problem its route, with its usage and the times of the earliest schedule."""
+    return _with_times(problem, routes, core.Inspection(problem.core, routes))
+
+
+def _with_times(problem: Problem, routes: Routes, inspection: core.Inspection) -> list[Route]:
+    return [
+        Route(robot.id, tuple(problem.tasks[j].id for j in route), usage, stops)
+        for robot, route, usage, stops in zip(
+            problem.robots, routes, inspection.usages, _stops(problem, inspection), strict=True
+        )
+    ]
 
 
 def _stops(problem: Problem, inspection: core.Inspection) -> list[tuple[RouteStop, ...]]:

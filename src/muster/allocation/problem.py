@@ -21,6 +21,7 @@ from muster.allocation.task_geometry import TaskGeometry
 from muster.allocation.timed_arrays import timed_arrays
 from muster.allocation.timed_rules import TimedRules
 from muster.allocation.travel import require_room, straight_table, travel_table
+from muster.allocation.waiting import NO_WAITING, Waiting
 from muster.allocation.work_times import work_times
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
@@ -76,6 +77,7 @@ class Problem:
     known: Measured | None = None  # what the problem of which this is a part knew
     charges: tuple[Charge | None, ...] = ()  # measured, for each robot; empty: none at all
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
+    waiting: Waiting = NO_WAITING  # that is expected on ways
 
     @classmethod
     def compile(cls, mission: Mission, objective: str | None = None, ignored: str | Collection[str] = ()) -> Problem:
@@ -108,10 +110,10 @@ class Problem:
         number_in = {j: k for k, j in enumerate(tasks)}
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
         charges = tuple(self.charges[i] for i in robots) if self.charges else ()
+        n, m = len(self.tasks), len(self.robots)
+        places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
         known = None
         if self.known is not None or self.mission.travel_rule == "map":
-            n, m = len(self.tasks), len(self.robots)
-            places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
             known = self.measured.part(robots, places, tasks)
         return replace(
             self,
@@ -121,6 +123,7 @@ class Problem:
             fixed=fixed,
             charges=charges,
             known=known,
+            waiting=self.waiting.part(robots, places),
         )
 
     def __getstate__(self) -> dict[str, Any]:
@@ -303,6 +306,8 @@ class Problem:
             table=measured.table,
             travel_class=measured.classes,
             **timed_arrays(self, self.leg_times),
+            waiting=self.waiting.seconds,
+            waits=self.waiting.robots,
         )
 
     @cached_property
@@ -427,10 +432,16 @@ class Problem:
 
     def legs(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
         """(len(places), len(to)) travel usage of robot i between places."""
-        return self.travel_seconds(i, places, to) if self.in_time else self.metres(i, places, to)
+        if self.in_time:
+            return self.travel_seconds(i, places, to)
+        waits_m = self.waiting.of(i, places, to) * self.robots[i].speed_mps
+        return np.asarray(self.metres(i, places, to) + waits_m)
 
     def travel_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
         """(len(places), len(to)) the time that robot i takes between places."""
+        return np.asarray(self._driving_seconds(i, places, to) + self.waiting.of(i, places, to))
+
+    def _driving_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
         metres, profile = self.metres(i, places, to), self.leg_times[i]
         if profile.is_constant:
             return np.asarray(metres / profile.speed_mps)
@@ -457,7 +468,7 @@ class Problem:
 
     def shortcuts(self) -> Indices:
         """Tasks through which a way can be shorter than the direct one."""
-        if len(self.travel[0]):
+        if len(self.travel[0]) or len(self.waiting.seconds):
             return np.arange(len(self.tasks))
         n = len(self.tasks)
         return np.flatnonzero((self._entries[0, :n] != self._exits[0, :n]).any(axis=1))

@@ -116,9 +116,17 @@ class Stop:
             self.iterations_done += 1
             yield self.iterations_done
 
-    def part(self, *, time_limit: float | None, iterations: int | None) -> Stop:
+    def part(
+        self,
+        *,
+        time_limit: float | None,
+        iterations: int | None,
+        on_progress: Callable[[Progress], None] | None = None,
+    ) -> Stop:
         """A stop for one piece of the work, which ends with the whole."""
-        return Stop(iterations=iterations, time_limit=time_limit, clock=self._clock, whole=self)
+        return Stop(
+            iterations=iterations, time_limit=time_limit, clock=self._clock, on_progress=on_progress, whole=self
+        )
 
     @property
     def time_left_s(self) -> float | None:

@@ -192,16 +192,15 @@ def avoidance_option(verb: Verb) -> Verb:
     )(verb)
 
 
-def traffic_option(verb: Verb) -> Verb:
+_TRAFFIC = (
+    "Who passes first: reserve, by one plan for all that drive; free, as they meet. auto: reserve where the mission "
+    "gives lanes or its map has passages for one."
+)
+
+
+def traffic_option(verb: Verb, text: str = _TRAFFIC) -> Verb:
     """--traffic."""
-    return click.option(
-        "--traffic",
-        type=click.Choice(TRAFFIC),
-        default=DEFAULT,
-        show_default=True,
-        help="Who passes first: reserve, by one plan for all that drive; free, as they meet. auto: reserve where the "
-        "mission gives lanes or its map has passages for one.",
-    )(verb)
+    return click.option("--traffic", type=click.Choice(TRAFFIC), default=DEFAULT, show_default=True, help=text)(verb)
 
 
 def require_complete_option(verb: Verb) -> Verb:

@@ -24,6 +24,8 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
     title = f"{plan.mission}: {plan.allocator}, seed {plan.seed}"
     print_table(columns, rows, title=title, right=columns[2:])
     print_figures(verdict)
+    if plan.time_without_traffic_s is not None:
+        print_traffic_times(plan.time_with_traffic_s, plan.time_without_traffic_s)
     _print_bound(plan.lower_bound, verdict)
     if plan.book is not None:
         messages = "" if plan.book.messages is None else f", {plan.book.messages} messages"
@@ -32,6 +34,12 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
         left_out = [item.task for item in plan.unassigned]
         click.echo(f"left out          {sequence(left_out)}  (`muster explain` says why)")
     _print_ignored(verdict)
+
+
+def print_traffic_times(with_s: float | None, without_s: float | None) -> None:
+    """Print how long a plan takes where robots pass in turn; it is not known where somebody finds no way at once."""
+    with_traffic = "not known" if with_s is None else number(with_s, "s")
+    click.echo(f"time with traffic {with_traffic}, {number(without_s, 's')} without; ways home included")
 
 
 def _print_bound(bound: float | None, verdict: Verdict, note: str = "") -> None:

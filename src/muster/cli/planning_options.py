@@ -12,14 +12,17 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.cli.options import Verb, ignore_option, objective_option, settings_of
+from muster.cli.options import Verb, ignore_option, objective_option, settings_of, traffic_option
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
 from muster.mission.model import Mission
 from muster.mission.plan_reader import read_plan
 from muster.mission.value_types import shown
+from muster.motion.avoidance_names import AUTO as ANY_AVOIDANCE
+from muster.motion.laws import PROFILE
 from muster.planning.options import BOUNDS, DEFAULT_ALLOCATOR, HELP, PlanningOptions
 from muster.planning.request import Request
+from muster.traffic.names import AUTO, FREE
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Stop
@@ -28,18 +31,20 @@ _FILE = click.Path(path_type=Path)
 _PARAMETERS = ("threads", "ray", "bid", "placement", "winner")  # of allocators, with options of their own
 
 
-def planning_options(*, time_limit_s: float | None = None) -> Callable[[Verb], Verb]:
+def planning_options(*, time_limit_s: float | None = None, carries_out: bool = False) -> Callable[[Verb], Verb]:
     """The options of a planning request, as `PlanningOptions`; and the files `start` and `fixed`.
 
     Parameters
     ----------
     time_limit_s
         of a verb that plans for less than the usual time unless told otherwise.
+    carries_out
+        whether the verb carries the plan out: it has options of its own for how robots pass each other.
     """
-    return lambda verb: _with_planning_options(verb, time_limit_s)
+    return lambda verb: _with_planning_options(verb, time_limit_s, carries_out)
 
 
-def _with_planning_options(verb: Verb, time_limit_s: float | None) -> Verb:
+def _with_planning_options(verb: Verb, time_limit_s: float | None, carries_out: bool) -> Verb:
     @wraps(verb)
     def with_options(*, settings: tuple[str, ...], **given: Any) -> Any:
         named = {name: given.pop(name) for name in _PARAMETERS}
@@ -49,13 +54,21 @@ def _with_planning_options(verb: Verb, time_limit_s: float | None) -> Verb:
         if given["iterations"] is None and given["time_limit"] is None:
             given["time_limit"] = time_limit_s
         names = ("allocator", "objective", "ignore", "seed", "time_limit", "iterations", "bound", "rewire")
-        options = PlanningOptions(parameters=parameters, **{name: given.pop(name) for name in names})
+        traffic = _traffic_of_run(given) if carries_out else given.pop("traffic")
+        own = {name: given.pop(name) for name in names}
+        options = PlanningOptions(parameters=parameters, traffic=traffic, **own)
         return verb(options=options, **given)
 
-    decorated: Any = with_options
+    decorated: Any = with_options if carries_out else traffic_option(with_options, HELP["traffic"])
     for option in reversed(_declared(time_limit_s)):
         decorated = option(decorated)
     return cast("Verb", decorated)
+
+
+def _traffic_of_run(given: Mapping[str, Any]) -> str:
+    """How the traffic of a run is planned for: as it will be."""
+    free = given.get("avoidance", ANY_AVOIDANCE) != ANY_AVOIDANCE or given.get("law", PROFILE) != PROFILE
+    return FREE if free and given["traffic"] == AUTO else str(given["traffic"])
 
 
 def _declared(time_limit_s: float | None) -> tuple[Callable[[Any], Any], ...]:

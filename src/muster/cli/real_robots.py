@@ -72,7 +72,7 @@ def real_options(verb: Verb) -> Verb:
 
     declared = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]"),
-        planning_options(time_limit_s=2.0),
+        planning_options(time_limit_s=2.0, carries_out=True),
         traffic_option,
         record_option,
         drawing_options,

@@ -82,7 +82,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.command()
 @mission_argument
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]")
-@planning_options(time_limit_s=2.0)
+@planning_options(time_limit_s=2.0, carries_out=True)
 @click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
 @click.option(
     "--world",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
@@ -17,7 +18,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import json_text
 
 if TYPE_CHECKING:
-    from muster.traffic.forecast import RobotForecast
+    from muster.traffic.forecast import Forecast
     from muster.traffic.mission_roadmap import MissionRoadmap
     from muster.traffic.passages import Passage
 
@@ -66,20 +67,18 @@ def command(
         from muster.report.roadmap_picture import plot_roadmap
 
         save_figure(plot_roadmap(loaded, made, found, image=None if world is None else world.image), plot)
-    forecast = () if plan is None else _forecast(loaded, plan, made, quiet=quiet, verbose=verbose)
+    forecast = None if plan is None else _forecast(loaded, plan, made, quiet=quiet, verbose=verbose)
     if form == "json":
-        told = {} if plan is None else {"plan": {"robots": [asdict(one) for one in forecast]}}
+        told = {} if forecast is None else {"plan": {"robots": [asdict(one) for one in forecast.robots]}}
         click.echo(json_text(_figures(made, found) | told), nl=False)
     else:
         _print(loaded, made, found)
-        if plan is not None:
+        if forecast is not None:
             _print_forecast(forecast)
     return DONE
 
 
-def _forecast(
-    mission: Mission, file: File, made: MissionRoadmap, *, quiet: bool, verbose: bool
-) -> tuple[RobotForecast, ...]:
+def _forecast(mission: Mission, file: File, made: MissionRoadmap, *, quiet: bool, verbose: bool) -> Forecast:
     from muster.mission.plan import RouteStop
     from muster.traffic.forecast import forecast
     from muster.traffic.roadmap_plan import RoadmapPlan
@@ -96,25 +95,22 @@ def _forecast(
     return forecast(mission, routes, RoadmapPlan(made.roadmap, made.clear))
 
 
-def _print_forecast(forecast: tuple[RobotForecast, ...]) -> None:
+def _print_forecast(forecast: Forecast) -> None:
     """Print when robots have ended their routes, and how much of that they wait for others."""
+    from muster.cli.plan_tables import print_traffic_times
     from muster.cli.tables import print_table
 
-    rows = [(one.robot, number(one.alone_s), number(one.with_traffic_s), number(_more_s(one))) for one in forecast]
+    rows = [
+        (one.robot, number(one.alone_s), number(one.with_traffic_s), number(_finite(one.delay_s)))
+        for one in forecast.robots
+    ]
     columns = ("robot", "alone [s]", "with traffic [s]", "more [s]")
     print_table(columns, rows, right=columns[1:])
-    with_s, without_s = _last([one.with_traffic_s for one in forecast]), _last([one.alone_s for one in forecast])
-    click.echo(f"time with traffic {number(with_s, 's')}, {number(without_s, 's')} without; ways home included")
+    print_traffic_times(forecast.with_traffic_s, forecast.alone_s)
 
 
-def _more_s(one: RobotForecast) -> float | None:
-    return None if one.with_traffic_s is None or one.alone_s is None else max(0.0, one.with_traffic_s - one.alone_s)
-
-
-def _last(times_s: list[float | None]) -> float | None:
-    """The greatest; None where one is not known."""
-    known = [time_s for time_s in times_s if time_s is not None]
-    return max(known) if len(known) == len(times_s) else None
+def _finite(seconds: float) -> float | None:
+    return seconds if math.isfinite(seconds) else None
 
 
 def _warn(mission: Mission, made: MissionRoadmap) -> None:

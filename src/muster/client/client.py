@@ -102,7 +102,7 @@ class Client:
             beginnings of the new ones.
         options
             as `muster.planning.options.PlanningOptions` has them: `allocator`, `parameters`, `objective`, `time_limit`,
-            `iterations`, `seed`, `ignore`, `bound`, `rewire`.
+            `iterations`, `seed`, `ignore`, `bound`, `rewire`, `traffic`.
 
         Raises
         ------

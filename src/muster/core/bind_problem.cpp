@@ -80,7 +80,7 @@ void bind_problem(nb::module_& m) {
              Numbers available_until, Numbers after, Numbers within, Indices unit, const Parts& parts,
              Numbers abilities, Numbers needs, const std::vector<std::vector<int>>& same_robot,
              const std::vector<std::vector<int>>& other_robot, Indices min_tasks, Numbers acceleration, Numbers climb,
-             Numbers turn, bool over_map, bool makespan_includes_return) {
+             Numbers turn, bool over_map, bool makespan_includes_return, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 3 || entry.shape(2) != 3 || exit.ndim() != 3 || exit.shape(2) != 3 || !table_fits) {
@@ -125,6 +125,8 @@ void bind_problem(nb::module_& m) {
             data.turn = numbers(turn);
             data.over_map = over_map;
             data.makespan_includes_return = makespan_includes_return;
+            data.waiting = numbers(waiting);
+            data.waits = flags(waits);
             new (self) Problem(std::move(data));
           },
           nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "available_from"_a, "must_end"_a,
@@ -132,7 +134,7 @@ void bind_problem(nb::module_& m) {
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
           "windows"_a, "deadline"_a, "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a,
           "abilities"_a, "needs"_a, "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a,
-          "turn"_a, "over_map"_a, "makespan_includes_return"_a,
+          "turn"_a, "over_map"_a, "makespan_includes_return"_a, "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
@@ -146,8 +148,9 @@ void bind_problem(nb::module_& m) {
           "`abilities` (m, a) and `needs` (n, a); by "
           "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer "
           "than "
-          "the straight way has bends. Raises ValueError if shapes do "
-          "not fit.")
+          "the straight way has bends; `waiting` (n + 2m, n + 2m) seconds for others between places, of the robots "
+          "that "
+          "`waits` (m,) marks. Raises ValueError if shapes do not fit.")
       .def_prop_ro("tasks", &Problem::tasks)
       .def_prop_ro("robots", &Problem::robots)
       .def_prop_ro("is_timed", &Problem::is_timed,

@@ -117,6 +117,10 @@ void Problem::check_times() const {
   require(fits(data_.acceleration.size(), robots) && data_.climb.size() == data_.acceleration.size() &&
               data_.turn.size() == data_.acceleration.size(),
           "motion profiles need a value for each robot");
+  require(fits(data_.waiting.size(), static_cast<std::size_t>(places_) * places_) &&
+              data_.waits.size() == (data_.waiting.empty() ? 0 : robots) &&
+              std::ranges::all_of(data_.waiting, [](double seconds) { return seconds >= 0.0; }),
+          "waiting needs at least 0 s for each pair of places, and a flag for each robot");
 }
 
 // The time of a leg from rest to rest by the robot's motion profile: `LegTimes.seconds` of muster.motion.leg_times.

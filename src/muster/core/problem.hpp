@@ -72,6 +72,10 @@ struct ProblemData {
   std::vector<double> turn;                      // by robot: seconds of the turn with which a leg begins
   bool over_map = false;                         // what is longer than the straight way has bends
   bool makespan_includes_return = false;
+  // What is waited for others on the way between two places (places x places, seconds), by robots that share lanes;
+  // empty: nothing.
+  std::vector<double> waiting;
+  std::vector<char> waits;  // of each robot: whether it does
 };
 
 // Usage of a route, and the sum over its tasks of the usage on arrival (docs/design.md, Meaning: objective `average`).
@@ -190,7 +194,8 @@ class Problem {
 
   double travel_time(int robot, int from, int to) const {
     const double metres = distance(travel_class(robot), from, to);
-    return data_.turn.empty() ? metres / data_.speed[robot] : leg_seconds(robot, from, to, metres);
+    const double seconds = data_.turn.empty() ? metres / data_.speed[robot] : leg_seconds(robot, from, to, metres);
+    return data_.waiting.empty() ? seconds : seconds + waiting(robot, from, to);
   }
   double actuation_cost(int robot, int task) const {
     return data_.actuation_cost[static_cast<std::size_t>(data_.work_class[robot]) * tasks_ + task];
@@ -199,7 +204,9 @@ class Problem {
     return data_.work_seconds[static_cast<std::size_t>(data_.time_class[robot]) * tasks_ + task];
   }
   double travel_usage(int robot, int from, int to) const {
-    return data_.usage_is_time ? travel_time(robot, from, to) : distance(travel_class(robot), from, to);
+    if (data_.usage_is_time) return travel_time(robot, from, to);
+    const double metres = distance(travel_class(robot), from, to);
+    return data_.waiting.empty() ? metres : metres + waiting(robot, from, to) * data_.speed[robot];
   }
   double work_usage(int robot, int task) const {
     return data_.usage_is_time ? work_time(robot, task) : actuation_cost(robot, task);
@@ -229,6 +236,9 @@ class Problem {
   void find_units();
   void check_times() const;
   double leg_seconds(int robot, int from, int to, double metres) const;
+  double waiting(int robot, int from, int to) const {
+    return data_.waits[robot] ? data_.waiting[static_cast<std::size_t>(from) * places_ + to] : 0.0;
+  }
   double ramped(int robot, double metres, double rise) const;
   double straight(int from, int to, int place_class = 0) const {
     const std::size_t first = static_cast<std::size_t>(place_class) * places_;

@@ -21,6 +21,7 @@ PLAN_SCHEMA = "muster-plan/1"
 REASONS = (*IGNORABLE, "unreachable", "not-chosen")
 STOP_TIMES = ("arrive_s", "begin_s", "end_s")
 """The times of a stop, as plan files name them."""
+_TRAFFIC_TIMES = ("time_with_traffic_s", "time_without_traffic_s")
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,9 @@ class Unassigned:
 class Plan:
     """The answer to a mission.
 
-    Figures are None in a plan from elsewhere that does not state them. Of those stated here, `elapsed_s` and the
+    Figures are None in a plan from elsewhere that does not state them. The times with and without traffic are a
+    forecast of when all robots have ended their routes, ways home included, where they pass in turn; None where they
+    do not. Of those stated here, `elapsed_s` and the
     seconds in `history` are times; all others are the same whenever mission, allocator, parameters and seed are.
 
     Raises
@@ -98,6 +101,8 @@ class Plan:
     weight_completed: float | None = None
     lower_bound: float | None = None
     elapsed_s: float | None = None
+    time_with_traffic_s: float | None = None
+    time_without_traffic_s: float | None = None
     routes: tuple[Route, ...]
     unassigned: tuple[Unassigned, ...] = ()
     history: tuple[tuple[float, float], ...] = ()
@@ -121,6 +126,8 @@ class Plan:
                 data["objective"] = {"name": self.objective, "value": self.objective_value}
             elif name == "routes":
                 data[name] = [route.as_dict() for route in self.routes]
+            elif name in _TRAFFIC_TIMES and value is None:
+                continue
             elif name not in ("objective_value", "book"):
                 data[name] = value
         if self.book is not None:

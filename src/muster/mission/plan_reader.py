@@ -106,6 +106,8 @@ class _Reading:
             "weight_completed",
             "lower_bound",
             "elapsed_s",
+            "time_with_traffic_s",
+            "time_without_traffic_s",
         )
         plan = Plan(
             mission=self._given(data, "mission", str),

@@ -16,6 +16,7 @@ from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.model import OBJECTIVES
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.traffic.names import DEFAULT, TRAFFIC
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
@@ -55,6 +56,9 @@ class PlanningOptions:
         `quick` or `exact`: prove how good the plan is, as its `lower_bound`.
     rewire
         fill waiting time with later tasks of the same robot.
+    traffic
+        `reserve`: routes spread over the passages for one that robots share, and the plan says how long it takes with
+        its traffic; `free`: neither; `auto`: as `reserve` where the mission gives lanes or its map has such passages.
 
     Raises
     ------
@@ -73,6 +77,9 @@ class PlanningOptions:
     ignore: tuple[str, ...] = _option((), "Rules that do not hold.")
     bound: str | None = _option(None, "Prove how good the plan is: at once, or by an exact solver.")
     rewire: bool = _option(False, "Fill waiting with later tasks of the same robot: sooner, for some usage.")
+    traffic: str = _option(
+        DEFAULT, "reserve: routes spread over passages for one; free: not; auto: where the mission has such passages."
+    )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "ignore", _rules(self.ignore))
@@ -136,8 +143,9 @@ _KINDS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "seed": (lambda value: _is_whole(value, LARGEST_SEED), "a whole number from 0 to 2**64 - 1"),
     "bound": (lambda value: value is None or value in BOUNDS, " or ".join(BOUNDS)),
     "rewire": (lambda value: isinstance(value, bool), "true or false"),
+    "traffic": (lambda value: value in TRAFFIC, " or ".join(TRAFFIC)),
 }
-_CHOICES: Mapping[str, tuple[str, ...]] = {"objective": OBJECTIVES, "bound": BOUNDS}
+_CHOICES: Mapping[str, tuple[str, ...]] = {"objective": OBJECTIVES, "bound": BOUNDS, "traffic": TRAFFIC}
 
 
 def _shown(value: object) -> str:

@@ -14,6 +14,7 @@ from muster.planning.custom_objective import best_by
 from muster.planning.options import DEFAULT_ALLOCATOR
 from muster.planning.request import Request
 from muster.planning.solving import OnProgress, answer
+from muster.traffic.names import DEFAULT
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
@@ -37,6 +38,7 @@ def solve(
     fixed: Plan | None = None,
     bound: str | None = None,
     rewire: bool = False,
+    traffic: str = DEFAULT,
     parameters: Mapping[str, Any] | None = None,
     **own: Unpack[AllocatorParameters],
 ) -> Plan:
@@ -64,6 +66,9 @@ def solve(
         `quick` or `exact`: prove how good the plan is, as its `lower_bound`.
     rewire
         fill waiting time with later tasks of the same robot: the mission ends sooner, for some usage.
+    traffic
+        `reserve`: routes spread over the passages for one that robots share, and the plan says how long it takes with
+        its traffic; `free`: neither; `auto`: as `reserve` where the mission gives lanes or its map has such passages.
     parameters
         of the allocator by name, for those of functions and of other packages.
     own
@@ -88,6 +93,7 @@ def solve(
         fixed=fixed,
         bound=bound,
         rewire=rewire,
+        traffic=traffic,
     )
     if callable(objective):
         return best_by(objective, request, candidates, on_progress)

@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.plan import Plan
 from muster.planning.judging import judged
 from muster.planning.request import Request
 
 if TYPE_CHECKING:
+    from muster.allocation.allocator import Allocator, Outcome, Routes
     from muster.allocation.problem import Problem
     from muster.allocation.stop import Progress, Stop
+    from muster.planning.congestion import SharedPassages
     from muster.verification import Verdict
 
 OnProgress = Callable[["Progress"], None]
@@ -63,6 +65,7 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     from muster.allocation.proofs import require_provable
     from muster.allocation.registry import allocator_of
     from muster.allocation.stop import Stop, usual_time_limit
+    from muster.planning.congestion import SharedPassages
 
     allocator = allocator_of(request.allocator)
     params = make_parameters(allocator, dict(request.parameters))
@@ -72,10 +75,38 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     limit = usual_time_limit(allocator.anytime, request.time_limit, request.iterations)
     report = None if on_progress is None else _with_bound(request, problem, on_progress)
     stop = Stop(iterations=request.iterations, time_limit=limit, on_progress=report, whole=interrupt)
-    plan = allocator.solve(problem, stop, seed=request.seed, params=params, start=request.start)
+    shared = SharedPassages.of(request.mission, request.traffic)
+    if shared is not None and allocator.anytime and shared.can_spread(problem):
+        plan = _spread(request, allocator, params, problem, shared, stop, report)
+    else:
+        plan = allocator.solve(problem, stop, seed=request.seed, params=params, start=request.start)
     plan, why = _improved(request, problem, plan, stop)
+    if shared is not None and plan.time_without_traffic_s is None and not stop.interrupted:
+        plan = shared.told(plan)
     verdict = judged(request.mission, plan, request.ignore, request.objective)
     return Solution(plan=plan, verdict=verdict, why=why, iterations=stop.iterations_done, interrupted=stop.interrupted)
+
+
+def _spread(
+    request: Request,
+    allocator: Allocator,
+    params: Any,
+    problem: Problem,
+    shared: SharedPassages,
+    stop: Stop,
+    report: OnProgress | None,
+) -> Plan:
+    """The plan of an allocator whose routes spread over the passages that robots share."""
+    from muster.allocation.allocator import first_routes
+    from muster.planning.congestion import spread
+
+    allocator.require_able(problem, request.seed)
+    start = first_routes(problem, request.start)
+
+    def allocate(expected: Problem, part: Stop, first: Routes | None) -> Outcome:
+        return allocator.outcome(expected, part, request.seed, params, start if first is None else first)
+
+    return spread(problem, shared, allocate, stop, allocator=allocator.name, seed=request.seed, on_progress=report)
 
 
 def _compiled(request: Request) -> Problem:

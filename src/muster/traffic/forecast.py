@@ -11,8 +11,11 @@ from muster.mission.model import Mission, Robot
 from muster.mission.plan import RouteStop
 from muster.motion.actions import TaskMotion
 from muster.motion.actions import plan as motion_of
-from muster.traffic.roadmap_plan import RoadmapPlan
+from muster.traffic.roadmap_plan import Journey, RoadmapPlan
 from muster.traffic.travellers import Stop, Traveller
+
+_WAYS_EACH = 4
+"""Ways of each robot that are sought: they tell how long a plan takes as well as the more that a run seeks."""
 
 
 @dataclass(frozen=True)
@@ -31,11 +34,43 @@ class RobotForecast:
     with_traffic_s: float | None
     alone_s: float | None
 
+    @property
+    def delay_s(self) -> float:
+        """What the others cost it; inf where no path is found among them."""
+        if self.with_traffic_s is None or self.alone_s is None:
+            return math.inf
+        return max(0.0, self.with_traffic_s - self.alone_s)
 
-def forecast(
-    mission: Mission, routes: Mapping[str, Sequence[RouteStop]], traffic: RoadmapPlan
-) -> tuple[RobotForecast, ...]:
-    """What `traffic` makes of the routes of robots, for each robot that drives.
+
+@dataclass(frozen=True)
+class Forecast:
+    """How the robots of a plan that drive get along: together, and each as if it were alone.
+
+    Parameters
+    ----------
+    robots
+        a line for each.
+    together, alone
+        the journey of each.
+    """
+
+    robots: tuple[RobotForecast, ...]
+    together: tuple[Journey, ...]
+    alone: tuple[Journey, ...]
+
+    @property
+    def with_traffic_s(self) -> float | None:
+        """When all have ended their routes; None where somebody finds no path."""
+        return _last([one.with_traffic_s for one in self.robots])
+
+    @property
+    def alone_s(self) -> float | None:
+        """The same, if each were alone."""
+        return _last([one.alone_s for one in self.robots])
+
+
+def forecast(mission: Mission, routes: Mapping[str, Sequence[RouteStop]], traffic: RoadmapPlan) -> Forecast:
+    """What `traffic` makes of the routes of robots.
 
     A robot stays at each task as long as its route says, waiting for prerequisites, windows and teams included.
 
@@ -44,16 +79,27 @@ def forecast(
     ParameterError
         if no robot is of kind `ground` with a radius above 0.
     """
-    driving = [robot for robot in mission.robots if robot.kind == "ground" and robot.radius_m > 0]
+    driving = [robot for robot in mission.robots if drives(robot)]
     if not driving:
         raise ParameterError("no robot is of kind ground with a radius above 0; expected one whose traffic is forecast")
     travellers = [_traveller(mission, robot, routes.get(robot.id, ())) for robot in driving]
-    together = traffic.ends(travellers)
-    alone = [traffic.ends([who])[0] for who in travellers]
-    return tuple(
-        RobotForecast(robot.id, _finite(with_traffic_s), _finite(alone_s))
-        for robot, with_traffic_s, alone_s in zip(driving, together, alone, strict=True)
+    together = traffic.journeys(travellers, ways=_WAYS_EACH * len(travellers))
+    alone = [traffic.journeys([who], ways=1)[0] for who in travellers]
+    robots = tuple(
+        RobotForecast(robot.id, _finite(among.end_s), _finite(by_itself.end_s))
+        for robot, among, by_itself in zip(driving, together, alone, strict=True)
     )
+    return Forecast(robots, tuple(together), tuple(alone))
+
+
+def drives(robot: Robot) -> bool:
+    """Whether a robot takes part in traffic."""
+    return robot.kind == "ground" and robot.radius_m > 0
+
+
+def _last(times_s: Sequence[float | None]) -> float | None:
+    known = [time_s for time_s in times_s if time_s is not None]
+    return max(known) if len(known) == len(times_s) else None
 
 
 def _finite(seconds: float) -> float | None:

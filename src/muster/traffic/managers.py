@@ -20,6 +20,19 @@ def manager_named(
 ) -> TrafficManager | None:
     """The manager of a mission's traffic; None where robots pass each other as they meet.
 
+    Parameters and errors are those of `shared_roadmap`.
+    """
+    shared = shared_roadmap(name, mission, world=world, margin_m=margin_m)
+    if shared is None:
+        return None
+    return ReservedTraffic(RoadmapPlan(shared.roadmap, shared.clear, seed), margin_m=margin_m)
+
+
+def shared_roadmap(
+    name: str, mission: Mission, *, world: World | None = None, margin_m: float = MARGIN_M
+) -> MissionRoadmap | None:
+    """The roadmap on which a mission's robots pass in turn; None where they pass each other as they meet.
+
     With `auto` traffic is by reservation where the mission gives lanes, or its map has passages for one robot.
 
     Parameters
@@ -51,7 +64,7 @@ def manager_named(
     shared = MissionRoadmap.of(mission, world if mapped else None, margin_m=margin_m)
     if name == AUTO and mission.lanes is None and not shared.roadmap.narrow.any():
         return None
-    return ReservedTraffic(RoadmapPlan(shared.roadmap, shared.clear, seed), margin_m=margin_m)
+    return shared
 
 
 def _reason_against(mission: Mission) -> str:

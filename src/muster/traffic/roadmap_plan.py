@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,6 +35,22 @@ _BLOCKED_M = (0.0, 0.1, 0.3)
 """Metres at a place beside it that may be blocked, where else no point is seen: robots err in where they are."""
 
 
+class TimedMove(NamedTuple):
+    """When a robot sets out from one point to another, by number, and the number of the stop to which that leads."""
+
+    start_s: float
+    point: int
+    to: int
+    stop: int
+
+
+class Journey(NamedTuple):
+    """When a robot has stayed at its last stop, and its moves; inf where no path is found, NaN where none can be."""
+
+    end_s: float
+    moves: tuple[TimedMove, ...]
+
+
 @dataclass
 class RoadmapPlan:
     """Plans moves of travellers over a roadmap: by safe intervals, or by priority inheritance where some find no path.
@@ -57,7 +74,7 @@ class RoadmapPlan:
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
         on = self._network_for(travellers)
-        whole = len(travellers) * len(on.roadmap.edges) <= _MOST_BY_INTERVALS
+        whole = self.plans_whole_ways(len(travellers))
         moves = self._by_safe_intervals(on, travellers) if whole else None
         if moves is None:
             moves = self._by_inheritance(on, travellers)
@@ -65,9 +82,26 @@ class RoadmapPlan:
             x, y = on.roadmap.points[on.roadmap.edges[edge, 1]]
             yield Move(traveller, (float(x), float(y)), stop)
 
-    def ends(self, travellers: Sequence[Traveller]) -> list[float]:
-        """When each has stayed at its last stop, in seconds; inf where no path is found, NaN where none can be."""
-        return self._searched(self._network_for(travellers), travellers)[1]
+    def journeys(self, travellers: Sequence[Traveller], *, ways: int) -> list[Journey]:
+        """How each gets through all its stops among the others.
+
+        Parameters
+        ----------
+        ways
+            that are sought to improve the plan.
+        """
+        on = self._network_for(travellers)
+        moves, ends, _ = self._searched(on, travellers, ways)
+        edges = on.roadmap.edges.tolist()
+        own: list[list[TimedMove]] = [[] for _ in travellers]
+        for start_s, traveller, edge, stop in moves:
+            point, to = edges[edge]
+            own[traveller].append(TimedMove(start_s, point, to, stop))
+        return [Journey(end_s, tuple(moves)) for end_s, moves in zip(ends, own, strict=True)]
+
+    def plans_whole_ways(self, travellers: int) -> bool:
+        """Whether so many travellers are planned through all their stops, and not step by step."""
+        return travellers * len(self.roadmap.edges) <= _MOST_BY_INTERVALS
 
     def _network_for(self, travellers: Sequence[Traveller]) -> _Network:
         """The roadmap with their places, as it was for the last plan where that has them."""
@@ -97,14 +131,14 @@ class RoadmapPlan:
         return None if math.inf in ends else [(traveller, edge, stop) for _, traveller, edge, stop in moves]
 
     def _searched(
-        self, on: _Network, travellers: Sequence[Traveller]
+        self, on: _Network, travellers: Sequence[Traveller], ways: int = _WAYS
     ) -> tuple[list[tuple[float, int, int, int]], list[float], list[int]]:
         """Moves, ends and the order of travellers: see `core.SafeIntervals.best_of`."""
         ranks = {name: k for k, name in enumerate(self._priorities)}
         metres = [on.metres(who) for who in travellers]
         first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
         told = [_told(who, on.number) for who in travellers]
-        return on.intervals.best_of(told, order=first, tries=max(1, _WAYS // max(1, len(told))), seed=self.seed)
+        return on.intervals.best_of(told, order=first, tries=max(1, ways // max(1, len(told))), seed=self.seed)
 
     def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, int]]:
         """Moves as (traveller, edge, stop), to first stops, as far as the horizon."""

@@ -29,11 +29,13 @@ from muster.server.api.parameter_types import (
     TaskQuery,
 )
 from muster.server.api.responses import archive_response, errors, file_described, file_response, with_location
+from muster.traffic.names import TRAFFIC
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
 
 Objective = Annotated[str, WithJsonSchema({"enum": [*OBJECTIVES]})]
 Bound = Annotated[str, WithJsonSchema({"enum": [*BOUNDS]})]
+Traffic = Annotated[str, WithJsonSchema({"enum": [*TRAFFIC]})]
 ExportTo = Annotated[
     str, Query(max_length=50, description="qgc, geojson, gpx, kml, csv, plan, or a format of an installed package.")
 ]
@@ -56,6 +58,7 @@ class PlanToMake(Body):
     ignore: Ignored = Field(default=[])
     bound: Bound | None = Field(default=None, description=HELP["bound"])
     rewire: bool = Field(default=False, description=HELP["rewire"])
+    traffic: Traffic | None = Field(default=None, description=HELP["traffic"])
     start: PlanNumber | None = Field(default=None, description="The id of a plan to go on from.")
     fixed: PlanNumber | None = Field(
         default=None, description="The id of a plan whose routes stay, as the beginnings of the new ones."

@@ -49,6 +49,7 @@ def figures_of(plan: Mapping[str, Any], verdict: Mapping[str, Any] | None = None
         ("Total cost", _number(judged.get("total_cost", plan.get("total_cost")), unit)),
         ("Greatest usage", _number(judged.get("max_usage", plan.get("max_usage")), unit)),
         ("Ends after", _number(judged.get("makespan_s", plan.get("makespan_s")), "s")),
+        ("With traffic", _number(plan.get("time_with_traffic_s"), "s")),
         ("Equality", _number(plan.get("equality_index"), "")),
     ]
     if verdict is not None:
