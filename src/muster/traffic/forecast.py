@@ -14,8 +14,8 @@ from muster.motion.actions import plan as motion_of
 from muster.traffic.roadmap_plan import Journey, RoadmapPlan
 from muster.traffic.travellers import Stop, Traveller
 
-_WAYS_EACH = 4
-"""Ways of each robot that are sought: they tell how long a plan takes as well as the more that a run seeks."""
+_WAYS_EACH, _LEAST_WAYS = 4, 40
+"""Ways of each robot that are sought, and of all: they tell how long a plan takes as well as the more of a run do."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def forecast(mission: Mission, routes: Mapping[str, Sequence[RouteStop]], traffi
     if not driving:
         raise ParameterError("no robot is of kind ground with a radius above 0; expected one whose traffic is forecast")
     travellers = [_traveller(mission, robot, routes.get(robot.id, ())) for robot in driving]
-    together = traffic.journeys(travellers, ways=_WAYS_EACH * len(travellers))
+    together = traffic.journeys(travellers, ways=max(_LEAST_WAYS, _WAYS_EACH * len(travellers)))
     alone = [traffic.journeys([who], ways=1)[0] for who in travellers]
     robots = tuple(
         RobotForecast(robot.id, _finite(among.end_s), _finite(by_itself.end_s))
