@@ -73,6 +73,8 @@ VALID = [
     Case("a quick bound", options=searching(bound="quick"), mission="eil51-5"),
     Case("rewired and bounded", options=searching(rewire=True, bound="quick")),
     Case("an exact bound", options=searching(bound="exact"), mission="6T-2R"),
+    Case("traffic told", options=searching(traffic="reserve")),
+    Case("free traffic", options=searching(traffic="free"), mission="market-rescue-arena"),
 ]
 INVALID = [
     Case("no such allocator", options={"allocator": "gredy"}, error="allocator: gredy; expected greedy, "),
@@ -88,6 +90,7 @@ INVALID = [
         mission="eil51-5",
         error="bound: exact, of 50 tasks; expected at most 40",
     ),
+    Case("no such traffic", options={"traffic": "fast"}, error='traffic: "fast"; expected auto or free or reserve'),
     Case("no such parameter", parameters={"population": 3}, error="search has no parameter population"),
     Case(
         "a parameter out of range",

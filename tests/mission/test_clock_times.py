@@ -93,7 +93,14 @@ def test_what_is_written_has_seconds_and_reads_back_equal():
 
 
 @pytest.mark.parametrize(
-    ("seconds", "text"), [(0, "08:00:00"), (7230, "10:00:30"), (57600, "+1 00:00:00"), (1e5, "+1 11:46:40")]
+    ("seconds", "text"),
+    [
+        (0, "08:00:00"),
+        (7230, "10:00:30"),
+        (57600, "+1 00:00:00"),
+        (1e5, "+1 11:46:40"),
+        (86400e9, "+1000000000 08:00:00"),
+    ],
 )
 def test_clock_text(seconds, text):
     assert clock_text(seconds, "2027-03-01T08:00:00+01:00") == text

@@ -192,15 +192,16 @@ def avoidance_option(verb: Verb) -> Verb:
     )(verb)
 
 
-_TRAFFIC = (
-    "Who passes first: reserve, by one plan for all that drive; free, as they meet. auto: reserve where the mission "
-    "gives lanes or its map has passages for one."
-)
-
-
-def traffic_option(verb: Verb, text: str = _TRAFFIC) -> Verb:
+def traffic_option(verb: Verb) -> Verb:
     """--traffic."""
-    return click.option("--traffic", type=click.Choice(TRAFFIC), default=DEFAULT, show_default=True, help=text)(verb)
+    return click.option(
+        "--traffic",
+        type=click.Choice(TRAFFIC),
+        default=DEFAULT,
+        show_default=True,
+        help="Who passes first: reserve, by one plan for all that drive; free, as they meet. auto: reserve where the "
+        "mission gives lanes or its map has passages for one.",
+    )(verb)
 
 
 def require_complete_option(verb: Verb) -> Verb:

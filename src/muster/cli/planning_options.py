@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.cli.options import Verb, ignore_option, objective_option, settings_of, traffic_option
+from muster.cli.options import Verb, ignore_option, objective_option, settings_of
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
 from muster.mission.model import Mission
@@ -22,13 +22,16 @@ from muster.motion.avoidance_names import AUTO as ANY_AVOIDANCE
 from muster.motion.laws import PROFILE
 from muster.planning.options import BOUNDS, DEFAULT_ALLOCATOR, HELP, PlanningOptions
 from muster.planning.request import Request
-from muster.traffic.names import AUTO, FREE
+from muster.traffic.names import AUTO, DEFAULT, FREE, TRAFFIC
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Stop
 
 _FILE = click.Path(path_type=Path)
 _PARAMETERS = ("threads", "ray", "bid", "placement", "winner")  # of allocators, with options of their own
+_TRAFFIC_OF_PLAN = click.option(
+    "--traffic", default=DEFAULT, show_default=True, metavar=f"[{'|'.join(TRAFFIC)}]", help=HELP["traffic"]
+)
 
 
 def planning_options(*, time_limit_s: float | None = None, carries_out: bool = False) -> Callable[[Verb], Verb]:
@@ -59,7 +62,7 @@ def _with_planning_options(verb: Verb, time_limit_s: float | None, carries_out: 
         options = PlanningOptions(parameters=parameters, traffic=traffic, **own)
         return verb(options=options, **given)
 
-    decorated: Any = with_options if carries_out else traffic_option(with_options, HELP["traffic"])
+    decorated: Any = with_options if carries_out else _TRAFFIC_OF_PLAN(with_options)
     for option in reversed(_declared(time_limit_s)):
         decorated = option(decorated)
     return cast("Verb", decorated)

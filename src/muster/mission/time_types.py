@@ -96,9 +96,9 @@ def moment_after(seconds: float, starts_at: str) -> datetime:
 def clock_text(seconds: float, starts_at: str) -> str:
     """The clock time so many seconds after the start, `10:00:30`; of later days `+1 10:00:30`."""
     start = datetime.fromisoformat(starts_at)
-    moment = start + timedelta(seconds=round(seconds))
-    days = (moment.date() - start.date()).days
-    return (f"+{days} " if days else "") + moment.strftime("%H:%M:%S")
+    since_midnight = 3600 * start.hour + 60 * start.minute + start.second + round(seconds)
+    days, second = divmod(since_midnight, 86400)  # no date: the year of some has more than four digits
+    return (f"+{days} " if days else "") + f"{second // 3600:02}:{second // 60 % 60:02}:{second % 60:02}"
 
 
 def is_pair(value: Sequence[object]) -> bool:

@@ -33,8 +33,8 @@ OnProgress = Callable[[Progress], None]
 
 PLANS = 8
 """Plans that are made, of which one is kept."""
-_MOST_BETWEEN = 10_000_000
-"""Places of a mission times edges of its roadmap up to which delays between all places are worked out."""
+_MOST = 3_000_000
+"""Robots and tasks times edges of the roadmap up to which traffic is forecast: for more that takes some seconds."""
 
 
 @dataclass(frozen=True)
@@ -62,10 +62,9 @@ class SharedPassages:
             as `shared_roadmap`.
         """
         made = shared_roadmap(traffic, mission)
-        if made is None:
+        if made is None or (len(mission.robots) + len(mission.tasks)) * len(made.roadmap.edges) > _MOST:
             return None
-        shared, driving = cls(mission, made), sum(drives(robot) for robot in mission.robots)
-        return shared if shared._roads().plans_whole_ways(driving) else None
+        return cls(mission, made)
 
     def forecast(self, routes: Sequence[Route]) -> Forecast:
         """The traffic of routes that have their stops."""
@@ -76,10 +75,6 @@ class SharedPassages:
         if any(len(route.stops) != len(route.tasks) for route in plan.routes):
             return plan
         return _saying(plan, self.forecast(plan.routes))
-
-    def can_spread(self, problem: Problem) -> bool:
-        """Whether the places of a problem are few enough for delays between all of them."""
-        return len(problem.all_places) // 2 * len(self.made.roadmap.edges) <= _MOST_BETWEEN
 
     def expected(self, problem: Problem, delays: PassageDelays) -> Problem:
         """The problem with the delays that its robots can expect."""

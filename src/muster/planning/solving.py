@@ -76,7 +76,7 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     report = None if on_progress is None else _with_bound(request, problem, on_progress)
     stop = Stop(iterations=request.iterations, time_limit=limit, on_progress=report, whole=interrupt)
     shared = SharedPassages.of(request.mission, request.traffic)
-    if shared is not None and allocator.anytime and shared.can_spread(problem):
+    if shared is not None and allocator.anytime:
         plan = _spread(request, allocator, params, problem, shared, stop, report)
     else:
         plan = allocator.solve(problem, stop, seed=request.seed, params=params, start=request.start)

@@ -74,7 +74,7 @@ class RoadmapPlan:
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
         on = self._network_for(travellers)
-        whole = self.plans_whole_ways(len(travellers))
+        whole = len(travellers) * len(on.roadmap.edges) <= _MOST_BY_INTERVALS
         moves = self._by_safe_intervals(on, travellers) if whole else None
         if moves is None:
             moves = self._by_inheritance(on, travellers)
@@ -98,10 +98,6 @@ class RoadmapPlan:
             point, to = edges[edge]
             own[traveller].append(TimedMove(start_s, point, to, stop))
         return [Journey(end_s, tuple(moves)) for end_s, moves in zip(ends, own, strict=True)]
-
-    def plans_whole_ways(self, travellers: int) -> bool:
-        """Whether so many travellers are planned through all their stops, and not step by step."""
-        return travellers * len(self.roadmap.edges) <= _MOST_BY_INTERVALS
 
     def _network_for(self, travellers: Sequence[Traveller]) -> _Network:
         """The roadmap with their places, as it was for the last plan where that has them."""
