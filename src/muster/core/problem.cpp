@@ -41,7 +41,9 @@ Problem::Problem(ProblemData data)
       robots_(static_cast<int>(data_.capacity.size())),
       places_(tasks_ + 2 * robots_),
       classes_(1),
-      given_table_(!data_.table.empty()) {
+      given_table_(!data_.table.empty()),
+      steady_(data_.turn.empty() && data_.waiting.empty()),
+      usage_is_metres_(!data_.usage_is_time && data_.waiting.empty()) {
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
   const auto places = static_cast<std::size_t>(places_);
   require(robots > 0, "a problem needs a robot");
@@ -123,8 +125,13 @@ void Problem::check_times() const {
           "waiting needs at least 0 s for each pair of places, and a flag for each robot");
 }
 
-// The time of a leg from rest to rest by the robot's motion profile: `LegTimes.seconds` of muster.motion.leg_times.
 double Problem::leg_seconds(int robot, int from, int to, double metres) const {
+  const double driven = data_.turn.empty() ? metres / data_.speed[robot] : profile_seconds(robot, from, to, metres);
+  return driven + waiting(robot, from, to);
+}
+
+// The time of a leg from rest to rest by the robot's motion profile: `LegTimes.seconds` of muster.motion.leg_times.
+double Problem::profile_seconds(int robot, int from, int to, double metres) const {
   constexpr double kStraight = 0.05;  // radians
   constexpr double kPieces = 3.0, kPiecesSliding = 2.0;
   if (!(metres > 0.0) || metres == kInfinity) return metres;

@@ -194,8 +194,7 @@ class Problem {
 
   double travel_time(int robot, int from, int to) const {
     const double metres = distance(travel_class(robot), from, to);
-    const double seconds = data_.turn.empty() ? metres / data_.speed[robot] : leg_seconds(robot, from, to, metres);
-    return data_.waiting.empty() ? seconds : seconds + waiting(robot, from, to);
+    return steady_ ? metres / data_.speed[robot] : leg_seconds(robot, from, to, metres);
   }
   double actuation_cost(int robot, int task) const {
     return data_.actuation_cost[static_cast<std::size_t>(data_.work_class[robot]) * tasks_ + task];
@@ -204,9 +203,9 @@ class Problem {
     return data_.work_seconds[static_cast<std::size_t>(data_.time_class[robot]) * tasks_ + task];
   }
   double travel_usage(int robot, int from, int to) const {
+    if (usage_is_metres_) return distance(travel_class(robot), from, to);
     if (data_.usage_is_time) return travel_time(robot, from, to);
-    const double metres = distance(travel_class(robot), from, to);
-    return data_.waiting.empty() ? metres : metres + waiting(robot, from, to) * data_.speed[robot];
+    return distance(travel_class(robot), from, to) + waiting(robot, from, to) * data_.speed[robot];
   }
   double work_usage(int robot, int task) const {
     return data_.usage_is_time ? work_time(robot, task) : actuation_cost(robot, task);
@@ -236,8 +235,10 @@ class Problem {
   void find_units();
   void check_times() const;
   double leg_seconds(int robot, int from, int to, double metres) const;
+  double profile_seconds(int robot, int from, int to, double metres) const;
   double waiting(int robot, int from, int to) const {
-    return data_.waits[robot] ? data_.waiting[static_cast<std::size_t>(from) * places_ + to] : 0.0;
+    return !data_.waiting.empty() && data_.waits[robot] ? data_.waiting[static_cast<std::size_t>(from) * places_ + to]
+                                                        : 0.0;
   }
   double ramped(int robot, double metres, double rise) const;
   double straight(int from, int to, int place_class = 0) const {
@@ -254,6 +255,8 @@ class Problem {
   int places_;
   int classes_;
   bool given_table_;
+  bool steady_;           // legs take their metres by the speed, and nothing else
+  bool usage_is_metres_;  // and nothing else
   bool timed_;
   Rows tasks_of_unit_;
   Rows dependants_;
