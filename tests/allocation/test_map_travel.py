@@ -88,7 +88,7 @@ def test_lengths_are_those_of_the_judge(seed):
     assert_as_judged(random_mission(seed), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_in_space_they_are_nearly(seed):
     assert_as_judged(random_mission(seed, tasks=4, spatial=True), rel=1e-2)
 
