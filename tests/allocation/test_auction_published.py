@@ -1,6 +1,6 @@
 """The auction against the printed tables of the auction thesis, bid by bid; the market against its paper."""
 
-from itertools import cycle, product
+from itertools import product
 from statistics import fmean
 
 import pytest
@@ -169,14 +169,11 @@ OTHERS = ("berlin52", "eil51", "eil76", "collapsed-building", "warehouse")  # fi
 SHIPPED = [name for name in mission_names() if name not in OTHERS]
 
 
-@pytest.mark.parametrize("name", SHIPPED)
-def test_auctions_of_every_kind_are_admissible(name):
-    """Of missions over a map, which the judge finds ways through anew for each plan, each option once."""
+@pytest.mark.parametrize(("number", "name"), [*enumerate(SHIPPED)])
+def test_auctions_of_every_kind_are_admissible(number, name):
+    """Three kinds for each mission: of any eight missions, every kind there is."""
     problem = Problem.compile(muster.load(name))
-    kinds = list(product(BIDS, PLACEMENTS, WINNERS))
-    if problem.mission.map is not None:
-        kinds = list(zip(BIDS, cycle(PLACEMENTS), cycle(WINNERS), strict=False))
-    for bid, placement, winner in kinds:
+    for bid, placement, winner in [*product(BIDS, PLACEMENTS, WINNERS)][number % 8 :: 8]:
         admissible(problem, "auction", Stop(), bid=bid, placement=placement, winner=winner)
 
 

@@ -61,7 +61,7 @@ def fits(mission, fixed):
 
 
 @pytest.mark.parametrize("allocator", ["search", "greedy"])
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(30))
 def test_routes_begin_with_them_and_the_plan_is_admissible(allocator, seed):
     mission = random_mission(seed, tasks=12, robots=3)
     fixed = beginning_of(mission, seed)
@@ -76,7 +76,7 @@ def test_routes_begin_with_them_and_the_plan_is_admissible(allocator, seed):
 def test_it_finds_the_best_of_all_such_plans(objective):
     """The exact solver, the search and the bounds, against all plans."""
     tried = 0
-    for seed in range(24):
+    for seed in range(15):
         mission = (random_mission(seed, tasks=5, robots=2), forgiving(seed), by_table(seed))[seed % 3]
         fixed = beginning_of(mission, seed)
         if not any(route.tasks for route in fixed.routes) or not fits(mission, fixed):
@@ -94,7 +94,7 @@ def test_it_finds_the_best_of_all_such_plans(objective):
             assert found.objective_value >= value - 1e-7 * abs(value) - 1e-9
         if found.complete:
             assert lower_bound(problem) <= value + 1e-9
-    assert tried > 6
+    assert tried > 4
 
 
 def test_they_change_what_is_best():

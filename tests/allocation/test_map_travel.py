@@ -83,12 +83,12 @@ def assert_as_judged(mission, rel):
     assert n
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(6))
 def test_lengths_are_those_of_the_judge(seed):
     assert_as_judged(random_mission(seed), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_in_space_they_are_nearly(seed):
     assert_as_judged(random_mission(seed, tasks=4, spatial=True), rel=1e-2)
 
@@ -158,7 +158,7 @@ def test_on_the_shipped_floor_plan_they_are_those_of_the_judge():
     assert_as_judged(muster.load("floor"), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("allocator", ["search", "greedy", "auction"])
 def test_plans_are_admissible(seed, allocator):
     mission = random_mission(seed, spatial=seed % 3 == 0)

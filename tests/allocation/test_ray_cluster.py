@@ -34,6 +34,8 @@ pytestmark = [pytest.mark.xdist_group("ray"), pytest.mark.filterwarnings("ignore
 
 MISSION = large_mission(600, 24)
 STORE = {"object_store_memory": 80_000_000}
+STARTED_S = 2.5
+"""Of the processor, after which a worker has surely started."""
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +84,7 @@ def workers(address):
     assert signal.getsignal(signal.SIGTERM) is before  # Ray's own does not stay
 
 
-def test_the_plan_is_that_of_threads(address):
+def test_the_plan_is_that_of_threads(address, capfd):
     by_threads, by_ray = (
         muster.solve(MISSION, "search", iterations=2_000, seed=3, parts=4, **where) for where in ({}, {"ray": address})
     )
@@ -90,6 +92,7 @@ def test_the_plan_is_that_of_threads(address):
     assert by_ray.complete
     assert muster.verify(MISSION, by_ray).violations == ()
     assert not ray.is_initialized()
+    assert capfd.readouterr() == ("", "")
 
 
 def test_from_outside_of_the_cluster_joining_is_tried_again(cluster, monkeypatch):
@@ -114,33 +117,21 @@ def test_from_outside_of_the_cluster_joining_is_tried_again(cluster, monkeypatch
     assert failures == [1]
 
 
-def test_within_a_time(address):
-    plan = muster.solve(MISSION, "search", time_limit=4.0, parts=4, ray=address)
-    assert plan.complete
-    assert muster.verify(MISSION, plan).violations == ()
-    values = [value for _, value in plan.history]
-    assert values == sorted(values, reverse=True)
-
-
-def at_work(cluster):
-    """How many of the cluster's workers do a part at this moment, after the second or so that its start takes them.
-
-    In time of the processor, which does not depend on what else this machine does; names are as Ray gives them.
-    """
+def processes(cluster):
+    """Those that the nodes of the cluster have begun, its workers among them."""
     raylets = [one.process.pid for node in cluster.list_all_nodes() for one in node.all_processes["raylet"]]
     begun = [file.read_text() for pid in raylets for file in Path(f"/proc/{pid}/task").glob("*/children")]
-    return sum(used_s(Path("/proc", pid)) > 3.0 for pids in begun for pid in pids.split())
+    return [Path("/proc", pid) for pids in begun for pid in pids.split()]
 
 
 def used_s(process):
-    """Seconds of the processor that a worker has used; 0 for one that does no part, or has just ended."""
+    """Seconds of the processor, and whether it does a part at this moment; names are as Ray gives them."""
     try:
-        if not process.joinpath("cmdline").read_bytes().startswith(b"ray::_done_by_worker"):
-            return 0.0
+        works = process.joinpath("cmdline").read_bytes().startswith(b"ray::_done_by_worker")
         figures = process.joinpath("stat").read_text().rpartition(")")[2].split()
-    except OSError:
-        return 0.0
-    return sum(int(ticks) for ticks in figures[11:13]) / os.sysconf("SC_CLK_TCK")
+    except OSError:  # it has just ended
+        return 0.0, False
+    return sum(int(ticks) for ticks in figures[11:13]) / os.sysconf("SC_CLK_TCK"), works
 
 
 @contextmanager
@@ -166,20 +157,6 @@ def once(both_work, act, monkeypatch):
 
 def ctrl_c():
     os.kill(os.getpid(), signal.SIGINT)
-
-
-def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(cluster, address, tmp_path, capsys, monkeypatch):
-    start, plan, mission = tmp_path / "start.json", tmp_path / "plan.json", tmp_path / "mission.yaml"
-    mission.write_text(yaml_text(MISSION))
-    muster.solve(MISSION, "greedy").save(start)
-    words = f"solve {mission} --ray {address} --set parts=2 --iterations 1000000000 --start {start} -o {plan}"
-    with once(lambda: at_work(cluster) == 2, ctrl_c, monkeypatch):
-        assert run(words.split()) == 130
-    written = read_plan(plan)
-    assert muster.verify(muster.load(mission), written).violations == ()
-    assert written.complete
-    assert written.objective_value < read_plan(start).objective_value
-    assert capsys.readouterr().err == "interrupted: this is the best plan so far\n"
 
 
 def improvement(spoil):
@@ -242,6 +219,35 @@ class TestOfOneWhoHasJoined:
         assert ray.is_initialized()
         with pytest.raises(ParameterError, match="in a process that has joined a cluster; expected auto"):
             muster.solve(MISSION, "search", parts=4, ray=address)
+
+    def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(
+        self, cluster, workers, tmp_path, capsys, monkeypatch
+    ):
+        start, plan, mission = tmp_path / "start.json", tmp_path / "plan.json", tmp_path / "mission.yaml"
+        mission.write_text(yaml_text(MISSION))
+        muster.solve(MISSION, "greedy").save(start)
+        words = f"solve {mission} --ray auto --set parts=2 --iterations 1000000000 --start {start} -o {plan}"
+        before = {process: used_s(process)[0] for process in processes(cluster)}
+
+        def both_work():
+            """In time of the processor, which does not depend on what else this machine does."""
+            now = {process: used_s(process) for process in processes(cluster)}
+            return sum(works and used > before.get(of, STARTED_S) + 0.5 for of, (used, works) in now.items()) == 2
+
+        with once(both_work, ctrl_c, monkeypatch):
+            assert run(words.split()) == 130
+        written = read_plan(plan)
+        assert muster.verify(muster.load(mission), written).violations == ()
+        assert written.complete
+        assert written.objective_value < read_plan(start).objective_value
+        assert capsys.readouterr().err == "interrupted: this is the best plan so far\n"
+
+    def test_within_a_time(self, workers):
+        plan = muster.solve(MISSION, "search", time_limit=2.0, parts=4, ray="auto")
+        assert plan.complete
+        assert muster.verify(MISSION, plan).violations == ()
+        values = [value for _, value in plan.history]
+        assert values == sorted(values, reverse=True)
 
     def test_a_worker_that_dies_is_replaced(self, workers, tmp_path):
         mark = tmp_path / "died"

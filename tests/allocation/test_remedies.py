@@ -288,7 +288,7 @@ def test_what_is_said_of_random_missions_is_true(seed, tasks, robots):
     check_all(random_mission(seed, tasks=tasks, robots=robots))
 
 
-@examples(4)
+@examples(5)
 @given(seed=seeds)
 def test_what_is_said_of_six_tasks_is_true(seed):
     check_all(random_mission(seed, tasks=6, robots=2))

@@ -48,10 +48,10 @@ def test_every_task_left_out_has_a_reason_for_every_robot(allocator, seed):
 
 
 @every_allocator
-@pytest.mark.parametrize("name", ["31T-6R50", "24T-5R", "auction-1", "market-rescue", "eil51-5"])
+@pytest.mark.parametrize("name", ["31T-6R50", "market-rescue", "eil51-5"])
 def test_the_same_seed_and_iterations_give_the_same_plan(allocator, name):
     mission = muster.load(name)
-    first, second = (muster.solve(mission, allocator, seed=7, iterations=200) for _ in range(2))
+    first, second = (muster.solve(mission, allocator, seed=7, iterations=50) for _ in range(2))
     assert without_times(first).text() == without_times(second).text()
 
 

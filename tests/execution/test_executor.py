@@ -55,7 +55,7 @@ def test_shipped_missions_are_carried_out_as_planned(name):
     mission = replace(mission, rules=replace(mission.rules, timing="constant"))  # as the robots of this world drive
     plan = muster.solve(mission, "greedy")
     verdict = muster.verify(mission, plan)
-    world, step = World(mission), verdict.makespan_s / 2000
+    world, step = World(mission), verdict.makespan_s / 500
     robot_paths = None if mission.map is None else RobotPaths.of(mission)
     travel = None if robot_paths is None else OverMap(robot_paths)
     executor = Executor(mission, plan, world.ports, way=way_of(mission, robot_paths), travel=travel)

@@ -12,7 +12,7 @@ from muster.motion.port import Waypoint
 from muster.simulation import KinematicWorld
 
 DT = 0.1
-STATES = range(200)
+STATES = range(40)
 
 
 def wrapped(angle):

@@ -10,15 +10,16 @@ from muster_studies.registry import study_named
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """What the tests of a study share takes minutes: one process has them all."""
+    """What the tests of a study share takes minutes: one process has them all, of both files of thesis-3.3 too."""
     for item in items:
-        if item.path.parent == Path(__file__).parent:
-            item.add_marker(pytest.mark.xdist_group(item.path.stem))
+        if item.path.parent == Path(__file__).parent and item.path.stem != "test_optional_parts":  # has its own ones
+            group = item.path.stem.removesuffix("_greedy").removesuffix("_tables")
+            item.add_marker(pytest.mark.xdist_group(group))
 
 
 @pytest.fixture(scope="session")
 def report():
-    return study_named("thesis-3.3").run(Effort(seeds=2, iterations=300))
+    return study_named("thesis-3.3").run(Effort(seeds=2, iterations=100))
 
 
 @pytest.fixture(scope="session")

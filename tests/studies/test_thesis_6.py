@@ -17,20 +17,22 @@ from muster_studies.thesis_6 import misaligned, physics
 from muster_studies.thesis_6.flights import Flight, fly, mission_with
 from muster_studies.thesis_6.laws import ByLaw
 from muster_studies.thesis_6.misaligned import CHOSEN, WITHIN, MisalignedMarkers
+from muster_studies.thesis_6.physics import BesidePhysics
 from muster_studies.thesis_6.published import excess, plans
 from muster_studies.thesis_6.totals import best_of, search_flights
 
 ROUTES = ("6.2", "6.6", "6.8", "6.9")
 FLOWN_PLANS = [plan for number in ROUTES for plan in plans(number)]
-TABLES = ("6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11", "actions", "physics", "noise", "capacity-reserve")
+TABLES = ("6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11", "actions", "noise", "capacity-reserve")
 ACTIONS = ("16T-3R-actions", "31T-6R50-actions", "6T-2R-actions", "11T-2R-actions")
 
 
 @pytest.fixture(scope="module")
 def report():
+    """With the table of the physics world, where six robots fly one plan: that of all tasks, which takes longest."""
     report = study_named("thesis-6").run(Effort(seeds=2, iterations=300, tables=TABLES))
     assert report.runs > 0
-    return report
+    return replace(report, tables=(*report.tables, table_of(BesidePhysics(routes=("6.8", "6.9")))))
 
 
 def table_of(reproduction):
@@ -180,7 +182,7 @@ needs_physics = pytest.mark.skipif(find_spec("mujoco") is None, reason="the extr
 def test_ground_missions_in_the_physics_world(tables):
     """All tasks done, no contact, each robot within 3 % of the kinematic world."""
     rows = tables["physics"].records()
-    assert {row["mission"] for row in rows} == {"6T-2R", "11T-2R", "31T-6R50-as-run", "31T-6R50"}
+    assert {row["mission"] for row in rows} == {"6T-2R", "11T-2R", "31T-6R50-as-run"}
     assert all(row["mark"] == "near" and abs(row["%"]) < 3 for row in rows)
     done = [(row["mission"], row["tasks"], row["contacts"]) for row in rows if row["robot"] == "all"]
     assert ("31T-6R50-as-run", "31/31", 0) in done
@@ -249,14 +251,14 @@ def test_capacity_is_never_exceeded(tables):
 
 
 def test_a_reserve_spares_planning_again():
-    """Over ten seeds, where capacity is tightest and robots slip."""
+    """Over five seeds, where capacity is tightest and robots slip."""
     flights = [
         Flight(mission="31T-3R44-3R26-as-run", iterations=300, seed=seed, reserve=reserve, noise=Noise(slip=0.05))
         for reserve in (0.0, 0.05)
-        for seed in range(10)
+        for seed in range(5)
     ]
     again = [fly(flight).report.reallocations > 0 for flight in flights]
-    assert sum(again[10:]) < sum(again[:10])
+    assert sum(again[5:]) < sum(again[:5])
 
 
 def test_a_flight_is_repeatable_and_its_reserve_is_kept():

@@ -18,7 +18,7 @@ from tests.timed_missions.possibilities import Possibilities
 from tests.timed_missions.remedied import Remedied
 from tests.timed_missions.trial import Report, Trial, trial
 
-MISSIONS, CHUNK = 90, 15
+MISSIONS, CHUNK = 45, 15
 
 
 @pytest.mark.parametrize("first", range(0, MISSIONS, CHUNK))
@@ -28,7 +28,7 @@ def test_judge_bounds_reasons_and_remedies_agree_with_every_plan(first):
     assert failures == {}
 
 
-@pytest.mark.parametrize("first", range(0, 30, 6))
+@pytest.mark.parametrize("first", range(0, 18, 6))
 def test_the_exact_solver_finds_the_best_of_every_plan(first):
     pytest.importorskip("ortools", reason="needs the extra exact")
     failures = {}

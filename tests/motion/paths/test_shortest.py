@@ -61,8 +61,8 @@ def without_pinches(blocked):
 def test_among_many_corners_nothing_is_shorter(seed):
     """So many that each way is bounded by one over cells, and looked for in an ellipse."""
     rng = np.random.default_rng(seed)
-    blocked = without_pinches(rng.random((40, 50)) < (0.07, 0.12)[seed % 2])
-    blocked[20, : 40 + seed] = True
+    blocked = without_pinches(rng.random((40, 40)) < (0.07, 0.12)[seed % 2])
+    blocked[20, : 32 + seed] = True
     blocked = without_pinches(blocked)
     space = GridSpace(Grid(blocked, 1.0))
     assert core.Ways.on_grid(core.GridMap(blocked)).corners > 256

@@ -37,9 +37,9 @@ def test_an_mp4_has_as_many_pictures_as_its_speed_says(footage, tmp_path):
     from muster.report.film import write_film
 
     file = tmp_path / "film.mp4"
-    made = write_film(file, footage, speed=40)
+    made = write_film(file, footage, speed=80)
     frames = frames_of(file)
-    expected = int(np.ceil(footage.times_s[-1] / (40 / RATE) - 1e-9)) + 1 + REST
+    expected = int(np.ceil(footage.times_s[-1] / (80 / RATE) - 1e-9)) + 1 + REST
     assert made.frames == len(frames) == expected
     assert made.duration_s == pytest.approx(expected / RATE)
     assert {frame.shape for frame in frames} == {(540, 960, 3)}

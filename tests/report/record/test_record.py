@@ -113,7 +113,7 @@ def test_a_record_cut_anywhere_is_read_up_to_there(whole, tmp_path):
     file, lengths, text = tmp_path / "cut.mcap", [], read.mission_text.encode()
     beginning = data.index(text) + len(text) + 4  # the mission, and its checksum
     generator = random.Random(1)
-    for cut in sorted(generator.randrange(len(data)) for _ in range(200)):
+    for cut in sorted(generator.randrange(len(data)) for _ in range(80)):
         file.write_bytes(data[:cut])
         if cut < beginning:
             with pytest.raises(InputError, match="expected a record that muster has written"):
@@ -125,9 +125,9 @@ def test_a_record_cut_anywhere_is_read_up_to_there(whole, tmp_path):
         assert not part.complete
         assert part.events == read.events[: len(part.events)]
         np.testing.assert_array_equal(part.tracks.positions, read.tracks.positions[:steps])
-    assert len(lengths) > 150
+    assert len(lengths) > 60
     assert lengths == sorted(lengths)
-    assert len(set(lengths)) > 30  # it is in every chunk that something is found
+    assert len(set(lengths)) > 20  # it is in every chunk that something is found
 
 
 def test_of_a_record_with_wrong_bytes_what_is_read_is_right(whole, tmp_path):
