@@ -3,8 +3,9 @@
 import pytest
 
 from muster.mission.consistency import positions
-from muster_studies.jams.scenes import DIFFERENTIAL, KINEMATICS, RADIUS_M, SCENES, SHIFT_M
-from muster_studies.jams.study import JAMS, METHODS, RESERVE, Job, outcome_of
+from muster_studies.jams.scenes import DIFFERENTIAL, KINEMATICS, RADIUS_M, SCENES, SHIFT_M, SPEED_MPS
+from muster_studies.jams.space_time import SIDE_M
+from muster_studies.jams.study import JAMS, METHODS, RESERVE, SPACE_TIME, Job, outcome_of
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -37,4 +38,12 @@ def test_everybody_gets_through_a_one_way_door(method):
 
 
 def test_the_table_has_a_row_for_each_method():
-    assert JAMS.tables == ("methods", "traffic")
+    assert JAMS.tables == ("methods", "traffic", "space-time")
+
+
+def test_the_yardstick_takes_as_long_as_the_robots_that_pass_one_after_the_other():
+    """Through a door for one twenty robots pass one a cell, behind the first, who drives to the door."""
+    outcome = outcome_of(Job("one-way door, 20", DIFFERENTIAL, SPACE_TIME, 0))
+    first_m = 3.0
+    assert outcome.done == outcome.tasks == 20
+    assert first_m + 19 * SIDE_M < outcome.mission_time_s * SPEED_MPS < 2 * (first_m + 19 * SIDE_M)

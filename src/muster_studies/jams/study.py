@@ -5,11 +5,13 @@ By a method alone nothing else keeps robots apart and lets them through: no path
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from muster.execution.record import ExecutionEvent
+from muster.mission.model import Mission
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster_studies.effort import Effort
@@ -20,9 +22,12 @@ from muster_studies.tables import Cell, Table
 METHODS = ("orca", "rvo", "hrvo")
 RESERVE, ALONE = "reserve", "none"
 """Planned traffic; and robots that drive through each other, which is a bound."""
+DEFAULT, SPACE_TIME = "auto", "space-time"
+"""What Muster chooses; and paths of a yardstick, which nobody drives."""
 SEEDS, QUICK_SEEDS = 5, 1
 _QUICK_SCENES = ("face to face, 2", "one-way door, 20")
 _NARROW_SCENES = ("one-way door, 20", "two-way door, 20", "aisles, 6", "dead ends, 6")
+_SWAPPING_SCENES = ("one-way door, 20", "two-way door, 20", "corridor, 20", "circle, 50", "streams, 40")
 _NOTES = (
     "done: tasks done in all runs, per cent; s: the median of the mission times, with the way back where there is one; "
     "out: robots put out; jams: told as traffic_jam; touched: pairs of robots. Plans by greedy.",
@@ -55,9 +60,11 @@ class Outcome:
 def outcome_of(job: Job) -> Outcome:
     """Plan a scene and carry it out."""
     mission = SCENES[job.scene](job.kinematics, job.seed)
+    if job.method == SPACE_TIME:
+        return _yardstick(mission, job.seed)
     events: list[ExecutionEvent] = []
     plan = solve(mission, "greedy")
-    avoidance, traffic = ("auto", RESERVE) if job.method == RESERVE else (job.method, "free")
+    avoidance, traffic = ("auto", job.method) if job.method in (RESERVE, DEFAULT) else (job.method, "free")
     report = carry_out(mission, plan, avoidance=avoidance, traffic=traffic, seed=job.seed, on_event=events.append)
     kinds = [event.kind for event in events]
     return Outcome(
@@ -69,6 +76,14 @@ def outcome_of(job: Job) -> Outcome:
         mission_time_s=report.mission_time_s,
         waiting_s=report.waiting_by_cause_s.get("traffic", 0.0),
     )
+
+
+def _yardstick(mission: Mission, seed: int) -> Outcome:
+    """What space-time A* comes to: all tasks, or none where it finds no paths."""
+    from muster_studies.jams.space_time import space_time_s
+
+    time_s, tasks = space_time_s(mission, seed), len(mission.tasks)
+    return Outcome(tasks, 0 if time_s is None else tasks, 0, 0, 0, math.inf if time_s is None else time_s, 0.0)
 
 
 @dataclass(frozen=True)
@@ -135,6 +150,49 @@ class Reserved:
                 yield scene, kinematics
 
 
+@dataclass(frozen=True)
+class Beside:
+    """A row for each scene in which robots have one goal each, and each kinematics."""
+
+    number: str = "space-time"
+    columns: tuple[str, ...] = (
+        "scene",
+        "kinematics",
+        "runs",
+        "done %",
+        "s",
+        "out",
+        "touched",
+        "space-time s",
+        "alone s",
+    )
+
+    def jobs(self, effort: Effort) -> Iterator[Job]:
+        for scene, kinematics in self._rows(effort):
+            for method in (DEFAULT, SPACE_TIME, ALONE):
+                yield from _runs(scene, kinematics, method, effort)
+
+    def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
+        rows = []
+        for scene, kinematics in self._rows(effort):
+            flown, yardstick, alone = (
+                _figures([found[job] for job in _runs(scene, kinematics, method, effort)])
+                for method in (DEFAULT, SPACE_TIME, ALONE)
+            )
+            runs, done, median_s, out, _, touched = flown
+            rows.append((scene, kinematics, runs, done, median_s, out, touched, yardstick[2], alone[2]))
+        notes = (
+            *_NOTES,
+            "space-time: prioritised space-time A* over a grid of 0.65 m, at full speed and without turns.",
+        )
+        return Table(self.number, "Default settings beside space-time A*", self.columns, tuple(rows), notes, decimals=1)
+
+    def _rows(self, effort: Effort) -> Iterator[tuple[str, str]]:
+        for scene in _QUICK_SCENES[1:] if effort.quick else _SWAPPING_SCENES:
+            for kinematics in KINEMATICS:
+                yield scene, kinematics
+
+
 def _runs(scene: str, kinematics: str, method: str, effort: Effort) -> list[Job]:
     seeds = effort.seeds or (QUICK_SEEDS if effort.quick else SEEDS)
     return [Job(scene, kinematics, method, seed) for seed in range(seeds)]
@@ -147,7 +205,7 @@ def _figures(runs: list[Outcome]) -> tuple[Cell, ...]:
     return len(runs), done, median_s, *counts
 
 
-_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Jams(), Reserved())
+_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Jams(), Reserved(), Beside())
 
 JAMS = Repetition(
     name="jams",
