@@ -87,10 +87,7 @@ void PassingOrder::stop(int robot, Point place) {
   for (const std::size_t number : bot.moves) move(number).robot = -1;
   bot.moves.clear();
   bot.end = place;
-  while (!moves_.empty() && moves_.front().robot < 0) {
-    moves_.pop_front();
-    ++first_;
-  }
+  drop_done();
 }
 
 Point PassingOrder::place(const Move& m, double at) const {
@@ -99,14 +96,18 @@ Point PassingOrder::place(const Move& m, double at) const {
   return {m.from.x + share * (m.to.x - m.from.x), m.from.y + share * (m.to.y - m.from.y)};
 }
 
-void PassingOrder::finish_first(Bot& bot) {
-  move(bot.moves.front()).robot = -1;
-  bot.moves.pop_front();
-  ++bot.passed;
+void PassingOrder::drop_done() {
   while (!moves_.empty() && moves_.front().robot < 0) {
     moves_.pop_front();
     ++first_;
   }
+}
+
+void PassingOrder::finish_first(Bot& bot) {
+  move(bot.moves.front()).robot = -1;
+  bot.moves.pop_front();
+  ++bot.passed;
+  drop_done();
 }
 
 void PassingOrder::progress(int robot, int passed, Point near) {

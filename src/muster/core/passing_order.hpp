@@ -99,6 +99,7 @@ class PassingOrder {
   double apart(int a, int b) const { return bots_[a].radius + bots_[b].radius + margin_; }
   Point place(const Move& m, double at) const;
   void finish_first(Bot& bot);
+  void drop_done();
   // To where a robot may go of a move, and who stops it there.
   std::pair<double, int> limit(const Move& m) const;
 

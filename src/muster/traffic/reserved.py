@@ -115,14 +115,16 @@ class ReservedTraffic:
     def _break(self, part: Part, now: float) -> None:
         """What the robot was told holds: it may have dropped it, or go on at any time."""
         part.broken, part.broken_s = True, now
-        self._order.cut()
-        self._order.stop(part.number, part.near)
-        self._planned_s = -math.inf
+        self._forget_way(part)
 
     def _mend(self, part: Part, now: float) -> None:
         """The robot is stopped, and told anew: where it was told to go others may be sent by now."""
         part.broken, part.stood, part.moved_s = False, part.near, now
         part.port.halt()
+        self._forget_way(part)
+
+    def _forget_way(self, part: Part) -> None:
+        """The robot stands where it is, as far as the order goes, and a new plan is due."""
         self._order.cut()
         self._order.stop(part.number, part.near)
         self._planned_s = -math.inf
