@@ -24,6 +24,7 @@ RESERVE, ALONE = "reserve", "none"
 """Planned traffic; and robots that drive through each other, which is a bound."""
 DEFAULT, SPACE_TIME = "auto", "space-time"
 """What Muster chooses; and paths of a yardstick, which nobody drives."""
+_BESIDE = (DEFAULT, RESERVE, SPACE_TIME, ALONE)
 SEEDS, QUICK_SEEDS = 5, 1
 _QUICK_SCENES = ("face to face, 2", "one-way door, 20")
 _NARROW_SCENES = ("one-way door, 20", "two-way door, 20", "aisles, 6", "dead ends, 6")
@@ -156,31 +157,23 @@ class Beside:
 
     number: str = "space-time"
     columns: tuple[str, ...] = (
-        "scene",
-        "kinematics",
-        "runs",
-        "done %",
-        "s",
-        "out",
-        "touched",
-        "space-time s",
-        "alone s",
+        *("scene", "kinematics", "runs", "done %", "s", "out", "touched"),
+        *("reserve s", "space-time s", "alone s"),
     )
 
     def jobs(self, effort: Effort) -> Iterator[Job]:
         for scene, kinematics in self._rows(effort):
-            for method in (DEFAULT, SPACE_TIME, ALONE):
+            for method in _BESIDE:
                 yield from _runs(scene, kinematics, method, effort)
 
     def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
         rows = []
         for scene, kinematics in self._rows(effort):
-            flown, yardstick, alone = (
-                _figures([found[job] for job in _runs(scene, kinematics, method, effort)])
-                for method in (DEFAULT, SPACE_TIME, ALONE)
+            flown, *others = (
+                _figures([found[job] for job in _runs(scene, kinematics, method, effort)]) for method in _BESIDE
             )
             runs, done, median_s, out, _, touched = flown
-            rows.append((scene, kinematics, runs, done, median_s, out, touched, yardstick[2], alone[2]))
+            rows.append((scene, kinematics, runs, done, median_s, out, touched, *(other[2] for other in others)))
         notes = (
             *_NOTES,
             "space-time: prioritised space-time A* over a grid of 0.65 m, at full speed and without turns.",
