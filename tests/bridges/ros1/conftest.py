@@ -17,6 +17,8 @@ from muster.bridges.ros1.extra import require_rospy
 from muster.bridges.ros1.master import running_master
 from muster.mission.errors import MissingExtraError
 
+NODES = {"/muster", "/command_interface", "/system_monitor", "/mission_planner"}
+"""Those of the command; the last three are processes of their own, which may be there after robots drive."""
 GUARD_S = 120.0
 """No process of these tests takes so long."""
 ENDLESS = ("odom", "pose", "tf", "clock")

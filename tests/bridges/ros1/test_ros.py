@@ -122,32 +122,6 @@ def test_ctrl_c_lets_robots_stand(ros, mission):
         assert not any(last["angular"].values())
 
 
-def test_it_begins_pauses_goes_on_and_takes_a_task_when_told(ros, mission):
-    ros.robot("r_0", 0, 0)
-    ros.robot("r_1", 0, 3)
-    heard = ros.listener("/muster/status=std_msgs/String", "/r_0/cmd_vel=geometry_msgs/Twist")
-    carried = ros.muster(mission, *QUICK, "--on-start")
-    task = json.dumps({"id": "extra", "position": [2, 2]})
-    wrong = json.dumps({"id": "wrong", "position": "here"})
-    user = ros.user()
-    assert user.call("/command_interface/start")[0]
-    for text in (wrong, task):
-        user.do(publish="/command_interface/add_task", text=text)
-    user.until(lambda status: status["state"] == "carrying-out", last="/muster/status")
-    told = (True, "mission mission is paused; the robots were told to stand")
-    assert user.call("/command_interface/pause") == told
-    time.sleep(1.0)
-    assert carried.poll() is None
-    assert user.call("/command_interface/start") == (True, "mission mission goes on")
-    out, err = carried.communicate(timeout=40)
-    assert carried.returncode == 0, err
-    assert set(json.loads(out)["tasks_done"]) == {*(f"t_{k}" for k in range(1, 7)), "extra"}
-    states = [json.loads(data["data"])["state"] for topic, data in heard.heard() if topic == "/muster/status"]
-    order = [state for k, state in enumerate(states) if state != (states[k - 1] if k else None)]
-    begun = ["waiting", "gathering", "planning", "carrying-out"]
-    assert order[order.index("waiting") :] == [*begun, "paused", "carrying-out", "ended"]
-
-
 def test_a_robot_without_a_pose_is_one_line(ros, mission):
     carried = ros.muster(mission, "--wait", "0.5")
     out, err = carried.communicate(timeout=20)
