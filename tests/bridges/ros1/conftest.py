@@ -130,7 +130,12 @@ class Listener:
         self._until_quiet()
         self._process.send_signal(signal.SIGTERM)
         self._process.communicate(timeout=10)
-        return [json.loads(line) for line in self._file.read_text(encoding="utf-8").splitlines()]
+        return self.so_far()
+
+    def so_far(self):
+        """What it has heard up to now, in the same way, in whole lines."""
+        text = self._file.read_text(encoding="utf-8")
+        return [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()]
 
     def _until_quiet(self, quiet_s=0.5, within_s=5.0):
         """What was said last may still be on its way to a busy listener."""

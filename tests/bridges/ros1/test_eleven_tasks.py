@@ -4,6 +4,7 @@ Its work is as shipped: tasks, prerequisites, types, suitability, the ground pat
 """
 
 import json
+import math
 import re
 from itertools import pairwise
 
@@ -13,7 +14,7 @@ from muster import load
 from muster.cli.exits import DONE, STILL_MOVING
 from muster.library.shipped import mission_path
 
-SPEED, YAW_RATE, RADIUS = 1.2, 6.0, 0.3
+SPEED, YAW_RATE, RADIUS = 2.0, 6.0, 0.3
 ROBOTS = {"r_0": (-2.021, 1.461, "beta"), "r_1": (-2.023, -0.661, "epsilon"), "r_2": (-2.0, 0.4, "tau")}
 """The third is in no mission file: it is discovered. Its type can do what the two others can, but for the patrol."""
 
@@ -43,6 +44,8 @@ def test_eleven_tasks_are_done_by_two_after_the_third_was_killed(ros, mission):
     listener = ros.listener(
         *(f"/{robot}/cmd_vel=geometry_msgs/Twist" for robot in robots),
         *(f"/{robot}/task_sequence=std_msgs/String" for robot in robots),
+        "/r_0/odom=nav_msgs/Odometry",
+        "/tf=tf2_msgs/TFMessage",
         "/muster/events=std_msgs/String",
         "/system_monitor/robots=std_msgs/String",
     )
@@ -69,7 +72,8 @@ def test_eleven_tasks_are_done_by_two_after_the_third_was_killed(ros, mission):
 
     events = said(heard, "/muster/events")
     killed = next(event for event in events if event["kind"] == "robot_silent")
-    assert killed["robot"] == "r_1"
+    assert [event["robot"] for event in events if event["kind"] == "robot_silent"] == ["r_1"]
+    assert {"robot_joins", "replanned", "mission_ended"} <= {event["kind"] for event in events}
     assert [line for line in told if "robot joins: robot r_2" in line]
     begun = [event["time_s"] for event in events if event["kind"] == "starts" and event["robot"] == "r_1"]
     assert max(begun) < killed["time_s"]
@@ -88,5 +92,9 @@ def test_eleven_tasks_are_done_by_two_after_the_third_was_killed(ros, mission):
         assert all(abs(twist["linear"][axis]) < 1e-9 for twist in twists for axis in "yz")
     rows = {row["robot"]: row for row in said(heard, "/system_monitor/robots")[-1]}
     assert {robot: row["activity"] == "out" for robot, row in rows.items()} == {"r_0": False, "r_1": True, "r_2": False}
+    start = next(data["pose"]["pose"]["position"] for topic, data in heard if topic == "/r_0/odom")
+    assert math.dist((start["x"], start["y"]), ROBOTS["r_0"][:2]) < 0.01
+    frames = {one["child_frame_id"] for topic, data in heard if topic == "/tf" for one in data["transforms"]}
+    assert {"r_0/base_link", "muster/r_0", "muster/r_0/goal", "muster/r_2"} <= frames
     times = [event["time_s"] for event in events]
     assert all(a <= b for a, b in pairwise(times))
