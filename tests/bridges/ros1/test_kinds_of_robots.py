@@ -171,20 +171,6 @@ def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is(ros, one):
     assert "robot_joins" not in [json.loads(data["data"])["kind"] for topic, data in heard if topic == "/muster/events"]
 
 
-def test_a_robot_that_says_what_it_cannot_mean_does_not_join(own_ros, one):
-    own_ros.start(own_ros.file("robot.py"), "r_0", 0, 0)
-    own_ros.set("/wrong/muster", {"speed_mps": -1.0})
-    own_ros.set("/text/muster", "fast")
-    own_ros.set("/right/muster", {"speed_mps": 2.0})
-    for k, name in enumerate(("wrong", "text", "right")):
-        own_ros.start(own_ros.file("robot.py"), name, 5 + k, 5)
-    _, told = done(own_ros.muster(one, *QUICK))
-    assert [line.split()[-1] for line in told.splitlines() if "robot joins" in line] == ["right"]
-    text, wrong = sorted(line for line in told.splitlines() if "does not join" in line)
-    assert "text does not join: /text/muster" in text
-    assert "wrong does not join: /wrong/muster: speed_mps: -1.0; expected" in wrong
-
-
 def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path):
     """A stranger and a robot of the mission, driven by hand while another of the mission's is waited for in vain.
 
