@@ -1,4 +1,4 @@
-"""Real ROS 1: a master, robots and `muster ros` as processes of their own, and a listener that is none of ours; what goes wrong at the beginning."""
+"""Real ROS 1: a master, robots and `muster ros` as processes of their own, and a listener that is none of ours."""
 
 import json
 import math
