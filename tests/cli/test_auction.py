@@ -124,21 +124,25 @@ def test_a_network_that_loses_too_much_is_told(muster, three):
 # One robot of a team
 
 
-@pytest.fixture
-def ports():
+def free_ports(number):
     """Ports of this machine that are free at the moment."""
     import socket
     from contextlib import ExitStack
 
     with ExitStack() as stack:
-        sockets = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in "abc"]
+        sockets = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(number)]
         for each in sockets:
             each.bind(("127.0.0.1", 0))
-        return {robot: each.getsockname()[1] for robot, each in zip("abc", sockets, strict=True)}
+        return [each.getsockname()[1] for each in sockets]
 
 
-def robot(name, ports, *others, mission="three.yaml", key="key"):
-    peers = ",".join(f"{other}=127.0.0.1:{port}" for other, port in ports.items())
+@pytest.fixture
+def ports():
+    return dict(zip("abc", free_ports(3), strict=True))
+
+
+def robot(name, ports, *others, mission="three.yaml", key="key", named=True):
+    peers = ",".join(f"{other}=" * named + f"127.0.0.1:{port}" for other, port in ports.items() if other != name)
     address = ("--listen", f"127.0.0.1:{ports[name]}", "--connect", peers)
     return running("auction", mission, "--robot", name, "--key-file", key, *address, *others)
 
@@ -150,7 +154,9 @@ def ended(*processes):
 
 
 def test_three_processes_agree_and_say_who_is_there(three, ports):
-    processes = [robot(name, ports, "--linger", 1, "-o", f"{name}.json") for name in "abc"]
+    """Whether or not they are told under which name they find each other."""
+    own = {name: ("--linger", 1, "-o", f"{name}.json") for name in "abc"}
+    processes = [robot("a", ports, *own["a"]), *(robot(name, ports, *own[name], named=False) for name in "bc")]
     for name, (code, _, err) in zip("abc", ended(*processes), strict=True):
         assert code == 0
         for other in set("abc") - {name}:
@@ -161,17 +167,8 @@ def test_three_processes_agree_and_say_who_is_there(three, ports):
     assert sorted(task for route in plans[0] for task in route["tasks"]) == ["1", "2", "3"]
 
 
-def test_peers_need_no_names(three, ports):
-    def unnamed(name):
-        peers = ",".join(f"127.0.0.1:{port}" for other, port in ports.items() if other != name)
-        address = ("--listen", f"127.0.0.1:{ports[name]}", "--connect", peers)
-        return running("auction", three, "--robot", name, "--key-file", "key", *address, "--linger", 1)
-
-    assert [code for code, *_ in ended(*[unnamed(name) for name in "abc"])] == [0, 0, 0]
-
-
 def test_without_the_third_the_others_go_on_when_they_have_waited(three, ports):
-    processes = [robot(name, ports, "--wait", 6, "--linger", 1, "--format", "json") for name in "ab"]
+    processes = [robot(name, ports, "--wait", 4, "--linger", 1, "--format", "json") for name in "ab"]
     for code, out, err in ended(*processes):
         assert code == 0
         assert "all 2 agree" in err
@@ -208,17 +205,18 @@ def owned(kept):
 
 
 def test_of_two_processes_of_one_robot_the_first_ends_and_says_why(three, ports):
+    (spare,) = free_ports(1)
     first = robot("a", ports, "--wait", 50)
-    second = robot("b", ports, "--wait", 20, "--linger", 5)
+    second = robot("b", ports | {"a again": spare}, "--wait", 50, "--linger", 1, named=False)
     for line in second.stderr:
         if line == "a is there\n":
             break
-    elsewhere = {"a": ports["c"], "b": ports["b"]}  # not the port that the first has
-    third = robot("a", elsewhere, "--wait", 6, "--linger", 1)
+    third = robot("a", ports | {"a": spare}, "--wait", 50, "--linger", 1)  # not at the port that the first has
     [(code, out, err)] = ended(first)
     assert (code, out) == (2, "")
     assert err.endswith("a: another process has started under this name; expected one for each robot, this one ends\n")
-    assert [code for code, *_ in ended(second, third)] == [0, 0]
+    last = robot("c", ports | {"a": spare}, "--linger", 1)  # for whom the others wait
+    assert [code for code, *_ in ended(second, third, last)] == [0, 0, 0]
 
 
 def test_a_replay_of_the_campaign_needs_no_mission(muster):
@@ -238,7 +236,7 @@ def test_without_either_something_is_missing(muster):
 
 def test_another_key_is_told(muster, three, ports):
     assert muster("auction", "--new-key", "other")[0] == 0
-    processes = [robot("a", ports, "--wait", 10), robot("b", ports, "--wait", 10, key="other")]
+    processes = [robot("a", ports, "--wait", 6), robot("b", ports, "--wait", 6, key="other")]
     for name, (code, out, err) in zip("ab", ended(*processes), strict=True):
         assert (code, out) == (2, "")
         *_, last = err.splitlines()  # each may have said before that it is alone

@@ -120,7 +120,7 @@ tasks:
 def test_the_traffic_of_a_plan_is_forecast(muster, tmp_path):
     door, plan = tmp_path / "door.yaml", tmp_path / "plan.json"
     door.write_text(DOOR, encoding="utf-8")
-    assert muster("solve", door, "-q", "-o", plan)[0] == 0
+    assert muster("solve", door, "-a", "greedy", "-q", "-o", plan)[0] == 0
     code, out, _ = muster("traffic", door, "--plan", plan, "--format", "json")
     robots = json.loads(out)["plan"]["robots"]
     assert code == 0
@@ -144,7 +144,7 @@ def test_a_plan_that_breaks_rules_is_not_forecast(muster, tmp_path):
 def test_the_traffic_of_drones_is_not_forecast(muster, tmp_path):
     air, plan = tmp_path / "air.yaml", tmp_path / "plan.json"
     air.write_text(DOOR.replace("radius_m: 0.3", "radius_m: 0.3, kind: air"), encoding="utf-8")
-    assert muster("solve", air, "-q", "-o", plan)[0] == 0
+    assert muster("solve", air, "-a", "greedy", "-q", "-o", plan)[0] == 0
     code, _, err = muster("traffic", air, "--plan", plan)
     assert code == 2
     assert "no robot is of kind ground with a radius above 0" in err

@@ -17,8 +17,6 @@ KEY = bytes(32)
 GUARD_S = 120.0
 QUICK = Timeouts(retry_s=0.03, heartbeat_s=0.06)
 """For lossy transports of one machine."""
-CALM = Timeouts(retry_s=0.5, heartbeat_s=1.0, suspect_s=20.0, bid_s=30.0)
-"""For many robots on the cores of one busy machine: one that waits for a core is not silent."""
 
 
 class Team:

@@ -16,7 +16,7 @@ from muster.running.negotiation_trials import replay
 from muster.running.negotiation_trials.observer import Observer
 from muster.running.negotiation_trials.scenario import scenario_of
 
-RUNS, TIMED_RUNS, CHUNK = 100, 50, 25
+RUNS, TIMED_RUNS, CHUNK = 50, 25, 25
 
 
 @pytest.mark.parametrize("first", range(0, RUNS, CHUNK))
@@ -144,9 +144,10 @@ def test_a_fault_in_time_is_found(monkeypatch, fault):
     assert any(tried(seed).failures for seed in range(first, first + 20))
 
 
-@pytest.mark.parametrize("tried", [like_the_centre, calm, carried_out], ids=lambda tried: tried.__name__)
+@pytest.mark.parametrize("tried", [like_the_centre, calm], ids=lambda tried: tried.__name__)
 def test_nothing_fails_of_teams_at_work(tried):
-    assert {seed: what for seed in range(6) if (what := tried(seed).failures)} == {}
+    """For those that carry a mission out see test_carried_out."""
+    assert {seed: what for seed in range(4) if (what := tried(seed).failures)} == {}
 
 
 def test_scenes_have_everything():

@@ -60,19 +60,18 @@ def assert_all_agree(mission, processes):
     assert sorted(task for route in plans[0].routes for task in route.tasks) == sorted(t.id for t in mission.tasks)
 
 
-@pytest.mark.parametrize("loss", [0, 0.5])
-def test_all_agree_through_loss_and_delay(mission, loss):
-    with RealNetwork(ROBOTS, loss=loss, delay_s=0.05) as network:
+def test_all_agree_through_loss_and_delay(mission):
+    with RealNetwork(ROBOTS, loss=0.5, delay_s=0.05) as network:
         assert_all_agree(mission, start(network, "--linger", "2"))
 
 
 def test_all_agree_when_a_cut_has_healed(mission):
     with RealNetwork(ROBOTS, delay_s=0.05, loss=0.1) as network:
         processes = start(
-            network, "--wait", "50", "--linger", "10"
+            network, "--wait", "50", "--linger", "7"
         )  # nobody leaves before the cut, or with half the team
         time.sleep(1.5)
         network.cut([1, 2, 3, 4], [5, 6])
-        time.sleep(6)  # longer than it takes to be taken for lost
+        time.sleep(4)  # longer than it takes to be taken for lost
         network.heal()
         assert_all_agree(mission, processes)

@@ -14,12 +14,12 @@ def expected(loss, heartbeats):
 
 
 def test_the_rate_is_that_of_runs_of_lost_beats():
-    seen = suspicion.rate(0.5, runs=12, seed=1)
+    seen = suspicion.rate(0.5, runs=6, seed=1)
     assert expected(0.5, 20)[0] < seen.low < seen.mean < seen.high < expected(0.5, 15)[1]
 
 
 def test_at_30_percent_loss_fewer_than_one_in_10000_pair_hours():
-    seen = suspicion.rate(0.3, runs=12, seed=2)
+    seen = suspicion.rate(0.3, runs=6, seed=2)
     assert 0 < seen.low < seen.high < 1e-4
     assert suspicion.bound(0.3) < 1e-4
 

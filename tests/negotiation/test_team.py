@@ -61,23 +61,12 @@ def exists(pid):
 
 
 @pytest.mark.parametrize("transport", TRANSPORTS)
-def test_twenty_processes_sell_fifty_tasks(transport):
-    problem = problem_of(20, 50)
-    with team_of(problem, transport=transport) as team:
-        views = until(team, team.agreement)
-        pids = list(team.pids.values())
-    assert len(views) == 20
-    assert_agreed(problem, views)
-    assert len(set(pids)) == 20
-    assert not any(exists(pid) for pid in pids)
-
-
-@pytest.mark.parametrize("transport", TRANSPORTS)
-def test_when_three_are_killed_in_the_middle_the_others_do_it_all(transport):
+def test_when_three_of_twenty_are_killed_in_the_middle_the_others_do_it_all(transport):
     problem = problem_of(20, 50)
     victims = ("r_0", "r_7", "r_13")
     with team_of(problem, transport=transport) as team:
         until(team, lambda: any(news.status.round >= 10 for news in team.progress.values()))
+        pids = set(team.pids.values())
         for robot in victims:
             os.kill(team.pids[robot], signal.SIGKILL)
         views = until(team, team.agreement)
@@ -85,6 +74,8 @@ def test_when_three_are_killed_in_the_middle_the_others_do_it_all(transport):
         assert set(team.ended.values()) == {"killed by SIGKILL"}
     assert len(views) == 17
     assert_agreed(problem, views)
+    assert len(pids) == 20
+    assert not any(exists(pid) for pid in pids)
 
 
 def test_without_faults_it_is_the_plan_of_the_auction_in_one_process():
@@ -131,7 +122,7 @@ with team_of(problem_of(4, 400)) as team:
 """
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_robots_end_with_the_one_that_started_them(how):
     starter = subprocess.Popen(
         [sys.executable, "-c", STARTER], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

@@ -1,4 +1,4 @@
-"""Datagrams on loopback."""
+"""Datagrams on loopback. For a large team see test_team."""
 
 import socket
 
@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
-from tests.negotiation.teams import CALM, QUICK, Lossy, Team, agree
+from tests.negotiation.teams import QUICK, Lossy, Team, agree
 
 from muster.mission.errors import NetworkError, ParameterError
 from muster.negotiation.udp import UdpTransport
@@ -163,13 +163,7 @@ def test_in_a_group_each_takes_what_is_for_all_and_for_itself():
 
 def test_two_robots_agree():
     team = Team("auction-1", bid="total")
-    assert agree([team.node(r, transport) for r, transport in transports(team.robots).items()]) == team.central_routes()
-
-
-def test_twenty_robots_agree():
-    team = Team("auction-3-seeded", CALM, bid="total")
-    assert len(team.robots) == 20
-    nodes = [team.node(robot, transport) for robot, transport in transports(team.robots).items()]
+    nodes = [team.node(r, transport) for r, transport in transports(team.robots).items()]
     assert agree(nodes) == team.central_routes()
     assert all(not node.status().refused for node in nodes)
 

@@ -28,10 +28,8 @@ from muster.running.worlds import world_named
 from muster.simulation import KinematicWorld, Noise
 
 NOISE = Noise(position_m=0.1, heading_rad=0.05, slip=0.05)
-WORLDS = [
-    "kinematic",
-    pytest.param("physics", marks=pytest.mark.skipif(find_spec("mujoco") is None, reason="needs the extra `physics`")),
-]
+needs_physics = pytest.mark.skipif(find_spec("mujoco") is None, reason="needs the extra `physics`")
+WORLDS = ["kinematic", pytest.param("physics", marks=needs_physics)]
 
 
 class Watched(EstimatedWorld):
@@ -94,9 +92,18 @@ def test_filters_learn_what_wheels_slip_and_gyros_have_too_much():
         assert slip == pytest.approx(0.025, abs=0.008)  # of 0 to 0.05 in each step
 
 
-@pytest.mark.parametrize("world", WORLDS)
 @pytest.mark.parametrize("name", ["6T-2R-actions", "11T-2R", "market-rescue-arena", "auction-1"])
-def test_all_tasks_are_done_where_robots_err(name, world):
+def test_all_tasks_are_done_where_robots_err(name):
+    all_are_done_by_robots_that_err(name, "kinematic")
+
+
+@needs_physics
+@pytest.mark.parametrize("name", ["6T-2R-actions", "auction-1"])
+def test_all_tasks_are_done_where_bodies_err(name):
+    all_are_done_by_robots_that_err(name, "physics")
+
+
+def all_are_done_by_robots_that_err(name, world):
     mission = muster.load(name)
     noise = replace(NOISE, velocity=0.05, odometry=0.02, gyro_radps=0.01, gyro_bias_radps=0.01, accelerometer_mps2=0.1)
     report = carry_out(mission, muster.solve(mission, iterations=100), world=world, noise=noise, seed=2)

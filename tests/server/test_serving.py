@@ -22,7 +22,7 @@ async def _app(scope, receive, send):
 
 async def _told(*pieces):
     """What a server answers to these pieces, until it ends the connection or has completed nothing for a while."""
-    config = uvicorn.Config(_app, http=PatientProtocol, log_config=None, lifespan="off")
+    config = uvicorn.Config(_app, http=PatientProtocol, log_config=None, lifespan="off", timeout_keep_alive=1)
     config.load()
     state = ServerState()
     loop = asyncio.get_running_loop()

@@ -170,10 +170,14 @@ def asked_to_arm(drone):
 )
 def test_what_drones_do_at_the_end(mission, port, sky, end, mode, more, capsys):
     drone = sky(speed=1.0 if more else 8.0)
-    assert fly(mission, port, "--arm", "--quiet", "--at-end", end, *more) == (STILL_MOVING if end == "hold" else DONE)
+    how = ("--arm", "--quiet", "--format", "json", "--at-end", end, *more)
+    assert fly(mission, port, *how) == (STILL_MOVING if end == "hold" else DONE)
     assert drone.mode == mode  # the command has waited for that
     state = {"hold": "hovers, armed", "return": "returned, landed, not armed", "land": "landed, not armed"}[end]
-    assert capsys.readouterr().err.startswith(f"r_0: {state}; at (")
+    said = capsys.readouterr()
+    assert said.err.startswith(f"r_0: {state}; at (")
+    report = json.loads(said.out)
+    assert (report["tasks_done"], report["tasks_lost"]) == (["near"], [])
     _, east, down = drone.flight.place
     assert east == pytest.approx(0.0 if end == "return" else 10.0, abs=1.0)
     assert down == pytest.approx(-5.0 if end == "hold" else 0.0, abs=1.0)
@@ -196,13 +200,6 @@ def test_what_would_be_sent_as_json(mission, port, drone, capsys):
     assert (line["robot"], line["task"], line["hold_s"]) == ("r_0", "near", 0.0)
     assert (line["lat_deg"], line["lon_deg"]) == pytest.approx((35.53, 24.0601103), abs=1e-6)
     assert line["above_home_m"] == pytest.approx(5.0, abs=1e-3)
-
-
-def test_the_report_as_json(mission, port, drone, capsys):
-    assert fly(mission, port, "--arm", "--format", "json", "--at-end", "land") == DONE
-    report = json.loads(capsys.readouterr().out)
-    assert report["tasks_done"] == ["near"]
-    assert report["tasks_lost"] == []
 
 
 def test_a_drone_that_fails_is_named_with_its_reason_and_its_task_is_lost(mission, port, sky, capsys):

@@ -17,6 +17,8 @@ from muster.bridges.ros1.extra import require_rospy
 from muster.bridges.ros1.master import running_master
 from muster.mission.errors import MissingExtraError
 
+NODES = {"/muster", "/command_interface", "/system_monitor", "/mission_planner"}
+"""Those of the command; the last three are processes of their own, which may be there after robots drive."""
 GUARD_S = 120.0
 """No process of these tests takes so long."""
 ENDLESS = ("odom", "pose", "tf", "clock")
@@ -128,7 +130,12 @@ class Listener:
         self._until_quiet()
         self._process.send_signal(signal.SIGTERM)
         self._process.communicate(timeout=10)
-        return [json.loads(line) for line in self._file.read_text(encoding="utf-8").splitlines()]
+        return self.so_far()
+
+    def so_far(self):
+        """What it has heard up to now, in the same way, in whole lines."""
+        text = self._file.read_text(encoding="utf-8")
+        return [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()]
 
     def _until_quiet(self, quiet_s=0.5, within_s=5.0):
         """What was said last may still be on its way to a busy listener."""

@@ -8,6 +8,7 @@ from tests.bridges.ros1.conftest import own_words
 
 from muster import load, solve
 from muster.cli.exits import STILL_MOVING
+from muster.cli.main import run
 from muster.motion.frames import quaternion_rotation
 
 ONE = """
@@ -19,10 +20,14 @@ tasks:
 """
 IN_SPACE = """
 schema: muster/1
-robots: [{id: d_0, position: [0, 0, 1], kind: air, kinematics: quadcopter, speed_mps: 3, radius_m: 0.3}]
+robots:
+  - {id: r_0, position: [0, 0, 0], speed_mps: 3, yaw_rate_radps: 6, radius_m: 0.2, kinematics: differential-drive}
+  - {id: d_0, position: [0, 5, 1], kind: air, kinematics: quadcopter, speed_mps: 3, radius_m: 0.3, skills: [fly]}
 tasks:
-  - {id: t_1, position: [2, 0, 3]}
-  - {id: t_2, position: [2, 2, 1.5], duration_s: 0.5}
+  - {id: t_1, position: [2, 0, 0]}
+  - {id: t_2, position: [2, 2, 0]}
+  - {id: high, position: [2, 5, 3], requires: [fly]}
+  - {id: low, position: [2, 7, 1.5], requires: [fly], duration_s: 0.5}
 """
 QUICK = ("--time-limit", "0.2", "--format", "json")
 
@@ -51,13 +56,25 @@ def nearest(points, place):
     return min(math.dist(point, place) for point in points)
 
 
-def test_poses_in_a_frame_count_as_tf_ties_it_to_the_map(ros, one):
-    ros.start(ros.file("robot.py"), "r_0", 0, 0, "frame=r_0/odom", "tied")
-    listener = ros.listener("/r_0/odom=nav_msgs/Odometry")
-    tasks, err = done(ros.muster(one, *QUICK))
-    assert set(tasks) == {"t_1", "t_2"}
-    assert "begins at" not in err  # it stands where the mission says
-    said = places(listener.heard(), "/r_0/odom")
+def test_a_plan_is_carried_out_from_where_robots_stand_in_their_frames_and_in_the_air(ros, tmp_path):
+    (tmp_path / "m.yaml").write_text(IN_SPACE, encoding="utf-8")
+    plan = solve(load(tmp_path / "m.yaml"), "greedy").as_dict()
+    route = next(route for route in plan["routes"] if route["robot"] == "r_0")
+    route["tasks"] = ["t_1", "t_2"]  # from where it stands the other way round would be shorter
+    (tmp_path / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
+    ros.start(ros.file("robot.py"), "r_0", 1, 3, "frame=r_0/odom", "tied")
+    ros.robot("d_0", 0, 5, "--kind", "air", "--kinematics", "quadcopter", "--height", 1)
+    listener = ros.listener("/r_0/odom=nav_msgs/Odometry", "/d_0/odom=nav_msgs/Odometry")
+    tasks, err = done(ros.muster("m.yaml", *QUICK, "--plan", "plan.json"), STILL_MOVING)
+    assert set(tasks) == {"t_1", "t_2", "high", "low"}
+    assert tasks.index("t_1") < tasks.index("t_2")
+    (begins,) = [line for line in err.splitlines() if "begins at" in line]  # the drone stands where the mission says
+    assert begins == "robot r_0 begins at (1.00, 3.00, 0.00), where it stands, not at (0.00, 0.00, 0.00): 3.16 m away"
+    assert "d_0: hovers; at (" in err
+    heard = listener.heard()
+    flown = places(heard, "/d_0/odom")
+    assert max(nearest(flown, (2, 5, 3)), nearest(flown, (2, 7, 1.5))) < 0.15
+    said = places(heard, "/r_0/odom")
     assert nearest(said, (2 * 0 + 5, 10 - 2, 0)) < 0.15  # t_1, seen from its own frame
     assert nearest(said, (2 + 5, 10 - 2, 0)) < 0.15
 
@@ -92,31 +109,21 @@ def test_odometry_that_begins_at_the_start_counts_from_there(ros, tmp_path):
     assert ahead == pytest.approx([math.cos(math.radians(30)), 0.0, -0.5], abs=1e-6)
 
 
-def test_motion_capture_says_where_robots_are(ros, one):
-    """As vrpn_client_ros does: poses on a topic of its own, in its own frame. The monitor hears it too."""
-    topic = "/vrpn_client_node/{robot}/pose"
-    ros.start(ros.file("robot.py"), "r_0", 0, 0, "pose", "topic=/vrpn_client_node/r_0/pose", "frame=map")
-    listener = ros.listener("/r_0/status=std_msgs/String")
-    tasks, err = done(ros.muster(one, *QUICK, "--poses", topic))
-    assert set(tasks) == {"t_1", "t_2"}
-    rows = [json.loads(data["data"]) for _, data in listener.heard()]
-    assert max(row["usage_m"] for row in rows) > 2.0
-    _, err = ros.muster(one, *QUICK, "--poses", "/vrpn_client_node/r_0/pose").communicate(timeout=20)
-    assert "expected a topic such as /vrpn_client_node/{robot}/pose" in err
+def test_what_motion_capture_sees_is_steered_and_drawn_for_rviz(ros, one):
+    """As vrpn_client_ros does: poses on a topic of its own. The monitor hears it too.
 
-
-def test_who_finds_the_way_itself_is_not_steered(ros, one):
-    _, err = ros.muster(one, *QUICK, "--avoidance", "rvo", "--drive", "goals").communicate(timeout=20)
-    assert err == "--avoidance rvo with --drive goals; expected --drive cmd_vel\n"
-
-
-def test_tasks_routes_and_robots_are_drawn_for_rviz(ros, one):
-    """Of robots that are steered by the method that is asked for: the thesis' node RVO_planner."""
+    Steered by the method that is asked for: the thesis' node RVO_planner.
+    """
     pytest.importorskip("visualization_msgs", reason="python3-visualization-msgs is not installed")
-    ros.robot("r_0", 0, 0)
-    listener = ros.listener("/muster/markers=visualization_msgs/MarkerArray")
-    tasks, _ = done(ros.muster(one, *QUICK, "--markers", "--avoidance", "rvo", "--allocator", "greedy"))
-    drawn = [data["markers"] for _, data in listener.heard()]
+    ros.start(ros.file("robot.py"), "r_0", 0, 0, "pose", "topic=/vrpn_client_node/r_0/pose")
+    listener = ros.listener("/r_0/status=std_msgs/String", "/muster/markers=visualization_msgs/MarkerArray")
+    asked = ("--poses", "/vrpn_client_node/{robot}/pose", "--markers", "--avoidance", "rvo", "--allocator", "greedy")
+    tasks, _ = done(ros.muster(one, *QUICK, *asked))
+    assert set(tasks) == {"t_1", "t_2"}
+    heard = listener.heard()
+    rows = [json.loads(data["data"]) for topic, data in heard if topic == "/r_0/status"]
+    assert max(row["usage_m"] for row in rows) > 2.0
+    drawn = [data["markers"] for topic, data in heard if topic == "/muster/markers"]
     first, last = ([marker for marker in some if marker["action"] == 0] for some in (drawn[1], drawn[-1]))
     assert all(marker["header"]["frame_id"] == "map" for marker in first)
     assert [m["text"] for m in first if m["ns"] == "names"] == ["t_1", "t_2", "r_0"]
@@ -128,28 +135,21 @@ def test_tasks_routes_and_robots_are_drawn_for_rviz(ros, one):
         [m["color"]["g"] for m in some if m["ns"] == "tasks"] for some in (first, last)
     )
     assert open_last == done_last != done_first  # both are done at the end
-    assert set(tasks) == {"t_1", "t_2"}
 
 
-def test_a_frame_that_nothing_ties_to_the_map_is_one_line(ros, one):
-    ros.start(ros.file("robot.py"), "r_0", 0, 0, "frame=lost")
-    carried = ros.muster(one, "--wait", "4")
-    out, err = carried.communicate(timeout=20)
-    assert (carried.returncode, out) == (2, "")
-    said = "robot r_0: its poses are in frame lost, which tf does not tie to map within 4 s; expected its pose\n"
-    assert own_words(err) == said
-
-
-def test_drones_fly_to_the_heights_of_tasks(ros, tmp_path):
-    (tmp_path / "m.yaml").write_text(IN_SPACE, encoding="utf-8")
-    own = ("--kind", "air", "--kinematics", "quadcopter", "--height", 1)
-    ros.robot("d_0", 0, 0, *own)
-    listener = ros.listener("/d_0/odom=nav_msgs/Odometry")
-    tasks, err = done(ros.muster("m.yaml", *QUICK), STILL_MOVING)
-    assert set(tasks) == {"t_1", "t_2"}
-    assert err.splitlines()[-1].startswith("d_0: hovers; at (")
-    said = places(listener.heard(), "/d_0/odom")
-    assert max(nearest(said, (2, 0, 3)), nearest(said, (2, 2, 1.5))) < 0.15
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--avoidance", "rvo", "--drive", "goals"), "--avoidance rvo with --drive goals; expected --drive cmd_vel\n"),
+        (("--poses", "/vrpn/r_0/pose"), "expected a topic such as /vrpn_client_node/{robot}/pose"),
+    ],
+)
+def test_options_that_cannot_be_meant_are_one_line(rospy_there, one, monkeypatch, tmp_path, capsys, options, said):
+    monkeypatch.chdir(tmp_path)
+    assert run(["ros", one, *QUICK, *options]) == 2
+    err = capsys.readouterr().err
+    assert said in err
+    assert err.count("\n") == 1
 
 
 def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is(ros, one):
@@ -171,35 +171,13 @@ def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is(ros, one):
     assert "robot_joins" not in [json.loads(data["data"])["kind"] for topic, data in heard if topic == "/muster/events"]
 
 
-def test_a_plan_is_carried_out_from_where_the_robot_stands(ros, one, tmp_path):
-    plan = solve(load(tmp_path / one), "greedy").as_dict()
-    (route,) = plan["routes"]
-    route["tasks"] = ["t_1", "t_2"]  # from where it stands the other way round would be shorter
-    (tmp_path / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
-    ros.start(ros.file("robot.py"), "r_0", 1, 3)
-    tasks, err = done(ros.muster(one, *QUICK, "--plan", "plan.json"))
-    assert tasks == ["t_1", "t_2"]
-    assert "robot r_0 begins at (1.00, 3.00), where it stands, not at (0.00, 0.00): 3.16 m away\n" in err
+def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path):
+    """A stranger and a robot of the mission, driven by hand while another of the mission's is waited for in vain.
 
-
-def test_a_robot_that_says_what_it_cannot_mean_does_not_join(own_ros, one):
-    own_ros.start(own_ros.file("robot.py"), "r_0", 0, 0)
-    own_ros.set("/wrong/muster", {"speed_mps": -1.0})
-    own_ros.set("/text/muster", "fast")
-    own_ros.set("/right/muster", {"speed_mps": 2.0})
-    for k, name in enumerate(("wrong", "text", "right")):
-        own_ros.start(own_ros.file("robot.py"), name, 5 + k, 5)
-    _, told = done(own_ros.muster(one, *QUICK))
-    assert [line.split()[-1] for line in told.splitlines() if "robot joins" in line] == ["right"]
-    text, wrong = sorted(line for line in told.splitlines() if "does not join" in line)
-    assert "text does not join: /text/muster" in text
-    assert "wrong does not join: /wrong/muster: speed_mps: -1.0; expected" in wrong
-
-
-@pytest.mark.parametrize("drive", ["cmd_vel", "goals"])
-def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path, drive):
-    """A stranger and a robot of the mission, driven by hand while another of the mission's is waited for in vain."""
+    For who is driven by goals see test_fleet.
+    """
     (tmp_path / "m.yaml").write_text(ONE.replace("robots: [", "robots: [{id: r_1, position: [5, 5]}, "), "utf-8")
+    own_ros.start(own_ros.file("robot.py"), "r_1", 5, 5, "frame=lost")
     moved = ("joy", "r_0")
     for k, name in enumerate(moved):
         own_ros.start(own_ros.file("robot.py"), name, 0, k, "by_hand=1.0")
@@ -209,10 +187,11 @@ def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path, drive):
         *(f"/{name}/odom=nav_msgs/Odometry" for name in moved),
         "/tf=tf2_msgs/TFMessage",
     )
-    carried = own_ros.muster("m.yaml", "--wait", "4", "--drive", drive)
+    carried = own_ros.muster("m.yaml", "--wait", "4")
     out, err = carried.communicate(timeout=30)
     assert (carried.returncode, out) == (2, "")
-    assert own_words(err).startswith("robot r_1: nothing on /r_1/odom or /r_1/pose within 4 s")
+    said = "robot r_1: its poses are in frame lost, which tf does not tie to map within 4 s; expected its pose\n"
+    assert own_words(err) == said
     heard = listener.heard()
     met = {one["child_frame_id"] for topic, data in heard if topic == "/tf" for one in data["transforms"]}
     assert {"muster/joy", "muster/r_0"} <= met

@@ -8,9 +8,8 @@ from itertools import groupby, pairwise
 from pathlib import Path
 
 import pytest
-from tests.bridges.ros1.conftest import own_words
+from tests.bridges.ros1.conftest import NODES, own_words
 
-NODES = {"/muster", "/command_interface", "/system_monitor", "/mission_planner"}
 QUICK = ("--time-limit", "0.2", "--format", "json")
 ROBOT = "{id: r_0, position: [0, 0], speed_mps: 3, yaw_rate_radps: 6, radius_m: 0.2, kinematics: differential-drive}"
 
@@ -125,11 +124,27 @@ def read_json(process):
     raise AssertionError(process.stderr.read())
 
 
+SIX = """index,x,y,type,actuation_cost,prerequisites
+1,1,0,D,0.5,
+2,2,0,D,0.5,[1]
+3,3,0,E,0.5,"[1,2]"
+"""
+SUITABILITY = "robot_type,D,E\nbeta,0.9,0.9\nzeta,0.9,0.0\n"
+
+
 def test_without_a_mission_robots_are_watched_and_planned_for(ros):
-    carried = ros.muster(*QUICK)
-    ros.robot("r_0", 0, 0)
-    ros.robot("r_7", 4, 5, "--heading", 90)
+    """And a task list is carried out by them: [tcf-thesis], 5.2: command_interface takes the name of one."""
+    (ros.folder / "six.csv").write_text(SIX, encoding="utf-8")
+    (ros.folder / "types.csv").write_text(SUITABILITY, encoding="utf-8")
+    carried = ros.muster(*QUICK, "--allocator", "greedy")
     user = ros.user()
+    user.until(NODES.issubset, nodes=True)
+    user.do(set="/command_interface/mission", to="six.csv")
+    told = "robots: none; expected some in the mission, or some that publish odom or pose"
+    assert user.call(LOAD) == (False, told)
+
+    ros.robot("r_0", 0, 0, "--type", "beta")
+    ros.robot("r_7", 4, 5, "--heading", 90, "--type", "zeta")
     both = {"r_0", "r_7"}
     rows = user.until(
         lambda rows: {row["robot"] for row in rows if row["position"]} == both, last="/system_monitor/robots"
@@ -160,88 +175,72 @@ def test_without_a_mission_robots_are_watched_and_planned_for(ros):
     user.do(set="/mission_planner/planning", to={"allocator": "greedi"})
     succeeded, message = user.call("/mission_planner/plan")
     assert (succeeded, "greedi" in message, "greedy" in message) == (False, True, True)
-    assert carried.poll() is None
+    user.do(set="/mission_planner/planning", to={"allocator": "greedy"})
 
+    # a mission that names no robots is for those that are heard
+    nobody = NEAR.replace(f"robots:\n  - {ROBOT}\n", "robots: []\n")
+    for node in ("command_interface", "mission_planner"):
+        user.do(set=f"/{node}/mission", to=nobody)
+    told = "mission near: 2 of 2 tasks by 2 robots, r_0, r_7 from where they stand"
+    assert user.call("/mission_planner/plan") == (True, told)
+    assert user.call(LOAD) == (True, "mission near: 2 robots, 2 tasks; start begins it")
 
-SIX = """index,x,y,type,actuation_cost,prerequisites
-1,1,0,D,0.5,
-2,2,0,D,0.5,[1]
-3,3,0,E,0.5,"[1,2]"
-"""
-SUITABILITY = "robot_type,D,E\nbeta,0.9,0.9\nzeta,0.9,0.0\n"
-
-
-def test_a_task_list_is_loaded_for_the_robots_that_are_heard(ros):
-    """[tcf-thesis], 5.2: command_interface takes the name of a task list; the robots are those on ROS."""
-    (ros.folder / "six.csv").write_text(SIX, encoding="utf-8")
-    (ros.folder / "types.csv").write_text(SUITABILITY, encoding="utf-8")
-    carried = ros.muster(*QUICK, "--allocator", "greedy")
-    user = ros.user()
-    user.until(NODES.issubset, nodes=True)
-    user.do(set="/command_interface/mission", to="six.csv")
-    told = "robots: none; expected some in the mission, or some that publish odom or pose"
-    assert user.call(LOAD) == (False, told)
-    ros.robot("r_0", 0, 0, "--type", "beta")
-    ros.robot("r_1", 0, 4, "--type", "zeta")
-    user.until(lambda rows: len([row for row in rows if row["position"]]) == 2, last="/system_monitor/robots")
+    # and so is a task list
+    for node in ("command_interface", "mission_planner"):
+        user.do(set=f"/{node}/mission", to="six.csv")
     user.do(set="/command_interface/suitability", to="types.csv")
     assert user.call(LOAD) == (True, "mission six: 2 robots, 3 tasks; start begins it")
-    assert user.call("/mission_planner/plan")[0]  # of the mission that was loaded
-    assert "3" in user.do(last="/r_0/task_sequence")  # r_1's type does no E
+    assert user.call("/mission_planner/plan")[0]
+    assert "3" in user.do(last="/r_0/task_sequence")  # r_7's type does no E
     assert user.call(START)[0]
     out, err = carried.communicate(timeout=30)
     assert carried.returncode == 0, err
     assert set(json.loads(out)["tasks_done"]) == {"1", "2", "3"}
 
 
-def test_a_mission_without_robots_is_for_those_that_are_heard(ros):
-    carried = ros.muster(*QUICK)
-    ros.robot("r_0", 0, 0)
-    ros.robot("r_9", 9, 9)
-    user = ros.user()
-    user.until(lambda rows: len([row for row in rows if row["position"]]) == 2, last="/system_monitor/robots")
-    nobody = NEAR.replace(f"robots:\n  - {ROBOT}\n", "robots: []\n")
-    for node in ("command_interface", "mission_planner"):
-        user.do(set=f"/{node}/mission", to=nobody)
-    told = "mission near: 2 of 2 tasks by 2 robots, r_0, r_9 from where they stand"
-    assert user.call("/mission_planner/plan") == (True, told)
-    assert user.call(LOAD) == (True, "mission near: 2 robots, 2 tasks; start begins it")
-    assert carried.poll() is None
-
-
-def test_a_task_is_added_and_planned_for_by_whom_robots_have(ros):
+def test_tasks_are_added_and_a_mission_begins_pauses_and_goes_on_when_told(ros):
     (ros.folder / "near.yaml").write_text(NEAR, encoding="utf-8")
     ros.robot("r_0", 0, 0)
-    carried = ros.muster("near.yaml", *QUICK, "--on-start")
-    user = ros.user()
     topics = ("/muster/events", "/mission_planner/plan", "/muster/status")
     heard = ros.listener(*(f"{topic}=std_msgs/String" for topic in topics))
+    carried = ros.muster("near.yaml", *QUICK, "--on-start")
+    user = ros.user()
     state_is(user, "waiting")
     for text in ('{"id": "more", "position": [3, 0]}', '{"id": "wrong", "position": "here"}'):
         user.do(publish="/command_interface/add_task", text=text)
     time.sleep(0.5)  # topics have no answer
     assert user.call(START)[0]
+    state_is(user, "carrying-out")
+    user.do(publish="/command_interface/add_task", text='{"id": "late", "position": [4, 0]}')
+    assert user.call(PAUSE) == (True, "mission near is paused; the robots were told to stand")
+    time.sleep(1.2)  # longer than it takes to say again how it stands
+    assert carried.poll() is None
+    assert user.call(START) == (True, "mission near goes on")
     out, err = carried.communicate(timeout=30)
     assert carried.returncode == 0, err
-    assert set(json.loads(out)["tasks_done"]) == {"t_1", "t_2", "more"}
+    assert set(json.loads(out)["tasks_done"]) == {"t_1", "t_2", "more", "late"}
     said = [(topic, json.loads(data["data"])) for topic, data in heard.heard()]
     status = [data for topic, data in said if topic == "/muster/status"]
-    under_way = [data for data in status if data["state"] == "carrying-out"]
-    assert [done for done, _ in groupby(data["tasks_done"] for data in under_way)] == [0, 1, 2, 3]
+    states = [state for state, _ in groupby(data["state"] for data in status)]
+    begun = ["waiting", "gathering", "planning", "carrying-out"]
+    assert states[states.index("waiting") :] == [*begun, "paused", "carrying-out", "ended"]
+    under_way = [data for data in status if data["state"] in ("carrying-out", "paused")]
+    assert [done for done, _ in groupby(data["tasks_done"] for data in under_way)] == [0, 1, 2, 3, 4]
     times = [data["time_s"] for data in under_way]
     assert times[0] == 0.0
     assert times == sorted(times)
     assert all(b - a < 1.5 for a, b in pairwise(times))
     ends = [data["time_s"] for topic, data in said if topic == "/muster/events" and data["kind"] == "ends"]
     assert max(times) >= ends[-1] > 1.0
-    assert status[-1] | {"time_s": 0} == {"state": "ended", "mission": "near", "tasks_done": 3, "time_s": 0}
+    assert status[-1] | {"time_s": 0} == {"state": "ended", "mission": "near", "tasks_done": 4, "time_s": 0}
     events = [data for topic, data in said if topic == "/muster/events"]
     assert [event["reason"].split(";")[0] for event in events if event["kind"] == "event_refused"] == [
         'add_task: position: "here"'
     ]
     plans = [data["task_sequences"]["r_0"] for topic, data in said if topic == "/mission_planner/plan"]
     assert plans[0] == ["t_1", "t_2"]
-    assert plans[-1] == ["t_1", "t_2", "more"]
+    assert ["t_1", "t_2", "more"] in plans
+    assert "late" in plans[-1]
 
 
 def test_a_node_that_dies_ends_the_whole(ros):
@@ -264,15 +263,16 @@ def test_a_node_that_dies_ends_the_whole(ros):
     assert twists[-1]["linear"]["x"] == 0
 
 
-@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP])
-def test_a_master_that_goes_away_ends_the_whole(own_ros, end):
+def test_a_master_that_hangs_ends_the_whole(own_ros):
+    """For one that has ended, for a while, see test_failures."""
     (own_ros.folder / "far.yaml").write_text(FAR, encoding="utf-8")
     robot = own_ros.robot("r_0", 0, 0)
     user = own_ros.user()
     carried = own_ros.muster("far.yaml", *QUICK, "--quiet")
     state_is(user, "carrying-out")
+    user.until(NODES.issubset, nodes=True)  # one that begins without a master is what would be told
     children = family(carried)
-    own_ros.master.send_signal(end)
+    own_ros.master.send_signal(signal.SIGSTOP)
     out, err = carried.communicate(timeout=30)
     assert (carried.returncode, out) == (2, "")
     line = f"ROS master: {own_ros.master.address}: no answer for 5 s; expected it to stay"

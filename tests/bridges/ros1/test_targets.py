@@ -21,12 +21,12 @@ YARD = """
 schema: muster/1
 name: yard
 robots:
-  - {id: d_0, position: [0, 0, 3], kind: air, kinematics: quadcopter, skills: [look], speed_mps: 1, yaw_rate_radps: 3,
+  - {id: d_0, position: [0, 0, 3], kind: air, kinematics: quadcopter, skills: [look], speed_mps: 2, yaw_rate_radps: 3,
      camera: {fov_deg: 60, tilt_deg: 60, mount: [0.1, 0, 0], width_px: 320, height_px: 240, rate_hz: 3}}
   - {id: r_0, position: [0, 4, 0], skills: [carry], speed_mps: 3, yaw_rate_radps: 6, kinematics: differential-drive,
      radius_m: 0.2}
 tasks:
-  - {id: look, position: [3, 0, 3], requires: [look], duration_s: 4}
+  - {id: look, position: [3, 0, 3], requires: [look], duration_s: 3}
 tags:
   - {id: 7, position: [4.8, 0.3, 0], heading_deg: 40, size_m: 0.5}
 found:
@@ -45,7 +45,7 @@ def _messages(rospy_there):
 
 
 def drone(ros):
-    more = ("--kind", "air", "--kinematics", "quadcopter", "--speed", 1, "--yaw-rate", 3, "--height", 3)
+    more = ("--kind", "air", "--kinematics", "quadcopter", "--speed", 2, "--yaw-rate", 3, "--height", 3)
     return ros.start("-m", "muster.bridges.ros1.simulated_robot", "d_0", "--at", 0, 0, *more)
 
 
@@ -53,25 +53,39 @@ def camera(ros, *arguments):
     return ros.start("-m", "muster.cli.uav_camera", "d_0", *arguments)
 
 
-@pytest.mark.parametrize("locate", ["ground", "size"])
-def test_what_a_drone_sees_becomes_a_task_of_another_robot(ros, locate):
-    """The rover's task is known to nobody until the drone's camera has seen the tag."""
+def test_what_a_drone_sees_becomes_a_task_of_another_robot_whose_laser_shows_obstacles(ros):
+    """The rover's task is known to nobody until the drone's camera has seen the tag.
+
+    Before that the rover, at (1, 2), heading north, sees a wall of 1 m two metres ahead of it.
+    """
     (ros.folder / "yard.yaml").write_text(YARD, encoding="utf-8")
     drone(ros)
-    ros.robot("r_0", 0, 4)
+    ros.robot("r_0", 1, 2, "--heading", 90)
     seen = camera(ros, "--mission", "yard.yaml")
-    topics = ("/target_localization/points", "/d_0/tags", "/muster/events")
+    topics = ("/target_localization/points", "/r_0/obstacles", "/muster/events")
     heard = ros.listener(
         *(f"{topic}=std_msgs/String" for topic in topics),
         "/d_0/camera/camera_info=sensor_msgs/CameraInfo",
         "/tf_static=tf2_msgs/TFMessage",
     )
-    carried = ros.muster("yard.yaml", *QUICK, "--find-targets", "--locate", locate)
+    carried = ros.muster("yard.yaml", *QUICK, "--find-targets", "--locate", "size", "--on-start")
+    user = ros.user()
+    user.until(bool, publishers="/target_localization/points")
+    scanner = Scanner(field_rad=math.pi, step_rad=math.radians(0.5))
+    ranges = scanner.ranges((1.0, 2.0, math.pi / 2), np.array([[0.5, 4.0, 1.5, 4.0]]))
+    for _ in range(20):
+        user.do(scan="/r_0/scan", ranges=ranges.tolist(), first=scanner.bearings[0], step=math.radians(0.5))
+    assert user.call("/command_interface/start")[0]
     out, err = carried.communicate(timeout=60)
     assert carried.returncode == 0, err
     assert set(json.loads(out)["tasks_done"]) == {"look", "found-7"}
     assert seen.poll() is None
     messages = heard.heard()
+    seen_there = [json.loads(data["data"]) for topic, data in messages if topic == topics[1]]
+    (wall,) = seen_there[-1]["obstacles"]
+    assert wall["shape"] == "line"
+    assert wall["position"] == pytest.approx([1.0, 4.0], abs=0.05)
+    assert sorted(x for x, _ in wall["edges"]) == [pytest.approx(0.3, abs=0.06), pytest.approx(1.7, abs=0.06)]
     points = [json.loads(data["data"]) for topic, data in messages if topic == topics[0]][-1]
     assert [(row["tag"], row["task"], row["robots"]) for row in points] == [(7, "found-7", ["d_0"])]
     assert math.dist(points[0]["position"], (4.8, 0.3)) < 0.15
@@ -86,26 +100,6 @@ def test_what_a_drone_sees_becomes_a_task_of_another_robot(ros, locate):
     }
     mount = frames["d_0/camera"]["transform"]
     assert (frames["d_0/camera"]["header"]["frame_id"], mount["translation"]["x"]) == ("d_0/base_link", 0.1)
-
-
-def test_a_laser_scan_shows_obstacles_on_the_map(ros):
-    """A robot at (1, 2), heading north, sees a wall of 1 m two metres ahead of it."""
-    (ros.folder / "yard.yaml").write_text(YARD, encoding="utf-8")
-    ros.robot("r_0", 1, 2, "--heading", 90)
-    ros.muster("yard.yaml", *QUICK, "--find-targets", "--on-start")
-    user = ros.user()
-    user.until(lambda status: status["state"] == "waiting", last="/muster/status")
-    heard = ros.listener("/r_0/obstacles=std_msgs/String")
-    user.until(bool, publishers="/target_localization/points")
-    scanner = Scanner(field_rad=math.pi, step_rad=math.radians(0.5))
-    ranges = scanner.ranges((1.0, 2.0, math.pi / 2), np.array([[0.5, 4.0, 1.5, 4.0]]))
-    for _ in range(20):
-        user.do(scan="/r_0/scan", ranges=ranges.tolist(), first=scanner.bearings[0], step=math.radians(0.5))
-    seen = json.loads(heard.heard()[-1][1]["data"])
-    (wall,) = seen["obstacles"]
-    assert wall["shape"] == "line"
-    assert wall["position"] == pytest.approx([1.0, 4.0], abs=0.05)
-    assert sorted(x for x, _ in wall["edges"]) == [pytest.approx(0.3, abs=0.06), pytest.approx(1.7, abs=0.06)]
 
 
 def test_images_from_files_are_published_with_their_calibration(ros):

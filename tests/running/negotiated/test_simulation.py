@@ -93,10 +93,10 @@ def test_when_all_robots_fail_the_mission_ends_with_what_was_done():
 def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
     mission = Mission(
         robots=tuple(Robot(id=f"r_{k}", position=(30.0 * k, 0.0), radius_m=0.3) for k in range(2)),
-        tasks=tuple(Task(id=str(k), position=(30.0 * k, 8.0), duration_s=60.0) for k in range(2)),
+        tasks=tuple(Task(id=str(k), position=(30.0 * k, 8.0), duration_s=20.0) for k in range(2)),
         events=(
             Event(at_s=1, robot_silent="r_0"),
-            Event(at_s=160, robot_returns="r_0"),
+            Event(at_s=100, robot_returns="r_0"),
         ),
     )
     report, told = carried_out(mission)
@@ -109,7 +109,7 @@ def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
 
 def test_tasks_that_must_not_be_done_twice_wait_for_who_is_cut_off():
     mission = line(
-        [Event(at_s=1, robot_silent="r_0"), Event(at_s=60, robot_returns="r_0")], across_partition="at-most-once"
+        [Event(at_s=1, robot_silent="r_0"), Event(at_s=45, robot_returns="r_0")], across_partition="at-most-once"
     )
     report, told = carried_out(mission)
     assert not report.tasks_lost

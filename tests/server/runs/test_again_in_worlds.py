@@ -35,7 +35,7 @@ def kinds(log):
 def test_robots_that_err(world):
     mission = muster.load("6T-2R")
     asked = [(5.0, "event", {"robot_fails": "r_0"}), (9.0, "pause", {}), (9.0, "resume", {})]
-    plain = killed_anywhere(mission, asked, world=world)
+    plain = killed_anywhere(mission, asked, shares=(0.3,), world=world)
     noisy = killed_anywhere(mission, asked, world=world, settings={"seed": 3, "noise": NOISE})
     assert "robot_fails" in kinds(plain) & kinds(noisy)
     assert plain != noisy

@@ -6,7 +6,7 @@ import os
 import signal
 from itertools import pairwise
 
-from tests.server.databases import database_url, postgresql, postgresql_url
+from tests.server.databases import postgresql, postgresql_url
 from tests.server.runs.process import serving, until
 from tests.server.runs.store import ADA, planned
 from tests.server.services.opened import TINY
@@ -16,7 +16,7 @@ from muster.server.services.services import open_services
 from muster.server.settings import Settings
 from muster.server.store.store import Store
 
-__all__ = ["database_url", "postgresql", "postgresql_url"]
+__all__ = ["postgresql", "postgresql_url"]
 
 
 async def watched(runs, run, holds=lambda said: False):
@@ -51,9 +51,10 @@ def judge(store, run, tasks, resumed):
     return log
 
 
-def test_a_run_is_killed_and_resumed_by_the_next_server(database_url):
+def test_a_run_is_killed_and_resumed_by_the_next_server(postgresql_url):
+    """On SQLite see test_runs and the campaign."""
     mission = muster.load("31T-6R50")
-    settings = Settings(database=database_url, workers=1)
+    settings = Settings(database=postgresql_url, workers=1)
 
     async def first():
         async with open_services(settings) as services:
@@ -126,9 +127,9 @@ def test_a_server_on_postgresql_is_killed_and_another_goes_on(postgresql_url):
     with serving(postgresql_url) as first:
         job = first.http.post("/missions/6T-2R/plans", json={"iterations": 10}).json()["id"]
         plan = until(lambda: first.http.get(f"/jobs/{job}").json()["result"])["plan"]
-        run = first.http.post("/runs", json={"plan": plan, "speed": 5}).json()["id"]
+        run = first.http.post("/runs", json={"plan": plan, "speed": 10}).json()["id"]
         until(lambda: len(first.http.get(f"/runs/{run}/events").json()) > 5)
-        waits = first.http.post("/missions/6T-2R/plans", json={"time_limit": 2}).json()["id"]
+        waits = first.http.post("/missions/6T-2R/plans", json={"time_limit": 1}).json()["id"]
         first.kill()
     with serving(postgresql_url) as again:
         assert (

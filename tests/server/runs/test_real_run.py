@@ -1,23 +1,19 @@
-"""Drones of a simulated autopilot, in real time: paused, and found again after a kill of their runner or server."""
+"""Drones of a simulated autopilot, in real time: paused, and found again after their server was killed."""
 
-import asyncio
-import json
-import os
-import signal
 import socket
 import subprocess
 import sys
+import time
 from collections import Counter
 
 import pytest
 from tests.bridges.mavlink.drones import ORIGIN
 from tests.server.runs.process import gone, serving, until
-from tests.server.runs.store import ADA, planned, settings_of
+from tests.server.runs.store import planned
 
 from muster.bridges.mavlink.dialect import mavlink
 from muster.bridges.mavlink.simulated_earth import origin_at
 from muster.mission.model import Mission, Robot, Rules, Task
-from muster.server.services.runs import Runs
 from muster.server.store.store import Store
 
 ONCE = {"across_partition": "at-most-once"}
@@ -53,43 +49,6 @@ def sky():
         drone.wait()
 
 
-def test_drones_are_found_again_and_what_may_be_begun_once_is(store, sky):
-    there = mission()
-    plan = planned(store, there)
-
-    async def story():
-        runs = Runs(store, settings_of(store, bridges=("mavlink",)))
-        run = await runs.start(ADA, plan, "mavlink", endpoints=sky, arm=True)
-        at_work = False
-        async for text in runs.subscribers(run.id).watch(0):
-            said = json.loads(text)
-            what = (said.get("kind"), said.get("data", {}).get("task"))
-            if what == ("ends", "t_0"):
-                await runs.act(ADA, run.id, "pause")
-                await asyncio.sleep(1.0)
-                await runs.act(ADA, run.id, "resume")
-            if what == ("starts", "once") and not at_work:
-                at_work = True
-                os.kill(runs.pid(run.id), signal.SIGKILL)
-        while runs.subscribers(run.id) is not None:
-            await asyncio.sleep(0.02)
-        await runs.close()
-        return store.runs.get(run.id), store.log.entries(run.id)
-
-    run, log = asyncio.run(story())
-    assert (run.state, run.resumed, run.remark) == ("ended", 1, "")
-    assert Counter(run.report["tasks_done"]) == dict.fromkeys(("t_0", "t_1", "u_0"), 1)
-    (lost,) = run.report["tasks_lost"]
-    assert lost["task"] == "once"
-    assert "may be begun at most once" in lost["reason"]
-    assert Counter(e.data["task"] for e in log if e.kind == "starts")["once"] == 1
-    assert [entry.seq for entry in log] == list(range(1, len(log) + 1))
-    assert sum(row["usage_flown"] for row in run.report["robots"]) > 36
-    pause, resume = (entry for entry in log if entry.kind == "command")
-    assert (pause.data["outcome"], resume.data["outcome"]) == ("done", "done")
-    assert resume.time_s - pause.time_s < 0.8  # of the second that it lasted: the mission's clock stood still
-
-
 def heard(endpoint, seconds):
     """Where a drone says that it is, while nobody else listens: (lat, lon, height, speed) in 1e-7 deg, mm, cm/s."""
     said, reader = [], mavlink.MAVLink(None)
@@ -103,7 +62,8 @@ def heard(endpoint, seconds):
     return [place for _, *place in said]
 
 
-def test_drones_stand_when_the_server_is_killed_and_go_on_when_it_is_back(tmp_path, sky):
+def test_drones_stand_when_the_server_is_killed_and_what_may_be_begun_once_is(tmp_path, sky):
+    """For who kills their runner alone see test_ros."""
     database = f"sqlite:///{tmp_path / 'muster.db'}"
     store = Store.open(database)
     there = mission()
@@ -111,12 +71,20 @@ def test_drones_stand_when_the_server_is_killed_and_go_on_when_it_is_back(tmp_pa
     with serving(database, "--bridge", "mavlink") as first:
         run = first.http.post("/runs", json=body).json()["id"]
 
-        def done(server):
-            log = server.http.get(f"/runs/{run}/events").json()
-            return {entry["data"]["task"] for entry in log if entry["kind"] == "ends"}
+        def happened(kind):
+            log = first.http.get(f"/runs/{run}/events").json()
+            return {entry["data"]["task"] for entry in log if entry["kind"] == kind}
 
-        until(lambda: len(done(first)) >= 2)
-        before = done(first)
+        def ask(verb):
+            assert first.http.post(f"/runs/{run}/actions", json={"verb": verb}).status_code == 202
+            until(lambda: store.actions.list(run=run)[0].outcome == "done")
+
+        until(lambda: happened("ends"))
+        ask("pause")
+        time.sleep(1.0)
+        ask("resume")
+        until(lambda: "once" in happened("starts"))
+        before = happened("ends")
         (runner,) = first.children("muster.server.runs.runner")
         first.kill()
         until(lambda: gone(runner))
@@ -129,10 +97,18 @@ def test_drones_stand_when_the_server_is_killed_and_go_on_when_it_is_back(tmp_pa
         again.end()
     found, log = store.runs.get(run), store.log.entries(run)
     store.close()
-    assert (found.state, found.resumed) == ("ended", 1)
-    told = [*found.report["tasks_done"], *(lost["task"] for lost in found.report["tasks_lost"])]
-    assert sorted(told) == sorted(task.id for task in there.tasks)
+    assert (found.state, found.resumed, found.remark) == ("ended", 1, "")
+    assert Counter(found.report["tasks_done"]) == dict.fromkeys(("t_0", "t_1", "u_0"), 1)
+    (lost,) = found.report["tasks_lost"]
+    assert lost["task"] == "once"
+    assert "may be begun at most once" in lost["reason"]
+    assert Counter(e.data["task"] for e in log if e.kind == "starts")["once"] == 1
+    assert sum(row["usage_flown"] for row in found.report["robots"]) > 36
     (resumed,) = (entry for entry in log if entry.kind == "resumed")
+    assert before
     assert not before & {entry.data["task"] for entry in log[resumed.seq :] if entry.kind in ("sets_out", "starts")}
     assert Counter(e.data["task"] for e in log if e.kind == "ends") == Counter(found.report["tasks_done"])
     assert [entry.seq for entry in log] == list(range(1, len(log) + 1))
+    pause, resume = (entry for entry in log if entry.kind == "command")
+    assert (pause.data["outcome"], resume.data["outcome"]) == ("done", "done")
+    assert resume.time_s - pause.time_s < 0.8  # of the second that it lasted: the mission's clock stood still

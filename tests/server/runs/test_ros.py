@@ -28,7 +28,7 @@ def mission(kinematics):
     )
     tasks = [Task(id="t_1", position=(4.0, 0.0)), Task(id="t_2", position=(4.0, 3.0))]
     tasks += [Task(id=f"t_{k}", position=(8.0, 3.0 * (k - 3)), duration_s=1.0) for k in (3, 4)]
-    tasks += [Task(id="t_5", position=(11.0, 0.0), prerequisites=("t_3",)), Task(id="t_6", position=(11.0, 3.0))]
+    tasks += [Task(id="t_5", position=(9.0, 0.0), prerequisites=("t_3",))]
     return Mission(robots=robots, tasks=tuple(tasks))
 
 
