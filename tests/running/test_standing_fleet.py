@@ -26,7 +26,7 @@ def test_a_minute_of_twenty_robots_with_a_burst_loses_nothing():
 def test_the_same_orders_are_done_in_the_same_way_each_time():
     def carried_out():
         mission = replace(fleet(2), robots=fleet(2).robots[:5])
-        standing = Standing(orders=list(orders(2, 30.0)), until_s=30.0)
+        standing = Standing(orders=list(orders(2, 20.0)), until_s=20.0)
         with closing(Simulation(mission, muster.solve(mission, "greedy"), standing=standing)) as simulation:
             while not simulation.done:
                 simulation.advance(simulation.time_s + 10.0)

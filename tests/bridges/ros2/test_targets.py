@@ -32,11 +32,11 @@ YARD = """
 schema: muster/1
 name: yard
 robots:
-  - {id: d_0, position: [0, 0, 3], kind: air, skills: [look], speed_mps: 1, yaw_rate_radps: 3,
+  - {id: d_0, position: [0, 0, 3], kind: air, skills: [look], speed_mps: 2, yaw_rate_radps: 3,
      camera: {fov_deg: 60, tilt_deg: 60, mount: [0.1, 0, 0], width_px: 320, height_px: 240, rate_hz: 3}}
   - {id: r_0, position: [0, 4, 0], skills: [carry], speed_mps: 3, radius_m: 0.2}
 tasks:
-  - {id: look, position: [3, 0, 3], requires: [look], duration_s: 5}
+  - {id: look, position: [3, 0, 3], requires: [look], duration_s: 3}
 tags:
   - {id: 7, position: [4.8, 0.3, 0], heading_deg: 40, size_m: 0.5}
 found:
