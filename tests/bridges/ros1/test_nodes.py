@@ -206,12 +206,12 @@ def test_tasks_are_added_and_a_mission_begins_pauses_and_goes_on_when_told(ros):
     carried = ros.muster("near.yaml", *QUICK, "--on-start")
     user = ros.user()
     state_is(user, "waiting")
-    for text in ('{"id": "more", "position": [3, 0]}', '{"id": "wrong", "position": "here"}'):
+    for text in ('{"id": "more", "position": [12, 0]}', '{"id": "wrong", "position": "here"}'):
         user.do(publish="/command_interface/add_task", text=text)
     time.sleep(0.5)  # topics have no answer
     assert user.call(START)[0]
-    state_is(user, "carrying-out")
-    user.do(publish="/command_interface/add_task", text='{"id": "late", "position": [4, 0]}')
+    user.until(lambda plan: "more" in plan["task_sequences"]["r_0"], last="/mission_planner/plan")
+    user.do(publish="/command_interface/add_task", text='{"id": "late", "position": [13, 0]}')
     assert user.call(PAUSE) == (True, "mission near is paused; the robots were told to stand")
     time.sleep(1.2)  # longer than it takes to say again how it stands
     assert carried.poll() is None
