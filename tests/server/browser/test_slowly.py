@@ -9,6 +9,7 @@ import httpx
 import pytest
 from nicegui import Client as PageClient
 from nicegui import core, ui
+from tests.server.serving import served as serving
 
 from muster.client import Client
 from muster.exchange.mission_control import StoreError
@@ -20,6 +21,12 @@ pytestmark = pytest.mark.xdist_group("slowly")
 
 MISSION = "6T-2R"
 SCENE_MS = 90_000
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    with serving(tmp_path_factory.mktemp("slowly")) as url:
+        yield url
 
 
 @pytest.fixture
