@@ -25,6 +25,7 @@ SCENE_MS = 90_000
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory):
+    """Not that of conftest, which is another process: what is patched here would not reach it."""
     with serving(tmp_path_factory.mktemp("slowly")) as url:
         yield url
 
