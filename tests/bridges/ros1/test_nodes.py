@@ -263,8 +263,9 @@ def test_a_node_that_dies_ends_the_whole(ros):
     assert twists[-1]["linear"]["x"] == 0
 
 
-def test_a_master_that_hangs_ends_the_whole(own_ros):
-    """For one that has ended, for a while, see test_failures."""
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_master_that_goes_away_ends_the_whole(own_ros, end):
+    """It refuses connections, or hangs. For one that is back in time see test_failures."""
     (own_ros.folder / "far.yaml").write_text(FAR, encoding="utf-8")
     robot = own_ros.robot("r_0", 0, 0)
     user = own_ros.user()
@@ -272,7 +273,7 @@ def test_a_master_that_hangs_ends_the_whole(own_ros):
     state_is(user, "carrying-out")
     user.until(NODES.issubset, nodes=True)  # one that begins without a master is what would be told
     children = family(carried)
-    own_ros.master.send_signal(signal.SIGSTOP)
+    own_ros.master.send_signal(end)
     out, err = carried.communicate(timeout=30)
     assert (carried.returncode, out) == (2, "")
     line = f"ROS master: {own_ros.master.address}: no answer for 5 s; expected it to stay"
