@@ -16,6 +16,7 @@ from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster_studies.effort import Effort
 from muster_studies.jams.scenes import KINEMATICS, SCENES
+from muster_studies.jams.space_time import space_time_s
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.tables import Cell, Table
 
@@ -24,11 +25,11 @@ RESERVE, ALONE = "reserve", "none"
 """Planned traffic; and robots that drive through each other, which is a bound."""
 DEFAULT, SPACE_TIME = "auto", "space-time"
 """What Muster chooses; and paths of a yardstick, which nobody drives."""
-_BESIDE = (DEFAULT, RESERVE, SPACE_TIME, ALONE)
+_CALLED = {ALONE: "alone"}
+"""Names of columns that are not those of methods."""
+_FIGURES = ("runs", "done %", "s", "out", "jams", "touched")
 SEEDS, QUICK_SEEDS = 5, 1
 _QUICK_SCENES = ("face to face, 2", "one-way door, 20")
-_NARROW_SCENES = ("one-way door, 20", "two-way door, 20", "aisles, 6", "dead ends, 6")
-_SWAPPING_SCENES = ("one-way door, 20", "two-way door, 20", "corridor, 20", "circle, 50", "streams, 40")
 _NOTES = (
     "done: tasks done in all runs, per cent; s: the median of the mission times, with the way back where there is one; "
     "out: robots put out; jams: told as traffic_jam; touched: pairs of robots. Plans by greedy.",
@@ -81,8 +82,6 @@ def outcome_of(job: Job) -> Outcome:
 
 def _yardstick(mission: Mission, seed: int) -> Outcome:
     """What space-time A* comes to: all tasks, or none where it finds no paths."""
-    from muster_studies.jams.space_time import space_time_s
-
     time_s, tasks = space_time_s(mission, seed), len(mission.tasks)
     return Outcome(tasks, 0 if time_s is None else tasks, 0, 0, 0, math.inf if time_s is None else time_s, 0.0)
 
@@ -92,7 +91,7 @@ class Jams:
     """A row for each scene, kinematics and method."""
 
     number: str = "methods"
-    columns: tuple[str, ...] = ("scene", "kinematics", "method", "runs", "done %", "s", "out", "jams", "touched")
+    columns: tuple[str, ...] = ("scene", "kinematics", "method", *_FIGURES)
 
     def jobs(self, effort: Effort) -> Iterator[Job]:
         for scene, kinematics, method in self._rows(effort):
@@ -104,13 +103,13 @@ class Jams:
                 scene,
                 kinematics,
                 method,
-                *_figures([found[job] for job in _runs(scene, kinematics, method, effort)]),
+                *_figures([found[job] for job in _runs(scene, kinematics, method, effort)]).values(),
             )
             for scene, kinematics, method in self._rows(effort)
         ]
         for method in METHODS:
             runs = [outcome for job, outcome in found.items() if job.method == method]
-            rows.append(("all", "", method, *_figures(runs)))
+            rows.append(("all", "", method, *_figures(runs).values()))
         return Table(
             self.number, "Methods of avoidance in narrow places", self.columns, tuple(rows), _NOTES, decimals=1
         )
@@ -123,67 +122,62 @@ class Jams:
 
 
 @dataclass(frozen=True)
-class Reserved:
-    """A row for each scene with passages for one, and each kinematics."""
-
-    number: str = "traffic"
-    columns: tuple[str, ...] = ("scene", "kinematics", "runs", "done %", "s", "out", "jams", "touched", "alone s")
-
-    def jobs(self, effort: Effort) -> Iterator[Job]:
-        for scene, kinematics in self._rows(effort):
-            for method in (RESERVE, ALONE):
-                yield from _runs(scene, kinematics, method, effort)
-
-    def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
-        rows = []
-        for scene, kinematics in self._rows(effort):
-            together, alone = (
-                _figures([found[job] for job in _runs(scene, kinematics, method, effort)])
-                for method in (RESERVE, ALONE)
-            )
-            rows.append((scene, kinematics, *together, alone[2]))
-        notes = (*_NOTES, "alone: robots drive through each other.")
-        return Table(self.number, "Planned traffic in narrow places", self.columns, tuple(rows), notes, decimals=1)
-
-    def _rows(self, effort: Effort) -> Iterator[tuple[str, str]]:
-        for scene in _QUICK_SCENES if effort.quick else _NARROW_SCENES:
-            for kinematics in KINEMATICS:
-                yield scene, kinematics
-
-
-@dataclass(frozen=True)
 class Beside:
-    """A row for each scene in which robots have one goal each, and each kinematics."""
+    """A row for each scene and kinematics: figures of the first method, and the times of the others."""
 
-    number: str = "space-time"
-    columns: tuple[str, ...] = (
-        *("scene", "kinematics", "runs", "done %", "s", "out", "touched"),
-        *("reserve s", "space-time s", "alone s"),
-    )
+    number: str
+    title: str
+    scenes: tuple[str, ...]
+    quick_scenes: tuple[str, ...]
+    methods: tuple[str, ...]
+    shown: tuple[str, ...]
+    """Of `_FIGURES`."""
+    notes: tuple[str, ...]
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        return "scene", "kinematics", *self.shown, *(f"{_CALLED.get(method, method)} s" for method in self.methods[1:])
 
     def jobs(self, effort: Effort) -> Iterator[Job]:
         for scene, kinematics in self._rows(effort):
-            for method in _BESIDE:
+            for method in self.methods:
                 yield from _runs(scene, kinematics, method, effort)
 
     def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
         rows = []
         for scene, kinematics in self._rows(effort):
-            flown, *others = (
-                _figures([found[job] for job in _runs(scene, kinematics, method, effort)]) for method in _BESIDE
+            first, *others = (
+                _figures([found[job] for job in _runs(scene, kinematics, method, effort)]) for method in self.methods
             )
-            runs, done, median_s, out, _, touched = flown
-            rows.append((scene, kinematics, runs, done, median_s, out, touched, *(other[2] for other in others)))
-        notes = (
-            *_NOTES,
-            "space-time: prioritised space-time A* over a grid of 0.65 m, at full speed and without turns.",
-        )
-        return Table(self.number, "Default settings beside space-time A*", self.columns, tuple(rows), notes, decimals=1)
+            rows.append((scene, kinematics, *(first[name] for name in self.shown), *(other["s"] for other in others)))
+        return Table(self.number, self.title, self.columns, tuple(rows), (*_NOTES, *self.notes), decimals=1)
 
     def _rows(self, effort: Effort) -> Iterator[tuple[str, str]]:
-        for scene in _QUICK_SCENES[1:] if effort.quick else _SWAPPING_SCENES:
+        for scene in self.quick_scenes if effort.quick else self.scenes:
             for kinematics in KINEMATICS:
                 yield scene, kinematics
+
+
+RESERVED = Beside(
+    number="traffic",
+    title="Planned traffic in narrow places",
+    scenes=("one-way door, 20", "two-way door, 20", "aisles, 6", "dead ends, 6"),
+    quick_scenes=_QUICK_SCENES,
+    methods=(RESERVE, ALONE),
+    shown=_FIGURES,
+    notes=("alone: robots drive through each other.",),
+)
+"""Scenes with passages for one."""
+SWAPPING = Beside(
+    number="space-time",
+    title="Default settings beside space-time A*",
+    scenes=("one-way door, 20", "two-way door, 20", "corridor, 20", "circle, 50", "streams, 40"),
+    quick_scenes=_QUICK_SCENES[1:],
+    methods=(DEFAULT, RESERVE, SPACE_TIME, ALONE),
+    shown=tuple(name for name in _FIGURES if name != "jams"),
+    notes=("space-time: prioritised space-time A* over a grid of 0.65 m, at full speed and without turns.",),
+)
+"""Scenes in which robots have one goal each."""
 
 
 def _runs(scene: str, kinematics: str, method: str, effort: Effort) -> list[Job]:
@@ -191,14 +185,14 @@ def _runs(scene: str, kinematics: str, method: str, effort: Effort) -> list[Job]
     return [Job(scene, kinematics, method, seed) for seed in range(seeds)]
 
 
-def _figures(runs: list[Outcome]) -> tuple[Cell, ...]:
+def _figures(runs: list[Outcome]) -> dict[str, Cell]:
     done = 100 * sum(run.done for run in runs) / sum(run.tasks for run in runs)
     median_s = statistics.median(run.mission_time_s for run in runs)
     counts = (sum(getattr(run, name) for run in runs) for name in ("out", "jams", "contacts"))
-    return len(runs), done, median_s, *counts
+    return dict(zip(_FIGURES, (len(runs), done, median_s, *counts), strict=True))
 
 
-_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Jams(), Reserved(), Beside())
+_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Jams(), RESERVED, SWAPPING)
 
 JAMS = Repetition(
     name="jams",
