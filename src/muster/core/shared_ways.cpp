@@ -42,7 +42,7 @@ Way SharedWays::alone(Traveller& who) const {
 }
 
 void SharedWays::improve(int tries, int lost) {
-  for (int sought = 0; !free_.empty();) {
+  for (int sought = 0; std::ranges::any_of(free_, [&](int k) { return ways_[k].end > alone_[k].end; });) {
     const int most = (cost().first > 0 ? lost : tries) * static_cast<int>(free_.size());
     if (sought >= most) return;
     const std::vector<int> group = neighbours();

@@ -24,7 +24,8 @@ class SharedWays {
  public:
   SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers, std::vector<int> order, std::uint64_t seed);
 
-  // Goes on until so many ways have been sought for each traveller; `lost` as many where some find none.
+  // Goes on while others delay somebody, until so many ways have been sought for each traveller; `lost` as many where
+  // some find none.
   void improve(int tries, int lost);
 
   Paths paths() const;
