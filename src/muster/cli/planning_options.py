@@ -18,11 +18,9 @@ from muster.mission.interrupts import on_ctrl_c
 from muster.mission.model import Mission
 from muster.mission.plan_reader import read_plan
 from muster.mission.value_types import shown
-from muster.motion.avoidance_names import AUTO as ANY_AVOIDANCE
-from muster.motion.laws import PROFILE
 from muster.planning.options import BOUNDS, DEFAULT_ALLOCATOR, HELP, PlanningOptions
 from muster.planning.request import Request
-from muster.traffic.names import AUTO, DEFAULT, FREE, TRAFFIC
+from muster.traffic.names import DEFAULT, TRAFFIC, of_run
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Stop
@@ -57,7 +55,8 @@ def _with_planning_options(verb: Verb, time_limit_s: float | None, carries_out: 
         if given["iterations"] is None and given["time_limit"] is None:
             given["time_limit"] = time_limit_s
         names = ("allocator", "objective", "ignore", "seed", "time_limit", "iterations", "bound", "rewire")
-        traffic = _traffic_of_run(given) if carries_out else given.pop("traffic")
+        how = {name: given[name] for name in ("avoidance", "law") if name in given}
+        traffic = of_run(given["traffic"], **how) if carries_out else given.pop("traffic")
         own = {name: given.pop(name) for name in names}
         options = PlanningOptions(parameters=parameters, traffic=traffic, **own)
         return verb(options=options, **given)
@@ -66,12 +65,6 @@ def _with_planning_options(verb: Verb, time_limit_s: float | None, carries_out: 
     for option in reversed(_declared(time_limit_s)):
         decorated = option(decorated)
     return cast("Verb", decorated)
-
-
-def _traffic_of_run(given: Mapping[str, Any]) -> str:
-    """How the traffic of a run is planned for: as it will be."""
-    free = given.get("avoidance", ANY_AVOIDANCE) != ANY_AVOIDANCE or given.get("law", PROFILE) != PROFILE
-    return FREE if free and given["traffic"] == AUTO else str(given["traffic"])
 
 
 def _declared(time_limit_s: float | None) -> tuple[Callable[[Any], Any], ...]:

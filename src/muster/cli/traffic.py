@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict
 from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
@@ -99,18 +98,15 @@ def _print_forecast(forecast: Forecast) -> None:
     """Print when robots have ended their routes, and how much of that they wait for others."""
     from muster.cli.plan_tables import print_traffic_times
     from muster.cli.tables import print_table
+    from muster.traffic.forecast import finite
 
     rows = [
-        (one.robot, number(one.alone_s), number(one.with_traffic_s), number(_finite(one.delay_s)))
+        (one.robot, number(one.alone_s), number(one.with_traffic_s), number(finite(one.delay_s)))
         for one in forecast.robots
     ]
     columns = ("robot", "alone [s]", "with traffic [s]", "more [s]")
     print_table(columns, rows, right=columns[1:])
     print_traffic_times(forecast.with_traffic_s, forecast.alone_s)
-
-
-def _finite(seconds: float) -> float | None:
-    return seconds if math.isfinite(seconds) else None
 
 
 def _warn(mission: Mission, made: MissionRoadmap) -> None:

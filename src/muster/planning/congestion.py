@@ -19,8 +19,9 @@ from muster.allocation.stop import Progress, Stop
 from muster.allocation.waiting import Waiting
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
-from muster.traffic.forecast import Forecast, drives, forecast
+from muster.traffic.forecast import Forecast, forecast
 from muster.traffic.managers import shared_roadmap
+from muster.traffic.names import drives
 from muster.traffic.passage_delays import PassageDelays
 from muster.traffic.roadmap_plan import RoadmapPlan
 
@@ -51,6 +52,7 @@ class SharedPassages:
 
     mission: Mission
     made: MissionRoadmap
+    _roads: RoadmapPlan
 
     @classmethod
     def of(cls, mission: Mission, traffic: str) -> SharedPassages | None:
@@ -64,11 +66,11 @@ class SharedPassages:
         made = shared_roadmap(traffic, mission)
         if made is None or (len(mission.robots) + len(mission.tasks)) * len(made.roadmap.edges) > _MOST:
             return None
-        return cls(mission, made)
+        return cls(mission, made, RoadmapPlan(made.roadmap, made.clear))
 
     def forecast(self, routes: Sequence[Route]) -> Forecast:
         """The traffic of routes that have their stops."""
-        return forecast(self.mission, {route.robot: route.stops for route in routes}, self._roads())
+        return forecast(self.mission, {route.robot: route.stops for route in routes}, self._roads)
 
     def told(self, plan: Plan) -> Plan:
         """The plan with its times with and without traffic; without them where it has no schedule."""
@@ -84,9 +86,6 @@ class SharedPassages:
         entries, exits = at[: len(at) // 2], at[len(at) // 2 :]
         robots = np.array([drives(robot) for robot in problem.robots], dtype=np.bool_)
         return replace(problem, known=problem.measured, waiting=Waiting(delays.between(exits, entries), robots)).ready()
-
-    def _roads(self) -> RoadmapPlan:
-        return RoadmapPlan(self.made.roadmap, self.made.clear)
 
 
 def spread(
@@ -200,15 +199,15 @@ class _Spreading:
 
     def _candidate(self, outcome: Outcome) -> _Candidate:
         """What routes come to with their traffic; nothing is forecast for who is in a hurry."""
-        weight, objective = self._problem.value(outcome.routes)
+        candidate = _Candidate(outcome, *self._problem.value(outcome.routes))
         if self._stop.interrupted:
-            return _Candidate(outcome, weight, objective)
+            return candidate
         began_s = self._stop.elapsed_s
-        routes = scheduled(self._problem, [list(route) for route in outcome.routes])
+        routes = scheduled(self._problem, candidate.routes)
         told = self._shared.forecast(routes)
         self.delays.learn(told)
         self._forecast_s = self._stop.elapsed_s - began_s
-        return _Candidate(outcome, weight, objective, _cost(self._problem, objective, routes, told), told)
+        return replace(candidate, cost=_cost(self._problem, candidate.objective, routes, told), told=told)
 
 
 def _cost(problem: Problem, objective: float, routes: Sequence[Route], told: Forecast) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.plan import Plan
 from muster.planning.judging import judged
 from muster.planning.request import Request
+from muster.traffic.names import may_reserve
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator, Outcome, Routes
@@ -65,7 +66,6 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     from muster.allocation.proofs import require_provable
     from muster.allocation.registry import allocator_of
     from muster.allocation.stop import Stop, usual_time_limit
-    from muster.planning.congestion import SharedPassages
 
     allocator = allocator_of(request.allocator)
     params = make_parameters(allocator, dict(request.parameters))
@@ -75,7 +75,7 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     limit = usual_time_limit(allocator.anytime, request.time_limit, request.iterations)
     report = None if on_progress is None else _with_bound(request, problem, on_progress)
     stop = Stop(iterations=request.iterations, time_limit=limit, on_progress=report, whole=interrupt)
-    shared = SharedPassages.of(request.mission, request.traffic)
+    shared = _shared_passages(request)
     if shared is not None and allocator.anytime:
         plan = _spread(request, allocator, params, problem, shared, stop, report)
     else:
@@ -85,6 +85,15 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
         plan = shared.told(plan)
     verdict = judged(request.mission, plan, request.ignore, request.objective)
     return Solution(plan=plan, verdict=verdict, why=why, iterations=stop.iterations_done, interrupted=stop.interrupted)
+
+
+def _shared_passages(request: Request) -> SharedPassages | None:
+    """The passages that robots share; what looks for them is imported where there can be any."""
+    if not may_reserve(request.traffic, request.mission):
+        return None
+    from muster.planning.congestion import SharedPassages
+
+    return SharedPassages.of(request.mission, request.traffic)
 
 
 def _spread(

@@ -9,7 +9,7 @@ from muster.motion.laws import PROFILE
 from muster.motion.map_world import World
 from muster.traffic.manager import TrafficManager
 from muster.traffic.managers import manager_named
-from muster.traffic.names import AUTO, RESERVE
+from muster.traffic.names import RESERVE, of_run
 from muster.traffic.roadmap import MARGIN_M
 
 LOOSE_MARGIN_M = 0.1
@@ -44,6 +44,5 @@ def manager_for(
     """
     if law != PROFILE and traffic == RESERVE:
         raise ParameterError(f"traffic: {traffic}; expected free: by law {law} robots leave straight ways")
-    if traffic == AUTO and (law != PROFILE or avoidance != ANY_AVOIDANCE):
-        return None
-    return manager_named(traffic, mission, seed, world=world, margin_m=MARGIN_M if exact else LOOSE_MARGIN_M)
+    chosen = of_run(traffic, avoidance=avoidance, law=law)
+    return manager_named(chosen, mission, seed, world=world, margin_m=MARGIN_M if exact else LOOSE_MARGIN_M)

@@ -11,6 +11,7 @@ from muster.mission.model import Mission, Robot
 from muster.mission.plan import RouteStop
 from muster.motion.actions import TaskMotion
 from muster.motion.actions import plan as motion_of
+from muster.traffic.names import drives
 from muster.traffic.roadmap_plan import Journey, RoadmapPlan
 from muster.traffic.travellers import Stop, Traveller
 
@@ -86,15 +87,10 @@ def forecast(mission: Mission, routes: Mapping[str, Sequence[RouteStop]], traffi
     together = traffic.journeys(travellers, ways=max(_LEAST_WAYS, _WAYS_EACH * len(travellers)))
     alone = [traffic.journeys([who], ways=1)[0] for who in travellers]
     robots = tuple(
-        RobotForecast(robot.id, _finite(among.end_s), _finite(by_itself.end_s))
+        RobotForecast(robot.id, finite(among.end_s), finite(by_itself.end_s))
         for robot, among, by_itself in zip(driving, together, alone, strict=True)
     )
     return Forecast(robots, tuple(together), tuple(alone))
-
-
-def drives(robot: Robot) -> bool:
-    """Whether a robot takes part in traffic."""
-    return robot.kind == "ground" and robot.radius_m > 0
 
 
 def _last(times_s: Sequence[float | None]) -> float | None:
@@ -102,7 +98,8 @@ def _last(times_s: Sequence[float | None]) -> float | None:
     return max(known) if len(known) == len(times_s) else None
 
 
-def _finite(seconds: float) -> float | None:
+def finite(seconds: float) -> float | None:
+    """Seconds that are known; None for inf and NaN."""
     return seconds if math.isfinite(seconds) else None
 
 

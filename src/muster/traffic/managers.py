@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
-from muster.mission.value_types import shown
 from muster.motion.map_world import World
 from muster.traffic.manager import TrafficManager
 from muster.traffic.mission_roadmap import MissionRoadmap
-from muster.traffic.names import AUTO, RESERVE, TRAFFIC
+from muster.traffic.names import AUTO, may_reserve
 from muster.traffic.reserved import ReservedTraffic
 from muster.traffic.roadmap import MARGIN_M
 from muster.traffic.roadmap_plan import RoadmapPlan
@@ -45,18 +42,11 @@ def shared_roadmap(
     Raises
     ------
     ParameterError
-        if there is none of that name, or `reserve` is asked for where no two robots drive on one roadmap.
+        as `may_reserve`.
     MissionError, MissingExtraError
         as `World.of`.
     """
-    if name not in TRAFFIC:
-        raise ParameterError(f"traffic: {shown(name)}; expected {', '.join(TRAFFIC)}{did_you_mean(str(name), TRAFFIC)}")
-    if name not in (AUTO, RESERVE):
-        return None
-    reason = _reason_against(mission)
-    if reason and name == RESERVE:
-        raise ParameterError(f"traffic: {name}; expected free: {reason}")
-    if reason or (name == AUTO and mission.lanes is None and mission.travel_rule != "map"):
+    if not may_reserve(name, mission):
         return None
     mapped = mission.travel_rule == "map"
     if mapped and world is None:
@@ -65,11 +55,3 @@ def shared_roadmap(
     if name == AUTO and mission.lanes is None and not shared.roadmap.narrow.any():
         return None
     return shared
-
-
-def _reason_against(mission: Mission) -> str:
-    """Why robots of a mission cannot share a roadmap; empty where they can."""
-    driving = [robot for robot in mission.all_robots if robot.kind == "ground" and robot.radius_m > 0]
-    if len(driving) < 2:
-        return "fewer than two robots of kind ground have a radius above 0"
-    return ""

@@ -16,6 +16,7 @@ from muster.mission.model import Robot
 from muster.motion.outlook import Outlook
 from muster.motion.port import RobotPort
 from muster.traffic.managed_port import ManagedPort
+from muster.traffic.names import drives
 from muster.traffic.part import Part, planar
 from muster.traffic.roadmap import MARGIN_M
 from muster.traffic.travellers import Planner, Point, Stop, Traveller
@@ -64,7 +65,7 @@ class ReservedTraffic:
 
     def managed(self, robot: Robot, port: RobotPort) -> RobotPort:
         """The port by which a robot is ordered; the port itself where no other that drives can run into it."""
-        if robot.radius_m <= 0 or robot.kind != "ground":
+        if not drives(robot):
             return port
         managed = ManagedPort(port)
         self._waiting.append((robot, managed))

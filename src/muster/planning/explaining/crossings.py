@@ -11,6 +11,7 @@ from muster.mission.model import Robot, Task
 from muster.motion.actions import TaskMotion, plan
 from muster.traffic.impossible_crossings import Crossings, Swap
 from muster.traffic.mission_roadmap import MissionRoadmap
+from muster.traffic.names import drives
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,7 @@ def blocked_ways(problem: Problem) -> tuple[BlockedWay, ...]:
     roadmap that is too large for that, nor of three robots or more.
     """
     mission = problem.mission
-    drives = any(robot.radius_m > 0 and robot.kind == "ground" for robot in mission.robots)
-    if not drives or (mission.map is None and mission.lanes is None):
+    if not any(map(drives, mission.robots)) or (mission.map is None and mission.lanes is None):
         return ()
     world = problem.robot_paths.world if mission.travel_rule == "map" else None
     return tuple(_Search(problem, MissionRoadmap.of(mission, world)).found())
