@@ -67,6 +67,19 @@ def test_points_and_bodies_of_another_kind_hold_nobody_up():
     assert waiting_among(standing("a", (0, 0), (5, 0)), standing("p", (0.5, 0), radius_m=0.0))[0] == {}
 
 
+def test_who_is_sent_another_way_that_is_longer_has_its_time_anew():
+    state = standing("a", (0, 0), (5, 0))
+    waits = TrafficWaits({"a": state})
+    told_m = {0.0: 5.0, 1.0: 4.9, 2.0: 4.8, 3.0: 20.0, 4.0: 19.9}
+    sent_round = {}
+    for now, left_m in told_m.items():
+        state.telemetry = replace(state.telemetry, left_m=left_m, order=state.order)
+        list(waits.look(now))
+        sent_round[now] = set(waits.sent_round)
+    assert sent_round == {0.0: set(), 1.0: set(), 2.0: set(), 3.0: {"a"}, 4.0: set()}
+    assert (waits.progress["a"].least_m, waits.progress["a"].since_s) == (20.0, 3.0)
+
+
 def test_a_short_halt_is_no_wait():
     found, waits = waiting_among(standing("a", (0, 0), (5, 0)), standing("b", (0.65, 0), (0.65, 5)), looks=2)
     assert found == {"a": ""}

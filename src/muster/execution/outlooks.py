@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from muster.execution.beginning import Beginning
+from muster.execution.changes import FAILED, SILENT
 from muster.execution.forecast import Forecast
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import Ledger
@@ -29,6 +30,8 @@ class Outlooks:
     def __call__(self, robot: str) -> Outlook:
         """Where a robot will go after where its last order leads."""
         state = self.crew[robot]
+        if state.out in (FAILED, SILENT):
+            return Outlook(gone=True)
         at_home = state.home is not None and state.at_home and not state.route
         if state.activity in (Activity.WAITING, Activity.RETURNING) or at_home:
             return Outlook(stays=True)

@@ -179,18 +179,34 @@ class RobotState:
 
     @property
     def points_left(self) -> list[Place]:
-        """The places of the last order that it has not passed."""
-        return [waypoint.position for waypoint in self._waypoints[self.passed :]]
+        """The places of the last order that it has not passed; of those that mark a way none that it may leave out."""
+        return [waypoint.position for waypoint in self._waypoints[self.passed + self._marks_left :]]
+
+    @property
+    def places_of_work(self) -> list[Place]:
+        """The places of the last order from the entry of its task on."""
+        return [waypoint.position for waypoint in self._waypoints[max(0, self.to_task - 1) :]]
 
     @property
     def way_left_m(self) -> float:
         """Metres of the last order that it has not travelled, by its own navigation where that tells them."""
-        left = self._waypoints[self.passed :]
-        told = None if self.telemetry is None or self.telemetry.order != self._order else self.telemetry.left_m
+        left = self._waypoints[self.passed + self._marks_left :]
+        told = self._told_left_m
         if told is None or not left:
             return path_length(self.position, left)
-        marks = sum(1 for _ in takewhile(lambda waypoint: waypoint.via, left))
-        return told + path_length(left[marks].position, left[marks + 1 :])
+        return told + path_length(left[0].position, left[1:])
+
+    @property
+    def _told_left_m(self) -> float | None:
+        """Metres to the next place of its order that marks no way, where its own navigation tells them."""
+        return None if self.telemetry is None or self.telemetry.order != self._order else self.telemetry.left_m
+
+    @property
+    def _marks_left(self) -> int:
+        """How many of the next places of its order mark a way only, where its own navigation chooses that."""
+        if self._told_left_m is None:
+            return 0
+        return sum(1 for _ in takewhile(lambda waypoint: waypoint.via, self._waypoints[self.passed :]))
 
     @property
     def used(self) -> float:

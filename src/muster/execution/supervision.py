@@ -57,6 +57,8 @@ class Supervisor:
             self.emit(kind, data)
         for robot in self.traffic.waits:
             self.crew[robot].nearest_s = now
+        for robot in self.traffic.sent_round:
+            self.crew[robot].nearest_m, self.crew[robot].nearest_s = self.crew[robot].way_left_m, now
         yield from self._break_jams(now)
         for state in self._present:
             if is_silent(state, now, self.limits):
@@ -180,11 +182,11 @@ class Supervisor:
             yield from self.dispatch.refuse(state, state.route[0], state.refused, now)
 
     def _give_up_blocked(self, state: RobotState, blocking: RobotState, now: float) -> Iterator[Change]:
-        """A failed robot stands at a task: robots as large as the one that tried cannot reach it."""
-        task, points, reason = state.route[0], state.points_left, f"unreachable: {blocking.robot.id} stands there, out"
+        """A failed robot stands in the way to a task; where it stands at the task, others cannot reach that either."""
+        task, reason = state.route[0], f"unreachable: {blocking.robot.id} stands there, out"
         for other in self._present:
             able = set(self.ledger.tasks[task].requires) <= set(other.robot.skills)
-            if other is not state and able and stands_in_the_way(blocking, other.robot, points):
+            if other is not state and able and stands_in_the_way(blocking, other.robot, state.places_of_work):
                 self.ledger.refuse(task, other.robot.id, reason)
         self.ledger.blocked_by[task] = blocking.robot.id
         return self.dispatch.refuse(state, task, reason, now)

@@ -25,6 +25,8 @@ _CLEAR_M = 0.1
 """Metres between two bodies that hinder each other."""
 _NEARER_M = 0.2
 """Metres by which a way has to grow shorter to count as progress out of a jam."""
+_ROUND = 2.0
+"""Times the way that a robot can have driven since the last look, by which a way grows longer that leads elsewhere."""
 
 
 @dataclass
@@ -122,6 +124,10 @@ class Progress:
             self.least_m, self.since_s = left_m, now
             self.jammed_s, self.held_s, self.asides, self.told = 0.0, 0.0, 0, False
 
+    def goes_round(self, left_m: float, now: float) -> None:
+        """It was sent another way, which is longer."""
+        self.least_m, self.since_s = left_m, now
+
 
 class TrafficWaits:
     """Keeps who waits in traffic.
@@ -130,6 +136,11 @@ class TrafficWaits:
     ----------
     crew
         by id; robots that are out may be in the way, too.
+
+    Attributes
+    ----------
+    sent_round
+        the robots whose ways have become longer at the last look: their navigation has sent them another way.
     """
 
     def __init__(self, crew: Mapping[str, RobotState]) -> None:
@@ -138,13 +149,20 @@ class TrafficWaits:
         self._looked_s = 0.0
         self.waits: dict[str, TrafficWait] = {}
         self.progress: dict[str, Progress] = {}
+        self.sent_round: set[str] = set()
         self.account = TrafficAccount()
 
     def look(self, now: float) -> Iterator[tuple[str, dict[str, Any]]]:
         """See who waits now; yields an event of each wait that begins to count, or is over."""
+        self.sent_round.clear()
         for robot, state in self._crew.items():
+            nearer_m = self._nearer_m(state)
+            could_m = state.robot.speed_mps * (now - self._looked_s)
             self._note_progress(state, now)
-            other = self._held_up_by(state, now)
+            if nearer_m < -_ROUND * could_m - _NEARER_M and _under_way(state):
+                self.sent_round.add(robot)
+                self.progress[robot].goes_round(state.way_left_m, now)
+            other = self._held_up_by(state, now, hardly=nearer_m < _HARDLY * could_m)
             wait = self.waits.get(robot)
             if other and wait is None:
                 self.waits[robot] = TrafficWait(other, state.position, now, now)
@@ -215,10 +233,10 @@ class TrafficWaits:
     def _stands_aside(self, robot: str) -> bool:
         return robot in self._crew and self._crew[robot].aside_until_s > self._looked_s
 
-    def _held_up_by(self, state: RobotState, now: float) -> str:
+    def _held_up_by(self, state: RobotState, now: float, *, hardly: bool) -> str:
+        """Who holds a robot up, which hardly gets on or not; empty where nobody does."""
         if now < state.aside_until_s and not state.out and state.robot.id in self.waits:
             return self.waits[state.robot.id].waits_for
-        hardly = self._hardly_gets_on(state, now)
         said = state.telemetry
         if said is None or not _under_way(state):
             return ""
@@ -226,12 +244,12 @@ class TrafficWaits:
             return said.waits_for
         return self._in_its_way(state) if hardly and _has_way(state) else ""
 
-    def _hardly_gets_on(self, state: RobotState, now: float) -> bool:
-        """Whether its way has not grown shorter since the last look by more than a tenth of what it could have."""
-        robot, left_m = state.robot, state.way_left_m
-        order, before_m = self._left_m.get(robot.id, (-1, 0.0))
-        self._left_m[robot.id] = state.order, left_m
-        return order == state.order and before_m - left_m < _HARDLY * robot.speed_mps * (now - self._looked_s)
+    def _nearer_m(self, state: RobotState) -> float:
+        """By how much its way has grown shorter since the last look; inf where its order is new."""
+        robot, left_m = state.robot.id, state.way_left_m
+        order, before_m = self._left_m.get(robot, (-1, 0.0))
+        self._left_m[robot] = state.order, left_m
+        return before_m - left_m if order == state.order else math.inf
 
     def _in_its_way(self, state: RobotState) -> str:
         """The nearest robot that another would touch on its way before it could stop; empty where there is none."""

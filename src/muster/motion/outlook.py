@@ -15,7 +15,12 @@ class Visit(NamedTuple):
 
 
 class Outlook(NamedTuple):
-    """Where a robot will go after where it has been sent; `stays`: whether it stays for good at the last of all."""
+    """Where a robot will go after where it has been sent.
+
+    `stays`: whether it stays for good at the last of all; `gone`: whether it is not to be sent anywhere now, as it has
+    failed or is not heard.
+    """
 
     visits: tuple[Visit, ...] = ()
     stays: bool = False
+    gone: bool = False

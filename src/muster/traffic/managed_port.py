@@ -31,6 +31,7 @@ class ManagedPort:
         self._sent_order = 0
         self._marks = 0  # how many of those sent come before what is to be done at the goal
         self._numbers: tuple[int, ...] = ()  # of the others, among the way points
+        self.broken_off: list[Place] = []  # where it was on its way to when it was last stopped
         self.waits_for = ""
         self.left_m: float | None = None
         self.refused = ""
@@ -38,6 +39,11 @@ class ManagedPort:
     @property
     def robot(self) -> str:
         return self._port.robot
+
+    @property
+    def orders(self) -> int:
+        """How many orders it has got so far."""
+        return self._orders
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         """See `RobotPort`. The robot is sent on when traffic next looks."""
@@ -49,6 +55,7 @@ class ManagedPort:
 
     def cancel(self) -> int:
         """See `RobotPort`. The robot stops at once; where it stands in the way traffic sends it on a little."""
+        self.broken_off = [waypoint.position for waypoint in (self._sent or ())[self._sent_passed :]]
         self._sent_order, self._marks = self._port.cancel(), 0
         return self.send(())
 

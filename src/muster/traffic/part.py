@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from muster.mission.model import Robot
+from muster.motion.kinematics.registry import limits_of
+from muster.motion.outlook import Outlook
 from muster.traffic.managed_port import ManagedPort
 from muster.traffic.travellers import Point
 
@@ -18,6 +21,7 @@ class Part:
     robot: Robot
     port: ManagedPort
     number: int
+    outlook: Outlook = Outlook(stays=True)  # where it will go after its goal
     moves_passed: int = 0  # ends of moves, by the orders before the last
     ends: int = 0  # how many of the places of the last order are ends of moves
     goal: Point | None = None  # by the last plan
@@ -32,6 +36,32 @@ class Part:
     moved_s: float = -math.inf  # when it last moved, or had no reason to
     broken: bool = False
     broken_s: float = 0.0  # since when
+    tried: int = 0  # how often it was told anew where to go since it last moved
+    orders: int = 0  # how many orders it had got when it was told last
+    gone: bool = False  # whether it is out, and not to be sent anywhere
+    may_be_at: tuple[Point, ...] = ()  # where else it may be then
+
+    @property
+    def fixed(self) -> bool:
+        """Whether others have to get round it where it is."""
+        return self.broken or self.gone
+
+    def gone_on(self, now: float) -> Iterator[Point]:
+        """Where it may be that was stopped now: on the way that it was sent, as far as it can have come unheard.
+
+        The places are no farther from each other than its radius.
+        """
+        said, limits = self.port.heard, limits_of(self.robot)
+        unheard_s = 0.0 if said is None else now - said.time_s
+        left_m = limits.speed_mps * unheard_s + limits.speed_mps**2 / (2 * limits.acceleration_mps2)
+        for (x, y), (u, v) in pairwise([self.near, *map(planar, self.port.broken_off)]):
+            long_m = math.dist((x, y), (u, v))
+            pieces = math.ceil(long_m / self.robot.radius_m)
+            for k in range(1, pieces + 1):
+                if long_m * (k - 1) / pieces >= left_m:
+                    return
+                yield x + (u - x) * k / pieces, y + (v - y) * k / pieces
+            left_m -= long_m
 
     @property
     def near(self) -> Point:

@@ -33,8 +33,10 @@ TOLD_WITHIN_S = 0.5
 """A robot that has done what it was to do is told within this time where to go next."""
 BROKEN_AFTER_S = 5.0
 """A robot that does not move for so long though its way is free counts as an obstacle until it moves."""
-TRIED_AFTER_S = 10.0
+TRIED_AFTER_S = 6.0
 """So long after that it is told anew where to go: it may have dropped its order."""
+MOST_TRIES = 4
+"""So often that time is doubled for one that has no goal."""
 _MOVED_M = 0.05
 _AT_GOAL_M = 1e-3
 
@@ -79,6 +81,7 @@ class ReservedTraffic:
         """See how far robots are, plan anew where that is due, and send robots on."""
         self._take_in(now)
         for part in self._parts:
+            part.outlook = self._outlook(part.robot.id)
             self._order.progress(part.number, part.moves_passed + min(part.port.marks_passed, part.ends), part.near)
             self._lead_on(part, now)
         self._watch(now)
@@ -105,8 +108,15 @@ class ReservedTraffic:
         """One that does not move though it may stands in the way of the others, until it moves or is tried again."""
         for part in self._parts:
             moved = math.dist(part.near, part.stood) > _MOVED_M
+            if moved or part.port.orders != part.orders:
+                part.tried, part.orders = 0, part.port.orders
+                if part.broken:
+                    self._mend(part, now)
+            if part.gone != part.outlook.gone:
+                self._let_out_or_in(part, now)
             if part.broken:
-                if moved or now - part.broken_s >= TRIED_AFTER_S:
+                if now - part.broken_s >= TRIED_AFTER_S * 2**part.tried:
+                    part.tried = min(part.tried + 1, MOST_TRIES) if part.port.goal is None else 0
                     self._mend(part, now)
             elif moved or not part.to_go or part.port.busy:
                 part.stood, part.moved_s = part.near, now
@@ -116,6 +126,13 @@ class ReservedTraffic:
     def _break(self, part: Part, now: float) -> None:
         """What the robot was told holds: it may have dropped it, or go on at any time."""
         part.broken, part.broken_s = True, now
+        self._forget_way(part)
+
+    def _let_out_or_in(self, part: Part, now: float) -> None:
+        """A robot that is out was stopped, and is not sent anywhere until it takes part again."""
+        part.gone, part.broken = not part.gone, False
+        part.may_be_at = tuple(part.gone_on(now)) if part.gone else ()
+        part.stood, part.moved_s = part.near, now
         self._forget_way(part)
 
     def _mend(self, part: Part, now: float) -> None:
@@ -164,12 +181,12 @@ class ReservedTraffic:
     def _falls_short(self, part: Part) -> bool:
         """Whether the moves of a robot end before its goal, and it is coming near to where they end."""
         away = self._away_m(part) > _AT_GOAL_M
-        return away and not part.broken and self._order.metres_left(part.number) < 2 * AHEAD_M
+        return away and not part.fixed and self._order.metres_left(part.number) < 2 * AHEAD_M
 
     def _goal(self, part: Part) -> Point | None:
         """Where a robot is to go or to stay; None: where it has nothing to do it may be anywhere."""
         goal = part.port.goal
-        if goal is None or not (part.port.arrives or any(self._outlook(part.robot.id))):
+        if goal is None or not (part.port.arrives or part.outlook.visits or part.outlook.stays):
             return None
         return planar(goal)
 
@@ -181,6 +198,7 @@ class ReservedTraffic:
             part.goal, part.arrives, part.done_s = self._goal(part), part.port.arrives, math.inf
             self._find_again(part)
             travellers.append(self._traveller(part))
+        travellers += [Traveller(part.robot, at, fixed=True) for part in self._parts for at in part.may_be_at]
         stopped = set[int]()
         for traveller, to, stop in self.plan(travellers):
             part = self._parts[traveller]
@@ -205,7 +223,7 @@ class ReservedTraffic:
             heading_rad=0.0 if said is None else said.heading,
             ready_s=ready_s,
             stays=part.stays,
-            fixed=part.broken,
+            fixed=part.fixed,
         )
 
     def _stops(self, part: Part) -> Sequence[Stop]:
@@ -213,15 +231,14 @@ class ReservedTraffic:
         if part.goal is None or not part.arrives:
             part.more, part.stays = False, part.goal is not None
             return [] if part.goal is None else [Stop(part.goal)]
-        visits, stays = self._outlook(part.robot.id)
         stops = list[Stop]()
-        for place, hold_s in (*part.port.visits, *visits):
+        for place, hold_s in (*part.port.visits, *part.outlook.visits):
             at = planar(place)
             before = stops.pop().hold_s if stops and stops[-1].at == at else 0.0
             stops.append(Stop(at, before + hold_s))
         most = max(LEAST_STOPS, STOPS_PLANNED // len(self._parts))
         part.more = len(stops) > most
-        part.stays = stays and not part.more
+        part.stays = part.outlook.stays and not part.more
         return stops[:most]
 
     def _let_go(self, part: Part) -> None:
@@ -254,7 +271,7 @@ class ReservedTraffic:
         return self._nearest(part) if self._falls_short(part) and not grant.points else ""
 
     def _nearest(self, part: Part) -> str:
-        """The robot next to one that has found no way; one that is broken, if there is any."""
-        others = [other for other in self._parts if other is not part]
-        found = min(others, key=lambda other: (not other.broken, math.dist(other.near, part.near)), default=None)
+        """The robot next to one that has found no way; one that others have to get round, where such cut it off."""
+        others, cut_off = [other for other in self._parts if other is not part], part.number in self.plan.cut_off
+        found = min(others, key=lambda one: (one.fixed != cut_off, math.dist(one.near, part.near)), default=None)
         return "" if found is None else found.robot.id

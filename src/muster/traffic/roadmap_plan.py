@@ -63,17 +63,21 @@ class RoadmapPlan:
         whether the straight way between two places, (2, 2) metres, is free for the widest robot.
     seed
         of the orders that are tried.
+    cut_off
+        see `Planner`; where many travel on a large roadmap this is not found out: any of them may be.
     """
 
     roadmap: Roadmap
     clear: Callable[[Floats], bool]
     seed: int = 0
+    cut_off: frozenset[int] = frozenset()
     _priorities: list[str] = field(default_factory=list)
     _known: _Network | None = None
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
         on = self._network_for(travellers)
+        self.cut_off = frozenset(range(len(travellers)))
         whole = len(travellers) * len(on.roadmap.edges) <= _MOST_BY_INTERVALS
         moves = self._by_safe_intervals(on, travellers) if whole else None
         if moves is None:
@@ -124,6 +128,7 @@ class RoadmapPlan:
         if math.inf in ends and any(len(who.stops) > 1 for who in travellers):
             moves, ends, order = self._searched(on, [_to_first_stop(who) for who in travellers])
         self._priorities = [travellers[k].robot.id for k in order]
+        self.cut_off = frozenset(k for k, end in enumerate(ends) if math.isnan(end))
         return None if math.inf in ends else [(traveller, edge, stop) for _, traveller, edge, stop in moves]
 
     def _searched(

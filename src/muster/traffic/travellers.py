@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from muster.mission.model import Robot
 
@@ -60,5 +60,14 @@ class Move(NamedTuple):
     stop: int = 0
 
 
-Planner = Callable[[Sequence[Traveller]], Iterable[Move]]
-"""Moves of travellers, in an order in which each is free while the others stand."""
+class Planner(Protocol):
+    """Plans moves of travellers, in an order in which each is free while the others stand."""
+
+    @property
+    def cut_off(self) -> Collection[int]:
+        """The travellers of the last plan, by number, that those who never leave let to none of their stops."""
+        ...
+
+    def __call__(self, travellers: Sequence[Traveller]) -> Iterable[Move]:
+        """Moves, as far as they are found."""
+        ...

@@ -5,7 +5,8 @@ from collections import Counter
 from tests.disturbances.traffic.script import STOPS
 from tests.disturbances.traffic.trial import trial
 
-SEEDS = range(8)
+SEEDS = (*range(8), 28, 43, 63)
+"""The last: one that is out far from who is blocked; a task that can be done from its other side; one not heard."""
 
 
 def test_teams_in_narrow_places_get_through_whatever_happens():
