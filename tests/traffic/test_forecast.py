@@ -10,15 +10,12 @@ import pytest
 from muster import Simulation, solve
 from muster.traffic.forecast import Forecast, RobotForecast, forecast
 from muster.traffic.mission_roadmap import MissionRoadmap
-from muster.traffic.roadmap_plan import RoadmapPlan
 from muster_studies.jams import scenes
 
 
 def forecast_of(mission, plan):
     shared = MissionRoadmap.of(mission)
-    return forecast(
-        mission, {route.robot: route.stops for route in plan.routes}, RoadmapPlan(shared.roadmap, shared.clear)
-    )
+    return forecast(mission, {route.robot: route.stops for route in plan.routes}, shared.plan())
 
 
 @pytest.mark.parametrize("scene", [scenes.aisles, scenes.dead_ends])

@@ -80,7 +80,6 @@ def command(
 def _forecast(mission: Mission, file: File, made: MissionRoadmap, *, quiet: bool, verbose: bool) -> Forecast:
     from muster.mission.plan import RouteStop
     from muster.traffic.forecast import forecast
-    from muster.traffic.roadmap_plan import RoadmapPlan
     from muster.verification import verify
 
     plan = load_plan(file, mission, quiet=quiet, verbose=verbose)
@@ -91,7 +90,7 @@ def _forecast(mission: Mission, file: File, made: MissionRoadmap, *, quiet: bool
         route.robot: [RouteStop(one.task, one.arrives_s, one.starts_s, one.ends_s) for one in route.visits]
         for route in verdict.routes
     }
-    return forecast(mission, routes, RoadmapPlan(made.roadmap, made.clear))
+    return forecast(mission, routes, made.plan())
 
 
 def _print_forecast(forecast: Forecast) -> None:

@@ -725,6 +725,9 @@ class CrowdWorld:
         Returns the number of the robot, from 0. `law`: profile, thesis or trajectory; `climb`: above 0 of one that climbs by (4.12); `climb_rate`: up and down of one that keeps to straight ways.
         """
 
+    def set_walls(self, robot: int, walls: int) -> None:
+        """From now on another set of walls stops a robot."""
+
     def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
         """
         Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.

@@ -132,6 +132,9 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           "climbs by "
           "(4.12); `climb_rate`: up and down of one that keeps to straight ways.")
       .def(
+          "set_walls", [](CrowdWorld& w, int robot, int walls) { w.set_walls(robot, walls); }, "robot"_a, "walls"_a,
+          "From now on another set of walls stops a robot.")
+      .def(
           "send",
           [](CrowdWorld& w, int robot, const Stops& stops, const std::vector<bool>& labelled, int order) {
             w.send(robot, way_of(stops, labelled), order);

@@ -48,6 +48,11 @@ int CrowdWorld::add(const Body& body, const Vec<3>& position, double heading) {
   return static_cast<int>(robots_.size()) - 1;
 }
 
+void CrowdWorld::set_walls(int i, int walls) {
+  robots_[i].body.walls = walls;
+  collect_walls(robots_[i]);
+}
+
 void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   CrowdRobot& robot = robots_[i];
   if (robot.failed) return;

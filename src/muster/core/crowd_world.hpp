@@ -80,6 +80,8 @@ class CrowdWorld {
 
   int add_walls(WallSet walls);
   int add(const Body& body, const Vec<3>& position, double heading);
+  // From now on another set of walls stops a robot.
+  void set_walls(int i, int walls);
 
   void send(int i, std::vector<Waypoint> way, int order);
   // The trajectory of the order that was sent last.

@@ -49,7 +49,7 @@ class Fence:
         if mission.map is None:
             return cls(None, {}, (), ())
         legs = list(pairwise(passage.place for passage in itinerary.passages))
-        mine = {k: zone for k, zone in enumerate(mission.map.zones) if itinerary.robot.kind in zone.forbidden_to}
+        mine = {k: zone for k, zone in enumerate(mission.map.zones) if itinerary.robot.kind in zone.closed_to}
         over = {k: list(_heights_over(legs, zone.polygon)) for k, zone in mine.items()}
         if mission.dimensions == 3:
             tall = 2 * itinerary.robot.radius_m if itinerary.robot.kind == "ground" else 0.0

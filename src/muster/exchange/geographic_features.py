@@ -118,7 +118,7 @@ def _areas(mission: Mission) -> list[tuple[str, str, list[tuple[float, ...]], Pr
             "zone",
             f"zone {k}",
             anticlockwise(zone.polygon),
-            {"forbidden_to": list(zone.forbidden_to), "floor_m": zone.floor_m, "ceiling_m": zone.ceiling_m},
+            {"forbidden_to": list(zone.closed_to), "floor_m": zone.floor_m, "ceiling_m": zone.ceiling_m},
         )
         for k, zone in enumerate(area.zones)
     ]

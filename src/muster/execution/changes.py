@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from muster.execution.robot_state import Activity, RobotState
@@ -11,6 +11,7 @@ from muster.execution.task_ledger import Ledger, robot_as_it_holds
 from muster.execution.task_motion import place
 from muster.execution.team_work import break_off
 from muster.execution.travel import Travel
+from muster.mission.doors import Doors
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.value_types import shown
@@ -50,6 +51,8 @@ class Changes:
         the question, for its rules.
     ports
         how robots are reached; a robot that joins has its port here by then.
+    on_doors
+        receives the ids of the doors that are closed, when one closes or opens.
     """
 
     mission: Mission
@@ -57,6 +60,11 @@ class Changes:
     crew: dict[str, RobotState]
     ports: Mapping[str, RobotPort]
     travel: Travel
+    on_doors: Callable[[Collection[str]], None] = lambda closed: None
+    doors: Doors = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.doors = Doors.of(self.mission)
 
     def apply(self, event: Event, now: float, reason: str = "") -> Iterator[Change]:
         """Let an event happen; yields what asks for a new plan.
@@ -66,7 +74,8 @@ class Changes:
         Raises
         ------
         ParameterError
-            if the event names a robot or task that there is not, or one anew that there is, or a robot without port.
+            if the event names a robot, task or door that there is not, or one anew that there is, or a robot without
+            port.
         """
         if event.robot_fails is not None:
             yield from self.exclude(self._robot_state(event.robot_fails), FAILED, now, reason)
@@ -82,6 +91,10 @@ class Changes:
             yield from self._move(self._task(event.move_task.task), event.move_task.position, now)
         elif event.delay_task is not None:
             yield from self._delay(self._task(event.delay_task.task), event.delay_task.by_s)
+        elif event.door_closes is not None:
+            yield from self._turn_door("door_closes", event.door_closes, event, now)
+        elif event.door_opens is not None:
+            yield from self._turn_door("door_opens", event.door_opens, event, now)
 
     def exclude(self, state: RobotState, why: str, now: float, detail: str = "") -> Iterator[Change]:
         """Exclude a robot: its tasks are free, the current one too."""
@@ -168,6 +181,30 @@ class Changes:
             self.ledger.delay(task, by_s)
             yield Change("delay_task", {"task": task, "by_s": by_s})
 
+    def _turn_door(self, kind: str, door: str, event: Event, now: float) -> Iterator[Change]:
+        """Robots under way are sent again, by other ways; where one opens they try what they had no way to."""
+        if door not in self.doors.known:
+            expected = " or ".join(sorted(self.doors.known)) or "a zone or lane with an id"
+            raise ParameterError(f"{kind}: {shown(door)}; expected {expected}")
+        if self.doors.take(event):
+            self.set_doors(self.doors.closed)
+            for state in self.crew.values():
+                goal = state.points_left[-1] if state.points_left else None
+                state.left = self.travel.way_out(state.robot, state.position, goal) or state.left
+                if not state.out and state.activity in (Activity.DRIVING, Activity.RETURNING):
+                    state.stop(now)
+                if kind == "door_opens" and state.cut_off:
+                    state.cut_off = state.at_home = False
+            if kind == "door_opens":
+                self.ledger.try_again()
+            yield Change(kind, {"door": door})
+
+    def set_doors(self, closed: frozenset[str]) -> None:
+        """From now on these doors are closed, and the others open, for all that ask for ways."""
+        self.doors.closed = closed
+        self.travel.close(closed)
+        self.on_doors(closed)
+
     def _leave(self, task: str, now: float) -> None:
         """Stop the robots that are at a task or on the way to it."""
         at = self._at(task)
@@ -216,7 +253,8 @@ def new_robot_state(
     )
 
 
-def may_bring_work(event: Event, *, open_tasks: bool) -> bool:
-    """Whether an event to come can bring work, or a robot for what is open."""
-    helps = event.robot_joins or event.robot_returns or event.move_task
-    return event.new_task is not None or bool(helps and open_tasks)
+def may_bring_work(event: Event, *, open_tasks: bool, cut_off: bool = False) -> bool:
+    """Whether an event to come can bring work, or a robot for what is open, or one that is cut off to its end."""
+    opens = event.door_opens is not None
+    helps = event.robot_joins or event.robot_returns or event.move_task or opens
+    return event.new_task is not None or bool(helps and open_tasks) or (opens and cut_off)

@@ -38,6 +38,8 @@ class CompletedWork:
         tasks that must not be begun again, and why.
     used, failed_s
         by robot what it had used, in the mission's unit; since when it takes no part.
+    closed
+        ids of the doors that are closed; None: as before any event.
     """
 
     done: Mapping[str, CompletedTask] = field(default_factory=dict)
@@ -46,6 +48,7 @@ class CompletedWork:
     barred: Mapping[str, str] = field(default_factory=dict)
     used: Mapping[str, float] = field(default_factory=dict)
     failed_s: Mapping[str, float] = field(default_factory=dict)
+    closed: frozenset[str] | None = None
 
     def recall(self, ledger: Ledger, crew: Mapping[str, RobotState]) -> None:
         """Write it into a ledger and a crew that are new."""

@@ -98,7 +98,7 @@ class Dispatch:
         """A robot cannot get to where its route ends."""
         if state.activity is Activity.RETURNING:
             state.stop(now)
-        state.at_home = True
+        state.at_home = state.cut_off = True
         self._emit("no_way_to_end", {"robot": state.robot.id})
 
     def again(self, state: RobotState, now: float) -> None:

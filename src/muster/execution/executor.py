@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -76,6 +76,8 @@ class Executor:
         when they have nothing to do.
     standing
         how long a fleet stays on duty when its tasks are done, and for which orders; None: not at all.
+    on_doors
+        receives the ids of the doors that are closed, when one closes or opens.
 
     Raises
     ------
@@ -99,6 +101,7 @@ class Executor:
         past: CompletedWork | None = None,
         peers: Peers | None = None,
         standing: Standing | None = None,
+        on_doors: Callable[[Collection[str]], None] = lambda closed: None,
     ) -> None:
         self.mission = mission
         self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored, plan.ignored)
@@ -115,7 +118,7 @@ class Executor:
         self._replan = Reallocation(travel=self._travel) if replan is None else replan
         self._insertion = Insertion(self._travel)
         self._observer = NoObserver() if observer is None else observer
-        self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel)
+        self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel, on_doors)
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
         hold_until_s = self._forecast.hold_until_s if peers is None else peers.hold_until_s
@@ -190,6 +193,8 @@ class Executor:
             if the event does not fit (see `Changes.apply`).
         """
         changes = list(self._changes.apply(self._due_at_once(event), self.now_s, reason))
+        if event.door_closes is not None or event.door_opens is not None:
+            self._forecast.forget()
         self._ask(changes)
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
@@ -307,6 +312,8 @@ class Executor:
     def _recall(self, past: CompletedWork) -> None:
         """Robots keep the open tasks of their routes; all of them are planned again from the robots' positions."""
         past.recall(self.ledger, self.crew)
+        if past.closed is not None:
+            self._changes.set_doors(past.closed)
         left = {task.id for task in self.ledger.open} - past.barred.keys()
         for state in self.crew.values():
             state.route = [] if state.out else [task for task in state.route if task in left]
@@ -427,7 +434,8 @@ class Executor:
 
     @property
     def _may_bring_work(self) -> bool:
-        return self._script.may_bring_work(open_tasks=bool(self.ledger.open))
+        cut_off = any(state.cut_off for state in self._present)
+        return self._script.may_bring_work(open_tasks=bool(self.ledger.open), cut_off=cut_off)
 
     @property
     def account(self) -> Account:

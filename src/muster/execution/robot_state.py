@@ -69,6 +69,7 @@ class RobotState:
     works: bool = False  # whether the order holds the work too
     delay_s: float = 0.0  # that the current work was ordered with
     at_home: bool = True
+    cut_off: bool = False  # whether it found no way to where its route ends
     begun_s: float = 0.0  # the activity
     arrived_s: float = 0.0  # at the current task, and its usage then
     arrived_used: float = 0.0

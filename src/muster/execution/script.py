@@ -52,10 +52,10 @@ class Script:
             order, self._next = self._next, next(self._orders, None)
             yield order
 
-    def may_bring_work(self, *, open_tasks: bool) -> bool:
-        """Whether anything to come can bring work, or a robot for what is open."""
+    def may_bring_work(self, *, open_tasks: bool, cut_off: bool) -> bool:
+        """Whether anything to come can bring work, a robot for what is open, or one that is cut off to its end."""
         ahead = (*self._events, *([] if self._next is None else [self._next]))
-        return any(may_bring_work(event, open_tasks=open_tasks) for event in ahead)
+        return any(may_bring_work(event, open_tasks=open_tasks, cut_off=cut_off) for event in ahead)
 
     @property
     def _order_due_s(self) -> float:

@@ -241,6 +241,12 @@ class Ledger:
             del self.blocked_by[task]
             self.refusals.pop(task, None)
 
+    def try_again(self) -> None:
+        """Robots may try again what they had no way to."""
+        for refusals in self.refusals.values():
+            for robot in [robot for robot, reason in refusals.items() if reason.startswith("unreachable")]:
+                del refusals[robot]
+
     def move(self, task: str, to: Point) -> None:
         """A task is elsewhere from now on."""
         self.tasks[task] = moved(self.tasks[task], to)

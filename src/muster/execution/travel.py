@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -17,6 +18,9 @@ from muster.motion.map_world import body_of
 from muster.motion.path import NoPath
 from muster.motion.port import Place
 from muster.motion.robot_paths import RobotPaths
+
+_OUT_M, _STEP_M, _DIRECTIONS = 3.0, 0.25, 16
+"""How far out of a door a place is sought, in which steps and how many directions."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,14 @@ class Travel(Protocol):
 
     def knows(self, name: str) -> bool:
         """Whether there is travel to a task or from a robot of that name."""
+        ...
+
+    def close(self, closed: Collection[str]) -> None:
+        """From now on these doors are closed, and the others open; what is measured follows where it knows doors."""
+        ...
+
+    def way_out(self, robot: Robot, at: Place, goal: Place | None) -> Place | None:
+        """Where a robot is to go first that stands in a door: out on its way to a goal; None where it stands free."""
         ...
 
     def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
@@ -97,6 +109,12 @@ class Straight:
     def knows(self, name: str) -> bool:
         return True
 
+    def close(self, closed: Collection[str]) -> None:
+        pass
+
+    def way_out(self, robot: Robot, at: Place, goal: Place | None) -> Place | None:
+        return None
+
     def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
         return problem.measured
 
@@ -109,6 +127,23 @@ class OverMap:
 
     def knows(self, name: str) -> bool:
         return True
+
+    def close(self, closed: Collection[str]) -> None:
+        self.robot_paths.close(closed)
+
+    def way_out(self, robot: Robot, at: Place, goal: Place | None) -> Place | None:
+        body, d = body_of(robot), self.robot_paths.world.dimensions
+        if self.robot_paths.clear(body, [at[:d], at[:d]]):
+            return None
+        doors_open = RobotPaths(self.robot_paths.world.with_closed(()))
+        free = [there for there in _around(at) if self.robot_paths.clear(body, [there[:d], there[:d]])]
+        seen = [there for there in free if doors_open.clear(body, [at[:d], there[:d]])]
+
+        def metres(there: Place) -> tuple[float, float]:
+            onward = 0.0 if goal is None else self.robot_paths.leg_m(body, there[:d], goal[:d])
+            return math.dist(at, there) + onward, math.dist(at, there)
+
+        return min(seen, key=metres, default=None)
 
     def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
         over = problem.over(self.robot_paths)
@@ -127,6 +162,14 @@ class OverMap:
         return found
 
 
+def _around(at: Place) -> Iterator[Place]:
+    """Places around one, near ones first."""
+    for away_m in np.arange(_STEP_M, _OUT_M + _STEP_M / 2, _STEP_M).tolist():
+        for k in range(_DIRECTIONS):
+            angle = 2 * math.pi * k / _DIRECTIONS
+            yield at[0] + away_m * math.cos(angle), at[1] + away_m * math.sin(angle), at[2]
+
+
 @dataclass(frozen=True)
 class ByTable:
     """Travel tables, which know the places of robots and tasks alone: a robot is at the place it goes to next."""
@@ -135,6 +178,12 @@ class ByTable:
 
     def knows(self, name: str) -> bool:
         return all(name in table.places for table in self.tables.values())
+
+    def close(self, closed: Collection[str]) -> None:
+        pass
+
+    def way_out(self, robot: Robot, at: Place, goal: Place | None) -> Place | None:
+        return None
 
     def measured(self, problem: Problem, past: Mapping[str, Spot], robots: Mapping[str, Spot]) -> Measured:
         tasks = [past[task.id].name if task.id in past else task.id for task in problem.tasks]

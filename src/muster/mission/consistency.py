@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from muster.mission.doors import doors_of
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_robots, all_work, robots_that_join, rules_of_tags, unknown_id
 from muster.mission.near_matches import did_you_mean
@@ -26,6 +27,7 @@ def inconsistencies(mission: MissionData) -> Iterator[Fault]:
     yield from _suitability(mission)
     yield from _dimensions(mission)
     yield from _travel(mission)
+    yield from _doors(mission)
     yield from _events(mission)
     yield from _found(mission)
     yield from _tags_on_the_ground(mission)
@@ -174,9 +176,25 @@ def _places_without_row(mission: MissionData) -> Iterator[Fault]:
             yield Fault(path, shown(list(point)), "nothing here: travel tables know robots and tasks alone")
 
 
+def _doors(mission: MissionData) -> Iterator[Fault]:
+    """Zones and lanes that have the id of a zone before; the ids of lanes differ by themselves."""
+    zones = () if mission.map is None else mission.map.zones
+    lanes = () if mission.lanes is None else mission.lanes.edges
+    first: dict[str, int] = {}
+    for k, zone in enumerate(zones):
+        if zone.id is not None and first.setdefault(zone.id, k) != k:
+            at = ("map", "zones", k, "id")
+            yield Fault(at, shown(zone.id), f"an id of its own: zones[{first[zone.id]}] has this one")
+    for k, lane in enumerate(lanes):
+        if lane.id in first:
+            at = ("lanes", "edges", k, "id")
+            yield Fault(at, shown(lane.id), f"an id of its own: zones[{first[lane.id]}] has this one")
+
+
 def _events(mission: MissionData) -> Iterator[Fault]:
     robots = [r.id for r in mission.robots] + [e.robot_joins.id for e in mission.events if e.robot_joins]
     tasks = [t.id for t in mission.tasks] + [e.new_task.id for e in mission.events if e.new_task]
+    doors = list(doors_of(mission))
     for k, event in enumerate(mission.events):
         named: Iterable[tuple[Path, str | None, list[str], str]] = (
             (("robot_fails",), event.robot_fails, robots, "robot"),
@@ -185,6 +203,8 @@ def _events(mission: MissionData) -> Iterator[Fault]:
             (("cancel_task",), event.cancel_task, tasks, "task"),
             (("move_task", "task"), event.move_task.task if event.move_task else None, tasks, "task"),
             (("delay_task", "task"), event.delay_task.task if event.delay_task else None, tasks, "task"),
+            (("door_closes",), event.door_closes, doors, "door"),
+            (("door_opens",), event.door_opens, doors, "door"),
         )
         for path, name, known, what in named:
             if name is not None and name not in known:

@@ -37,6 +37,8 @@ class Event(Checked):
     cancel_task: str | None = spec(Text(), "id of the task", default=None)
     move_task: MovedTask | None = spec(Record(MovedTask, "a task and its position"), "what moves", default=None)
     delay_task: DelayedTask | None = spec(Record(DelayedTask, "a task and its delay"), "what is late", default=None)
+    door_closes: str | None = spec(Text(), "id of the zone or lane that is closed from then on", default=None)
+    door_opens: str | None = spec(Text(), "id of the zone or lane that is open from then on", default=None)
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:

@@ -33,7 +33,7 @@ def all_robots(mission: MissionData) -> list[tuple[Path, Robot]]:
 
 
 def unknown_id(at: Path, name: str, known: Sequence[str], what: str) -> Fault:
-    """The fault of an id that no robot or task has; `what` is one of these words."""
+    """The fault of an id that no robot, task or door has; `what` is one of these words."""
     return Fault(at, shown(name), f"the id of a {what}{did_you_mean(name, known)}", relies_on=f"{what}s")
 
 

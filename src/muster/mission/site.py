@@ -26,7 +26,7 @@ class Origin(Checked):
 
 @record
 class Zone(Checked):
-    """A part of the map that some robots may not enter."""
+    """A part of the map that some robots may not enter; with an id a door, which events close and open."""
 
     polygon: tuple[Point, ...] = spec(Many(Position(planar=True), minimum=3), "corners in order")
     floor_m: float | None = spec(Number(), "lower end of the zone", default=None)
@@ -34,9 +34,18 @@ class Zone(Checked):
     forbidden_to: tuple[str, ...] = spec(
         Many(Choice(("ground", "air")), minimum=1), "kinds of robot that may not enter", default=("ground", "air")
     )
+    id: str | None = spec(Text(), "what events call it that close and open it", default=None)
+    open: bool = spec(Flag(), "whether all may enter until an event closes it", default=False)
+
+    @property
+    def closed_to(self) -> tuple[str, ...]:
+        """The kinds of robot that may not enter before any event."""
+        return () if self.open else self.forbidden_to
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        if values.get("open") and values.get("id") is None:
+            yield Fault(("id",), "missing", "an id beside open: true, by which events close the zone")
         floor, ceiling = values.get("floor_m"), values.get("ceiling_m")
         if floor is not None and ceiling is not None and floor >= ceiling:
             yield Fault(("ceiling_m",), shown(ceiling), f"a number above floor_m ({floor:g})")

@@ -10,8 +10,8 @@ The boundary holds for all robots, a zone for the kinds it is `forbidden_to`. He
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,6 +83,8 @@ class World:
         the arena of a map of polygons; None for an image.
     areas
         the zones.
+    closed
+        the ids of the zones that are closed, of those that have one.
     """
 
     dimensions: int
@@ -90,6 +92,7 @@ class World:
     image: Grid | None
     boundary: shapely.Polygon | None
     areas: tuple[Area, ...]
+    closed: frozenset[str] = frozenset()
     _made: dict[object, object] = field(default_factory=dict, init=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -124,7 +127,30 @@ class World:
         if faults:
             raise MissionError(findings(faults, mission.source))
         lowest = min((place[2] for _, place in positions(mission) if len(place) == 3), default=0.0)
-        return cls(mission.dimensions, min(0.0, lowest), image, boundary, areas)
+        closed = frozenset(area.zone.id for area in areas if area.zone.id and not area.zone.open)
+        return cls(mission.dimensions, min(0.0, lowest), image, boundary, areas, closed)
+
+    def with_closed(self, closed: Collection[str]) -> World:
+        """The world when these of its zones that have an id are closed, and the others of them open."""
+        return self if self.closed == frozenset(closed) else replace(self, closed=frozenset(closed))
+
+    def is_closed(self, area: Area) -> bool:
+        """Whether a zone is no door, or a closed one."""
+        return area.zone.id is None or area.zone.id in self.closed
+
+    def holds_open(self, door: str, bodies: Iterable[tuple[Body, Floats]]) -> bool:
+        """Whether one of some bodies, each with its place (3,), is in a door that is closed to its kind."""
+        import shapely
+
+        areas = [area for area in self.areas if area.zone.id == door]
+        return any(
+            body.kind in area.zone.forbidden_to
+            and area.floor_m <= place[2] + body.radius_m
+            and place[2] - body.radius_m <= area.ceiling_m
+            and shapely.distance(area.polygon, shapely.Point(place[:2])) < body.radius_m
+            for area in areas
+            for body, place in bodies
+        )
 
     def free_space(self, radius_m: float, kind: str, three_d: bool | None = None) -> Space:
         """Where the centre of a body may be. The same arguments give the same object.
@@ -160,7 +186,7 @@ class World:
 
     def stopping(self, body: Body, three_d: bool) -> tuple[Area, ...]:
         """The zones that a body may not enter, be it at some heights only."""
-        stopping = [area for area in self.areas if body.kind in area.zone.forbidden_to]
+        stopping = [area for area in self.areas if self.is_closed(area) and body.kind in area.zone.forbidden_to]
         if three_d and body.kind == "ground":
             stopping = [area for area in stopping if area.floor_m <= 2 * body.radius_m]
         return tuple(stopping)

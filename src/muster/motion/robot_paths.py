@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,9 +23,11 @@ Floats = npt.NDArray[np.float64]
 _MOST_LEGS = 100_000  # that are kept: a standing fleet is asked for new ones for ever
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class RobotPaths:
-    """Shortest paths for each body over one map. Along a path in the plane the height changes evenly.
+    """Shortest paths for each body over one map, whose doors close and open.
+
+    Along a path in the plane the height changes evenly.
 
     Parameters
     ----------
@@ -53,6 +55,12 @@ class RobotPaths:
             if the extra `map` is not installed.
         """
         return cls(checked_world(mission))
+
+    def close(self, closed: Collection[str]) -> None:
+        """From now on these doors are closed, and the others open."""
+        self.world = self.world.with_closed(closed)
+        self._finders.clear()
+        self._legs.clear()
 
     def path(self, body: Body, start: Sequence[float], goal: Sequence[float]) -> Path | NoPath:
         """The shortest path between two points of the map frame, or the reason why there is none."""

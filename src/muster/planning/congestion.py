@@ -23,11 +23,11 @@ from muster.traffic.forecast import Forecast, forecast
 from muster.traffic.managers import shared_roadmap
 from muster.traffic.names import drives
 from muster.traffic.passage_delays import PassageDelays
-from muster.traffic.roadmap_plan import RoadmapPlan
 
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem
     from muster.traffic.mission_roadmap import MissionRoadmap
+    from muster.traffic.roadmap_plan import RoadmapPlan
 
 Allocate = Callable[["Problem", Stop, Routes | None], Outcome]
 OnProgress = Callable[[Progress], None]
@@ -66,7 +66,7 @@ class SharedPassages:
         made = shared_roadmap(traffic, mission)
         if made is None or (len(mission.robots) + len(mission.tasks)) * len(made.roadmap.edges) > _MOST:
             return None
-        return cls(mission, made, RoadmapPlan(made.roadmap, made.clear))
+        return cls(mission, made, made.plan())
 
     def forecast(self, routes: Sequence[Route]) -> Forecast:
         """The traffic of routes that have their stops."""

@@ -36,13 +36,16 @@ def draw_map(ax: Any, chart: Map, image: Grid | None = None, *, spatial: bool) -
     entries: dict[str, Patch] = {}
     for k, zone in enumerate(chart.zones):
         look: dict[str, Any] = {"facecolor": FAINT, "edgecolor": FRAME, "linewidth": 0.8}
-        look["hatch"] = "".join(_HATCH[kind] for kind in zone.forbidden_to)
+        look["hatch"] = "".join(_HATCH[kind] for kind in zone.closed_to)
+        if zone.open:
+            look |= {"facecolor": "none", "linestyle": ":"}
         for level in _levels(zone) if spatial else (0.0,):
             _polygon(ax, zone.polygon, level, spatial, gid=f"zone-{k}-at-{level:g}", **look)
         if spatial and zone.ceiling_m is not None:
             _draw_sides(ax, zone, k)
         _name_heights(ax, zone, k, spatial)
-        entries[f"no entry: {', '.join(sorted(zone.forbidden_to))}"] = Patch(**look)
+        label = "door, open at first" if zone.open else f"no entry: {', '.join(sorted(zone.closed_to))}"
+        entries[label] = Patch(**look)
     return [(patch, label) for label, patch in entries.items()]
 
 

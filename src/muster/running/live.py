@@ -178,6 +178,7 @@ class Live:
             now=begin_s,
             past=past,
             standing=self._standing,
+            on_doors=lambda closed: None if manager is None else manager.close(closed),
         )
         if manager is not None:
             manager.expect(self.executor.outlook)

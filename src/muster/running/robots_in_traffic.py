@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING
 
 from muster.mission.model import Mission, Robot
@@ -43,6 +43,10 @@ class RobotsInTraffic:
         self._ports[robot.id] = self._manager.managed(robot, port)
         if self._ports[robot.id] is not port:
             self._world.leave_to_traffic(robot.id)
+
+    def close(self, doors: Collection[str]) -> None:
+        """From now on these doors are closed, and the others open."""
+        self._manager.close(doors)
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         """See `RobotsInWorld`: up to a time, or until a robot has passed a way point of its order."""

@@ -167,6 +167,7 @@ class Simulation:
             observer=recorder,
             now=self._world.time_s,
             standing=self._standing,
+            on_doors=self._close,
         )
         if manager is not None:
             manager.expect(self._executor.outlook)
@@ -312,6 +313,11 @@ class Simulation:
 
     def _is_open(self, event: Event) -> bool:
         return event.move_task is not None and event.move_task.task in {task.id for task in self._executor.ledger.open}
+
+    def _close(self, doors: Collection[str]) -> None:
+        self._world.close(doors)
+        if self._traffic is not None:
+            self._traffic.close(doors)
 
     def _take_event(self, event: Event) -> None:
         """What an event does to bodies; what it does to the plan is the executor's affair."""

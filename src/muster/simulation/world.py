@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -113,6 +113,10 @@ class SimulatedWorld(Protocol):
 
     def slow(self, robot: str, factor: float) -> None:
         """Multiply a robot's top speed by `factor`, above 0 to 1, from now on."""
+        ...
+
+    def close(self, doors: Collection[str]) -> None:
+        """From now on these doors of the map are closed, and the others open; one closes when no robot is in it."""
         ...
 
     def leave_to_traffic(self, robot: str) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from types import MappingProxyType
 
 import numpy as np
@@ -152,8 +152,9 @@ class WorldBase(SimulatedWorld, ABC):
         require_charges(batteries, [robot.id for robot in mission.all_robots])
         self._batteries = batteries
         self._in_time = mission.rules.usage == "time"
-        self._walls: dict[Body, int] = {}
-        self._faces: dict[Body, Faces] = {}
+        self._walls: dict[tuple[Body, frozenset[str]], int] = {}
+        self._faces: dict[tuple[Body, frozenset[str]], Faces] = {}
+        self._doors_to_close = self._doors_closed
         self._numbers: dict[str, int] = {}
         self._robots: list[Robot] = []
         self._ports: dict[str, SimulatedPort] = {}
@@ -244,6 +245,27 @@ class WorldBase(SimulatedWorld, ABC):
         if not 0 < factor <= 1:
             raise ParameterError(f"factor: {factor}; expected above 0 to 1")
         self._crowd.slow(self._number(robot), factor)
+
+    def close(self, doors: Collection[str]) -> None:
+        self._doors_to_close = frozenset(doors)
+        self._turn_doors()
+
+    @property
+    def _doors_closed(self) -> frozenset[str]:
+        return frozenset() if self._map is None else self._map.closed
+
+    def _turn_doors(self) -> None:
+        """Open and close doors as asked; those that robots are in stay open for now."""
+        if self._map is None:
+            return
+        bodies = [(body_of(robot), place) for robot, place in zip(self._robots, self.positions, strict=True)]
+        closing = self._doors_to_close - self._map.closed
+        closed = self._doors_to_close - {door for door in closing if self._map.holds_open(door, bodies)}
+        if closed == self._map.closed:
+            return
+        self._map, self._paths = self._map.with_closed(closed), None
+        for number, robot in enumerate(self._robots):
+            self._crowd.set_walls(number, self._walls_for(body_of(robot)))
 
     def leave_to_traffic(self, robot: str) -> None:
         self._crowd.leave_to_traffic(self._number(robot))
@@ -345,6 +367,8 @@ class WorldBase(SimulatedWorld, ABC):
         )
 
     def _advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
+        if self._doors_to_close != self._doors_closed:
+            self._turn_doors()
         ids = list(self._numbers)
         passed = []
         for time, number, order, count, idle in self._go_on(until_s):
@@ -369,17 +393,19 @@ class WorldBase(SimulatedWorld, ABC):
 
     def _walls_for(self, body: Body) -> int:
         """The number of the set of walls that stop this body; equal bodies have the same set."""
-        if body not in self._walls:
+        key = (body, self._doors_closed)
+        if key not in self._walls:
             faces, slabs = self._faces_for(body)
             ground = self._lowest_m if body.kind == "air" else -math.inf
-            self._walls[body] = self._crowd.add_walls(faces, slabs, ground)
-        return self._walls[body]
+            self._walls[key] = self._crowd.add_walls(faces, slabs, ground)
+        return self._walls[key]
 
     def _faces_for(self, body: Body) -> Faces:
         """What stops this body: upright faces, and zones with a height."""
-        if body not in self._faces:
-            self._faces[body] = (_NO_FACES, []) if self._map is None else faces_and_slabs(self._map, body)
-        return self._faces[body]
+        key = (body, self._doors_closed)
+        if key not in self._faces:
+            self._faces[key] = (_NO_FACES, []) if self._map is None else faces_and_slabs(self._map, body)
+        return self._faces[key]
 
 
 def _lowest(mission: Mission) -> float:

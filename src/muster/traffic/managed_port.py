@@ -31,7 +31,7 @@ class ManagedPort:
         self._sent_order = 0
         self._marks = 0  # how many of those sent come before what is to be done at the goal
         self._numbers: tuple[int, ...] = ()  # of the others, among the way points
-        self.broken_off: list[Place] = []  # where it was on its way to when it was last stopped
+        self._broken_off: list[Place] = []  # where it was on its way to when it was last stopped
         self.waits_for = ""
         self.left_m: float | None = None
         self.refused = ""
@@ -48,14 +48,14 @@ class ManagedPort:
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         """See `RobotPort`. The robot is sent on when traffic next looks."""
         self._orders += 1
-        self._waypoints, self._passed = tuple(waypoints), 0
-        self._sent, self._numbers = None, ()
+        self._break_off()
+        self._waypoints, self._passed, self._numbers = tuple(waypoints), 0, ()
         self.waits_for, self.left_m, self.refused = "", None, ""
         return self._orders
 
     def cancel(self) -> int:
         """See `RobotPort`. The robot stops at once; where it stands in the way traffic sends it on a little."""
-        self.broken_off = [waypoint.position for waypoint in (self._sent or ())[self._sent_passed :]]
+        self._break_off()
         self._sent_order, self._marks = self._port.cancel(), 0
         return self.send(())
 
@@ -129,11 +129,21 @@ class ManagedPort:
         self._sent_order = self._port.send(sent)
         return True
 
+    @property
+    def sent_ahead(self) -> list[Place]:
+        """The places to which it was last sent and has not said to have come; after a stop those before it."""
+        if self._sent is None:
+            return self._broken_off
+        return [waypoint.position for waypoint in self._sent[self._sent_passed :]]
+
     def halt(self) -> None:
         """Let the robot stop where it is until it is sent on."""
         self._passed = self.passed
         self._sent, self._marks, self._numbers = (), 0, ()
         self._sent_order = self._port.cancel()
+
+    def _break_off(self) -> None:
+        self._broken_off, self._sent = self.sent_ahead, None
 
     def _next(self) -> tuple[int, ...]:
         """The numbers of the next way points at one place that are no marks."""

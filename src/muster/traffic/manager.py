@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Protocol
 
 from muster.mission.model import Robot
@@ -22,6 +22,10 @@ class TrafficManager(Protocol):
 
     def expect(self, outlook: Callable[[str], Outlook]) -> None:
         """From now on this says where a robot, by its name, will go after where it has been sent."""
+        ...
+
+    def close(self, doors: Collection[str]) -> None:
+        """From now on these doors are closed, and the others open."""
         ...
 
     def look(self, now: float) -> None:

@@ -9,7 +9,6 @@ from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.names import AUTO, may_reserve
 from muster.traffic.reserved import ReservedTraffic
 from muster.traffic.roadmap import MARGIN_M
-from muster.traffic.roadmap_plan import RoadmapPlan
 
 
 def manager_named(
@@ -22,7 +21,7 @@ def manager_named(
     shared = shared_roadmap(name, mission, world=world, margin_m=margin_m)
     if shared is None:
         return None
-    return ReservedTraffic(RoadmapPlan(shared.roadmap, shared.clear, seed), margin_m=margin_m)
+    return ReservedTraffic(shared.plan(seed), margin_m=margin_m)
 
 
 def shared_roadmap(

@@ -10,10 +10,12 @@ from muster.mission.model import Mission, Point, Robot
 from muster.motion.actions import TaskMotion, plan
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Floats
-from muster.motion.map_world import World
+from muster.motion.map_world import World, body_of
 from muster.motion.paths import PathFinder
+from muster.traffic.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.given_lanes import ClosedLane, closed_lanes
 from muster.traffic.roadmap import MARGIN_M, Roadmap
+from muster.traffic.roadmap_plan import RoadmapPlan
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +33,8 @@ class MissionRoadmap:
         where no way leads there.
     closed
         the lanes of the mission that the widest robot cannot drive.
+    doors
+        of the mission; the roadmap is that with all of them open.
     finder
         of paths for the widest robot; None where there is no map.
     """
@@ -39,6 +43,7 @@ class MissionRoadmap:
     robots: tuple[Robot, ...]
     point_of: Mapping[Point, int]
     closed: tuple[ClosedLane, ...] = ()
+    doors: RoadmapDoors = NO_DOORS
     finder: PathFinder | None = None
 
     @classmethod
@@ -62,7 +67,8 @@ class MissionRoadmap:
         places = list(dict.fromkeys(place[:2] for place in _places(mission, sharing)))
         space = None
         if mission.map is not None and mission.travel_rule == "map":
-            space = (world or World.of(mission)).free_space(widest.radius_m, widest.kind, three_d=False)
+            world = world or World.of(mission)
+            space = world.with_closed(()).free_space(widest.radius_m, widest.kind, three_d=False)
             assert isinstance(space, GridSpace | PolygonSpace)
         finder = None if space is None else PathFinder(space)
         closed: list[ClosedLane] = []
@@ -71,7 +77,13 @@ class MissionRoadmap:
         else:
             roadmap = Roadmap.of_lanes(mission.lanes, widest.radius_m, places, space=space, margin_m=margin_m)
             closed = closed_lanes(mission.lanes, widest.radius_m, finder)
-        return cls(roadmap, robots, dict(zip(places, roadmap.places.tolist(), strict=True)), tuple(closed), finder)
+        doors = RoadmapDoors.of(mission, body_of(widest), world if space is not None else None)
+        point_of = dict(zip(places, roadmap.places.tolist(), strict=True))
+        return cls(roadmap, robots, point_of, tuple(closed), doors, finder)
+
+    def plan(self, seed: int = 0) -> RoadmapPlan:
+        """What plans moves of robots on it."""
+        return RoadmapPlan(self.roadmap, self.clear, seed, self.doors)
 
     def clear(self, points: Floats) -> bool:
         """Whether the straight way along points, (n, 2) metres, is free for the widest robot."""

@@ -54,7 +54,7 @@ class Part:
         said, limits = self.port.heard, limits_of(self.robot)
         unheard_s = 0.0 if said is None else now - said.time_s
         left_m = limits.speed_mps * unheard_s + limits.speed_mps**2 / (2 * limits.acceleration_mps2)
-        for (x, y), (u, v) in pairwise([self.near, *map(planar, self.port.broken_off)]):
+        for (x, y), (u, v) in self.pieces_ahead():
             long_m = math.dist((x, y), (u, v))
             pieces = math.ceil(long_m / self.robot.radius_m)
             for k in range(1, pieces + 1):
@@ -62,6 +62,10 @@ class Part:
                     return
                 yield x + (u - x) * k / pieces, y + (v - y) * k / pieces
             left_m -= long_m
+
+    def pieces_ahead(self) -> Iterator[tuple[Point, Point]]:
+        """The straight pieces of the way that it was last sent, from where it is; after a stop of that before."""
+        return pairwise([self.near, *map(planar, self.port.sent_ahead)])
 
     @property
     def near(self) -> Point:

@@ -8,8 +8,10 @@ it, and when one stands that should go.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
+
+import numpy as np
 
 from muster import core
 from muster.mission.model import Robot
@@ -76,6 +78,15 @@ class ReservedTraffic:
     def expect(self, outlook: Callable[[str], Outlook]) -> None:
         """See `TrafficManager`."""
         self._outlook = outlook
+
+    def close(self, doors: Collection[str]) -> None:
+        """See `TrafficManager`. Robots that were let go through one that closes are stopped."""
+        self.plan.close(doors)
+        self._planned_s = -math.inf
+        for part in self._parts:
+            if not all(self.plan.is_open(np.array(piece)) for piece in part.pieces_ahead()):
+                part.port.halt()
+                self._forget_way(part)
 
     def look(self, now: float) -> None:
         """See how far robots are, plan anew where that is due, and send robots on."""

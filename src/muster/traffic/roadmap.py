@@ -8,7 +8,7 @@ widest robots, with the distances, as [hoenig2018] annotates roadmaps; for two s
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -74,6 +74,20 @@ class Roadmap:
     places: Indices
     speed_mps: Floats
     names: tuple[str, ...] = ()
+
+    def keeping(self, edges: Bools) -> Roadmap:
+        """The roadmap with some of its edges (m,) only."""
+        counts = np.diff(self.reach_start)
+        reached = np.repeat(edges, counts)
+        return replace(
+            self,
+            edges=self.edges[edges],
+            clearance_m=self.clearance_m[edges],
+            reach_start=np.concatenate([[0], np.cumsum(counts[edges])]),
+            reach_point=self.reach_point[reached],
+            reach_m=self.reach_m[reached],
+            speed_mps=self.speed_mps[edges],
+        )
 
     @property
     def reach(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -12,6 +12,7 @@ import numpy as np
 from muster import core
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
+from muster.traffic.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.edge_conflicts import conflicts
 from muster.traffic.roadmap import Roadmap
 from muster.traffic.single_moves import MovePlanner, Parameters
@@ -63,6 +64,8 @@ class RoadmapPlan:
         whether the straight way between two places, (2, 2) metres, is free for the widest robot.
     seed
         of the orders that are tried.
+    doors
+        of the mission, which close and open.
     cut_off
         see `Planner`; where many travel on a large roadmap this is not found out: any of them may be.
     """
@@ -70,9 +73,22 @@ class RoadmapPlan:
     roadmap: Roadmap
     clear: Callable[[Floats], bool]
     seed: int = 0
+    doors: RoadmapDoors = NO_DOORS
     cut_off: frozenset[int] = frozenset()
+    _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
     _known: _Network | None = None
+
+    def __post_init__(self) -> None:
+        self._closed = self.doors.closed
+
+    def close(self, doors: Collection[str]) -> None:
+        """From now on these doors are closed, and the others open."""
+        self._closed, self._known = frozenset(doors), None
+
+    def is_open(self, piece: Floats) -> bool:
+        """Whether a straight way (2, 2) leads through no closed door."""
+        return bool(self.doors.open_ways(piece[np.newaxis], self._closed)[0])
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
@@ -108,7 +124,10 @@ class RoadmapPlan:
         places = [place for who in travellers for place in (who.start, *(stop.at for stop in who.stops))]
         places += [place for who in travellers if who.fixed for place in self._around(who)]
         if self._known is None or not self._known.number.keys() >= set(places):
-            self._known = _Network.of(with_places(self.roadmap, self.clear, places))
+            roadmap = with_places(self.roadmap, self.clear, places)
+            if self._closed:
+                roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed))
+            self._known = _Network.of(roadmap)
         return self._known
 
     def _around(self, who: Traveller) -> Iterator[Point]:

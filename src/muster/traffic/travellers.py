@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from muster.mission.model import Robot
+from muster.motion.grid import Floats
 
 Point = tuple[float, float]
 
@@ -66,6 +67,14 @@ class Planner(Protocol):
     @property
     def cut_off(self) -> Collection[int]:
         """The travellers of the last plan, by number, that those who never leave let to none of their stops."""
+        ...
+
+    def close(self, doors: Collection[str]) -> None:
+        """From now on these doors are closed, and the others open."""
+        ...
+
+    def is_open(self, piece: Floats) -> bool:
+        """Whether a straight way (2, 2) leads through no closed door."""
         ...
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterable[Move]:

@@ -202,7 +202,9 @@ def _zone(zone: Zone) -> dict[str, Any]:
     )
     return {
         "corners": [_millimetres(corner) for corner in zone.polygon],
-        "label": f"no entry: {', '.join(zone.forbidden_to)}{heights}",
+        "label": f"door {zone.id}, open at first{heights}"
+        if zone.open
+        else f"no entry: {', '.join(zone.forbidden_to)}{heights}",
     }
 
 

@@ -17,6 +17,7 @@ work of a robot has the words of the judge's schedule. An event of another kind 
 | `cancel_task` | `task` |
 | `move_task` | `task`, `position` |
 | `delay_task` | `task`, `by_s` |
+| `door_closes`, `door_opens` | `door` |
 """
 
 from __future__ import annotations

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from muster.execution import CompletedTask, CompletedWork
-from muster.mission.model import Mission
+from muster.mission.doors import Doors
+from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
 from muster.report.record.mission_state import MissionState
@@ -75,13 +76,30 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
             failed.pop(data["robot"], None)
     once = {name for name, task in mission_state.tasks.items() if task.across_partition == "at-most-once"}
     barred = dict.fromkeys((once & starts.keys()) - done.keys() - cancelled.keys(), BARRED)
-    past = CompletedWork(done=done, cancelled=cancelled, delays_s=delays, barred=barred, used=used, failed_s=failed)
+    past = CompletedWork(
+        done=done,
+        cancelled=cancelled,
+        delays_s=delays,
+        barred=barred,
+        used=used,
+        failed_s=failed,
+        closed=_closed_after(mission, log),
+    )
     names = tuple(robot.id for robot in mission.robots)
     tasks = tuple(
         replace(task, only_robots=names) if task.id in barred else task for task in mission_state.tasks.values()
     )
     current = plan if routes is None else _of_those(routes, names)
     return _with_locks_of_barred(Recovered(mission.at_once(tasks=tasks), replace(current, ignored=plan.ignored), past))
+
+
+def _closed_after(mission: Mission, log: Sequence[Mapping[str, Any]]) -> frozenset[str] | None:
+    """The doors that are closed after a log; None where the mission has none."""
+    doors = Doors.of(mission)
+    for entry in log:
+        if entry["kind"] in ("door_closes", "door_opens"):
+            doors.take(Event(at_s=0, **{entry["kind"]: entry["data"]["door"]}))
+    return doors.closed if doors.known else None
 
 
 def _with_locks_of_barred(found: Recovered) -> Recovered:

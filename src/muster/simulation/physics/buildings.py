@@ -68,7 +68,7 @@ def add_buildings(root: ET.Element, place: ET.Element, world: World, ground_m: f
             length, yaw = math.hypot(x1 - x0, y1 - y0), math.atan2(y1 - y0, x1 - x0)
             _box(place, ((x0 + x1) / 2, (y0 + y1) / 2, length + _THICK_M, _THICK_M, yaw), ground_m, heights.fence_m)
     asset = ET.SubElement(root, "asset")
-    for area in world.areas:
+    for area in filter(world.is_closed, world.areas):
         closed_to = set(area.zone.forbidden_to)
         if closed_to == {"ground", "air"} or (closed_to == {"ground"} and heights.marked):
             low, high = _extent(area, world, ground_m, heights)

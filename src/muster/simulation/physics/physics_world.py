@@ -81,6 +81,7 @@ class PhysicsWorld(WorldBase):
         self._wall_sets: list[Floats] = []
         self._tags = mission.tags
         self._simulated: SimulatedModel | None = None
+        self._built_of: tuple[int, frozenset[str]] | None = None
         self._rays: Rays | None = None
         if wind.gusts_mps > 0:
             how.setdefault("arrival_m", GUSTY_ARRIVAL_M)
@@ -167,10 +168,12 @@ class PhysicsWorld(WorldBase):
         return np.maximum(0.0, random.normal(1.0, self._noise.motors, (count, 2)))
 
     def _update_model(self) -> None:
-        """Make the model at first, and anew when a robot has joined; all others go on as they were."""
-        before = self._simulated
-        if before is not None and len(before.robots) == len(self._robots):
+        """Make the model at first, and anew when a robot has joined or a door turned; all go on as they were."""
+        before, built_of = self._simulated, (len(self._robots), self._doors_closed)
+        if before is not None and built_of == self._built_of:
             return
+        self._built_of = built_of
+        self._wall_sets = []
         walls = [self._walls_of(robot) for robot in self._robots]
         robots = [self._placed(*one) for one in zip(self._robots, self.positions, self.headings, walls, strict=True)]
         scenery = Scenery(self._map, self._tags, self.ground_m)
