@@ -10,7 +10,9 @@ from muster.execution.dispatch import Dispatch, Emit
 from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.execution.task_ledger import Ledger
+from muster.execution.task_motion import place
 from muster.execution.traffic_waits import Progress, TrafficWaits, plain_place
+from muster.motion.port import Place
 
 GIVES_UP_AFTER = 4
 """Times the limit of a jam after which one of its robots gives up its task."""
@@ -18,6 +20,10 @@ AGAIN_AFTER_S = 5.0
 """For so long a robot waits for one that is out, where another has given up their task for it."""
 LONGEST_ASIDE = 3
 """Times the first time that a robot stands aside at most."""
+
+
+Reaches = Callable[[str, Sequence[Place]], list[bool]]
+"""To which places a robot, by its name, can get."""
 
 
 @dataclass
@@ -36,6 +42,8 @@ class Supervisor:
         receives every event that asks for no new plan.
     look_s
         when the next look is due.
+    reaches
+        to which places a robot can get past those that stand for good, for all that is known.
     """
 
     crew: Mapping[str, RobotState]
@@ -47,6 +55,7 @@ class Supervisor:
     limits: Limits
     emit: Emit
     look_s: float
+    reaches: Reaches
 
     def look(self, now: float) -> Iterator[Change]:
         """Check all robots that take part, if that is due; yields changes that require a new plan."""
@@ -65,7 +74,7 @@ class Supervisor:
                 yield from self.changes.exclude(state, SILENT, now)
             elif state.refused and state.activity in MOVING:
                 yield from self._let_refuse(state, now)
-            elif (broken := self._broken_before(state, now)) is not None:
+            elif (broken := self._broken_before(state)) is not None:
                 yield from self._give_way_to_broken(state, broken, now)
             elif is_stuck(state, now, self.limits):
                 yield from self._free_or_put_out(state, now)
@@ -88,14 +97,14 @@ class Supervisor:
             self.emit("robot_sent_again", {"robot": state.robot.id, "reason": "no progress"})
             self.dispatch.again(state, now)
 
-    def _broken_before(self, state: RobotState, now: float) -> RobotState | None:
+    def _broken_before(self, state: RobotState) -> RobotState | None:
         """The robot that is out for which another has waited too long."""
         other = self.crew.get(self.traffic.waits_for(state.robot.id))
         if other is None or not other.out:
             return None
         known = bool(state.route) and self.ledger.blocked_by.get(state.route[0]) == other.robot.id
         least_s = AGAIN_AFTER_S if known else self.limits.stuck_after_s
-        return other if now - self.traffic.progress[state.robot.id].since_s > least_s else None
+        return other if self.traffic.progress[state.robot.id].behind_s.get(other.robot.id, 0.0) > least_s else None
 
     def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> Iterator[Change]:
         if state.activity is Activity.RETURNING:
@@ -182,14 +191,25 @@ class Supervisor:
             yield from self.dispatch.refuse(state, state.route[0], state.refused, now)
 
     def _give_up_blocked(self, state: RobotState, blocking: RobotState, now: float) -> Iterator[Change]:
-        """A failed robot stands in the way to a task; where it stands at the task, others cannot reach that either."""
+        """A failed robot stands in the way to a task: others that have no way to it, or to others, get none either."""
         task, reason = state.route[0], f"unreachable: {blocking.robot.id} stands there, out"
         for other in self._present:
             able = set(self.ledger.tasks[task].requires) <= set(other.robot.skills)
             if other is not state and able and stands_in_the_way(blocking, other.robot, state.places_of_work):
                 self.ledger.refuse(task, other.robot.id, reason)
         self.ledger.blocked_by[task] = blocking.robot.id
+        for other in self._present:
+            self._refuse_cut_off(other, blocking.robot.id, reason)
         return self.dispatch.refuse(state, task, reason, now)
+
+    def _refuse_cut_off(self, state: RobotState, blocking: str, reason: str) -> None:
+        """A robot is given no task to which traffic knows no way for it."""
+        known = [task for task in self.ledger.open if state.robot.id not in self.ledger.refusals.get(task.id, {})]
+        places = [place(task.position if task.entry is None else task.entry) for task in known]
+        for task, reached in zip(known, self.reaches(state.robot.id, places), strict=True):
+            if not reached and state.route[:1] != [task.id]:
+                self.ledger.refuse(task.id, state.robot.id, reason)
+                self.ledger.blocked_by[task.id] = blocking
 
     def _notice_capacity(self, state: RobotState, now: float) -> Iterator[Change]:
         """The capacity of a robot is too small for its current task, or for the rest of its route."""

@@ -104,29 +104,30 @@ class TrafficAccount:
 
 @dataclass
 class Progress:
-    """How a robot gets on to one target: the least way left to it, and when that was reached.
+    """How a robot gets on to one target: the least way left to it, and what held it up since it had come so near.
 
-    `jammed_s` is for how long it has been in a jam since then, `held_s` the same since one of the jam stood aside,
-    `asides` how often it did itself, `told` whether the jam was told.
+    `behind_s`: for how long it waited for each robot; `jammed_s`: for how long it was in a jam; `held_s`: the same since
+    one of the jam stood aside; `asides`: how often it did itself; `told`: whether the jam was told.
     """
 
     robot: str
     target: str
     least_m: float = math.inf
-    since_s: float = 0.0
+    behind_s: dict[str, float] = field(default_factory=dict)
     jammed_s: float = 0.0
     held_s: float = 0.0
     asides: int = 0
     told: bool = False
 
-    def note(self, left_m: float, now: float) -> None:
+    def note(self, left_m: float) -> None:
         if left_m < self.least_m - _NEARER_M:
-            self.least_m, self.since_s = left_m, now
+            self.goes_round(left_m)
             self.jammed_s, self.held_s, self.asides, self.told = 0.0, 0.0, 0, False
 
-    def goes_round(self, left_m: float, now: float) -> None:
+    def goes_round(self, left_m: float) -> None:
         """It was sent another way, which is longer."""
-        self.least_m, self.since_s = left_m, now
+        self.least_m = left_m
+        self.behind_s.clear()
 
 
 class TrafficWaits:
@@ -158,10 +159,10 @@ class TrafficWaits:
         for robot, state in self._crew.items():
             nearer_m = self._nearer_m(state)
             could_m = state.robot.speed_mps * (now - self._looked_s)
-            self._note_progress(state, now)
+            self._note_progress(state)
             if nearer_m < -_ROUND * could_m - _NEARER_M and _under_way(state):
                 self.sent_round.add(robot)
-                self.progress[robot].goes_round(state.way_left_m, now)
+                self.progress[robot].goes_round(state.way_left_m)
             other = self._held_up_by(state, now, hardly=nearer_m < _HARDLY * could_m)
             wait = self.waits.get(robot)
             if other and wait is None:
@@ -174,6 +175,9 @@ class TrafficWaits:
             elif wait is not None and (now - wait.until_s >= WAITS_AFTER_S or not _under_way(state)):
                 yield from self._over(robot, wait)
         since_s, self._looked_s = self._looked_s, now
+        for robot, wait in self.waits.items():
+            behind_s = self.progress[robot].behind_s
+            behind_s[wait.waits_for] = behind_s.get(wait.waits_for, 0.0) + now - since_s
         for core in self._cores():
             for one in self.members(core):
                 one.jammed_s += now - since_s
@@ -210,12 +214,12 @@ class TrafficWaits:
         """How those of a jam get on who wait, by their ids."""
         return [self.progress[robot] for robot in sorted(jam) if robot in self.waits]
 
-    def _note_progress(self, state: RobotState, now: float) -> None:
+    def _note_progress(self, state: RobotState) -> None:
         robot, target = state.robot.id, state.route[0] if state.route else ""
         if robot not in self.progress or self.progress[robot].target != target:
-            self.progress[robot] = Progress(robot, target, since_s=now)
+            self.progress[robot] = Progress(robot, target)
         if _under_way(state):
-            self.progress[robot].note(state.way_left_m, now)
+            self.progress[robot].note(state.way_left_m)
 
     def _over(self, robot: str, wait: TrafficWait) -> Iterator[tuple[str, dict[str, Any]]]:
         del self.waits[robot]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from typing import Protocol
 
 from muster.mission.model import Robot
 from muster.motion.outlook import Outlook
-from muster.motion.port import RobotPort
+from muster.motion.port import Place, RobotPort
 
 LOOK_S = 0.2
 """Seconds between two looks of a manager."""
@@ -26,6 +26,10 @@ class TrafficManager(Protocol):
 
     def close(self, doors: Collection[str]) -> None:
         """From now on these doors are closed, and the others open."""
+        ...
+
+    def reaches(self, robot: str, places: Sequence[Place]) -> list[bool]:
+        """To which places a robot, by its name, can get past those that stand for good, for all that is known."""
         ...
 
     def look(self, now: float) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from muster import core
 from muster.mission.model import Robot
 from muster.motion.outlook import Outlook
-from muster.motion.port import RobotPort
+from muster.motion.port import Place, RobotPort
 from muster.traffic.managed_port import ManagedPort
 from muster.traffic.names import drives
 from muster.traffic.part import Part, planar
@@ -62,6 +62,7 @@ class ReservedTraffic:
     _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
     _parts: list[Part] = field(default_factory=list)
     _planned_s: float = -math.inf
+    _travellers: list[Traveller] = field(default_factory=list)  # of the last plan
     _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
 
     def __post_init__(self) -> None:
@@ -87,6 +88,13 @@ class ReservedTraffic:
             if not all(self.plan.is_open(np.array(piece)) for piece in part.pieces_ahead()):
                 part.port.halt()
                 self._forget_way(part)
+
+    def reaches(self, robot: str, places: Sequence[Place]) -> list[bool]:
+        """See `TrafficManager`."""
+        for part in self._parts[: len(self._travellers)]:
+            if part.robot.id == robot:
+                return self.plan.reaches(self._travellers, part.number, [planar(place) for place in places])
+        return [True for _ in places]
 
     def look(self, now: float) -> None:
         """See how far robots are, plan anew where that is due, and send robots on."""
@@ -118,13 +126,13 @@ class ReservedTraffic:
     def _watch(self, now: float) -> None:
         """One that does not move though it may stands in the way of the others, until it moves or is tried again."""
         for part in self._parts:
+            if part.gone != part.outlook.gone:
+                self._let_out_or_in(part, now)
             moved = math.dist(part.near, part.stood) > _MOVED_M
             if moved or part.port.orders != part.orders:
                 part.tried, part.orders = 0, part.port.orders
                 if part.broken:
                     self._mend(part, now)
-            if part.gone != part.outlook.gone:
-                self._let_out_or_in(part, now)
             if part.broken:
                 if now - part.broken_s >= TRIED_AFTER_S * 2**part.tried:
                     part.tried = min(part.tried + 1, MOST_TRIES) if part.port.goal is None else 0
@@ -210,6 +218,7 @@ class ReservedTraffic:
             self._find_again(part)
             travellers.append(self._traveller(part))
         travellers += [Traveller(part.robot, at, fixed=True) for part in self._parts for at in part.may_be_at]
+        self._travellers = travellers
         stopped = set[int]()
         for traveller, to, stop in self.plan(travellers):
             part = self._parts[traveller]

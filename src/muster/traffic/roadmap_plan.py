@@ -14,7 +14,7 @@ from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.traffic.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.edge_conflicts import conflicts
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmap import Bools, Roadmap
 from muster.traffic.single_moves import MovePlanner, Parameters
 from muster.traffic.travellers import Move, Point, Traveller
 
@@ -119,9 +119,32 @@ class RoadmapPlan:
             own[traveller].append(TimedMove(start_s, point, to, stop))
         return [Journey(end_s, tuple(moves)) for end_s, moves in zip(ends, own, strict=True)]
 
-    def _network_for(self, travellers: Sequence[Traveller]) -> _Network:
-        """The roadmap with their places, as it was for the last plan where that has them."""
-        places = [place for who in travellers for place in (who.start, *(stop.at for stop in who.stops))]
+    def reaches(self, travellers: Sequence[Traveller], number: int, places: Sequence[Point]) -> list[bool]:
+        """See `Planner`."""
+        from scipy.sparse import csr_matrix
+        from scipy.sparse.csgraph import breadth_first_order
+
+        on, who = self._network_for(travellers, places), travellers[number]
+        free = on.roadmap.edges[self._past_fixed(on, travellers, who.robot.radius_m)]
+        size = len(on.roadmap.points)
+        graph = csr_matrix((np.ones(len(free)), tuple(free.T)), shape=(size, size))
+        reached = set(breadth_first_order(graph, on.number[who.start], return_predecessors=False).tolist())
+        return [on.number[place] in reached for place in places]
+
+    def _past_fixed(self, on: _Network, travellers: Sequence[Traveller], radius_m: float) -> Bools:
+        """Which edges keep a robot away from those who never leave, but where it only moves away from one."""
+        apart_m = np.zeros(len(on.roadmap.points))
+        for other in travellers:
+            if other.fixed:
+                at = on.number[other.start]
+                apart_m[at] = max(apart_m[at], radius_m + other.robot.radius_m + on.roadmap.margin_m)
+        edges = np.repeat(np.arange(len(on.roadmap.edges)), np.diff(on.roadmap.reach_start))
+        near = on.roadmap.reach_m < apart_m[on.roadmap.reach_point]
+        return np.asarray(np.bincount(edges[near], minlength=len(on.roadmap.edges)) == 0)
+
+    def _network_for(self, travellers: Sequence[Traveller], more: Sequence[Point] = ()) -> _Network:
+        """The roadmap with their places, and some more, as it was for the last plan where that has them."""
+        places = [*more, *(place for who in travellers for place in (who.start, *(stop.at for stop in who.stops)))]
         places += [place for who in travellers if who.fixed for place in self._around(who)]
         if self._known is None or not self._known.number.keys() >= set(places):
             roadmap = with_places(self.roadmap, self.clear, places)

@@ -77,6 +77,10 @@ class Planner(Protocol):
         """Whether a straight way (2, 2) leads through no closed door."""
         ...
 
+    def reaches(self, travellers: Sequence[Traveller], number: int, places: Sequence[Point]) -> list[bool]:
+        """To which places a traveller gets past those who never leave."""
+        ...
+
     def __call__(self, travellers: Sequence[Traveller]) -> Iterable[Move]:
         """Moves, as far as they are found."""
         ...
