@@ -106,8 +106,8 @@ class TrafficAccount:
 class Progress:
     """How a robot gets on to one target: the least way left to it, and what held it up since it had come so near.
 
-    `behind_s`: for how long it waited for each robot; `jammed_s`: for how long it was in a jam; `held_s`: the same since
-    one of the jam stood aside; `asides`: how often it did itself; `told`: whether the jam was told.
+    `behind_s`: for how long it waited for each robot; `jammed_s`: for how long it was in a jam; `held_s`: the same
+    since one of the jam stood aside; `asides`: how often it did itself; `told`: whether the jam was told.
     """
 
     robot: str

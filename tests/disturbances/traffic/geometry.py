@@ -8,11 +8,12 @@ NEAR_M = 0.15
 
 
 class Space:
-    """Distances to walls, and which places are joined; all zones of the map are closed."""
+    """Distances to walls, and which places are joined; zones without an id are walls, the others are doors."""
 
     def __init__(self, chart):
         self.inside = shapely.Polygon(chart.boundary)
-        self.walls = shapely.union_all([shapely.Polygon(zone.polygon) for zone in chart.zones])
+        self.walls = shapely.union_all([shapely.Polygon(zone.polygon) for zone in chart.zones if zone.id is None])
+        self.doors = {zone.id: shapely.Polygon(zone.polygon) for zone in chart.zones if zone.id is not None}
         self._faces = shapely.union_all([self.walls, self.inside.exterior])
         shapely.prepare((self.inside, self._faces))
 
@@ -22,9 +23,11 @@ class Space:
         away = shapely.distance(points, self._faces)
         return np.where(shapely.covers(self.inside, points), away, 0.0)
 
-    def free(self, radius_m, broken=(), margin_m=0.0):
+    def free(self, radius_m, broken=(), margin_m=0.0, closed=()):
         """The parts of the space where the middle of a body may be, among broken ones of the same radius."""
         room = self.inside.buffer(-radius_m).difference(self.walls.buffer(radius_m))
+        for door in closed:
+            room = room.difference(self.doors[door].buffer(radius_m))
         for place in broken:
             room = room.difference(shapely.Point(place).buffer(2 * radius_m + margin_m))
         return [part for part in shapely.get_parts(room) if not part.is_empty]

@@ -18,7 +18,7 @@ WALL_M = 0.3
 def mission_of(seed):
     """A mission of 4 to 12 robots, all holonomic or all differential drives."""
     random = Random(f"traffic {seed}")
-    make = random.choice((*SCENES, rooms))
+    make = random.choice((*SCENES, rooms, rooms))
     mission = make(random.choice(scenes.KINEMATICS), seed + 1, random.randint(4, 12))
     mission = replace(mission, tasks=mission.tasks[: MOST_TASKS * len(mission.robots)])
     if random.random() < 0.5:
@@ -77,22 +77,23 @@ def _walls(across, up, random):
 
 
 def _wall_with_door(room, upright, has_door, side, random):
-    """The boxes of the wall at the right (upright) or the upper side of a room."""
+    """The boxes of the wall at the right (upright) or the upper side of a room, and of its door."""
     low, high, half = 0.0, side, WALL_M / 2
     spans = [(low - half, high + half)]
     if has_door:
         wide, at = random.uniform(0.75, 1.3), random.uniform(0.3, 0.7) * side
-        spans = [(low - half, at - wide / 2), (at + wide / 2, high + half)]
+        spans = [(low - half, at - wide / 2), (at + wide / 2, high + half), (at - wide / 2, at + wide / 2)]
     x, y = room[0] * side, room[1] * side
-    for begin, end in spans:
+    for k, (begin, end) in enumerate(spans):
+        door = {"id": f"door_{room[0]}_{room[1]}_{upright:d}", "open": True} if k == 2 else {}
         if upright:
-            yield _box(x + side - half, max(0.0, y + begin), x + side + half, y + end)
+            yield _box(x + side - half, max(0.0, y + begin), x + side + half, y + end, **door)
         else:
-            yield _box(max(0.0, x + begin), y + side - half, x + end, y + side + half)
+            yield _box(max(0.0, x + begin), y + side - half, x + end, y + side + half, **door)
 
 
-def _box(left, low, right, high):
-    return Zone(polygon=((left, low), (right, low), (right, high), (left, high)))
+def _box(left, low, right, high, **door):
+    return Zone(polygon=((left, low), (right, low), (right, high), (left, high)), **door)
 
 
 def _robot(name, place, kinematics, random):

@@ -1,4 +1,7 @@
-"""What happens in a run, by seed: robots stop, mostly in narrow places, and come back or not; tasks and robots come."""
+"""What happens in a run, by seed: robots stop, mostly in narrow places, and come back or not; tasks and robots come.
+
+Doors close, and open again or not.
+"""
 
 from math import inf
 from random import Random
@@ -11,6 +14,7 @@ from tests.disturbances.traffic.missions import RADIUS_M, SKILL, newcomer
 STOPS = ("fails", "silent", "held", "loses its orders")
 """How a robot stops: execution is told; it is not heard; it hardly moves; it drops its orders and takes no others."""
 KINDS = (*STOPS, *STOPS, "new task", "cancel", "joins")
+WITH_DOORS = (*KINDS, *(5 * ("closes",)))
 NARROW_M = 2 * RADIUS_M
 """A robot nearer than this to a wall leaves no room for another on that side."""
 WAITS_S = 5.0
@@ -32,6 +36,10 @@ class Script:
         (robot, begin, end) of all that ever stopped; the end is inf of those that are still down.
     where
         the places, (2,) metres, of each robot that is down since it stopped: one that is not heard goes on for a while.
+    closed
+        the doors that are closed now.
+    closings
+        (door, begin, end) of all that ever closed; the end is inf of those that are still closed.
     told
         (time, kind, what) of all that happened.
     """
@@ -41,11 +49,12 @@ class Script:
         self.random = Random(f"script {seed}")
         self.down, self.downs, self.told, self._backs = {}, [], [], {}
         self.where = {}
+        self.closed, self.closings, self._opens = set(), [], {}
         self.robots = {robot.id: robot for robot in mission.robots}
         self.tasks = {task.id: task for task in mission.tasks}
-        count = self.random.randint(1, 6)
+        count, kinds = self.random.randint(1, 6), WITH_DOORS if space.doors else KINDS
         latest_s = 15 * len(mission.tasks) / len(mission.robots)  # most are still under way then
-        self._ahead = sorted((self.random.uniform(1, latest_s), self.random.choice(KINDS)) for _ in range(count))
+        self._ahead = sorted((self.random.uniform(1, latest_s), self.random.choice(kinds)) for _ in range(count))
         self._places = dict(zip(self.robots, self._now(), strict=True))
 
     def look(self):
@@ -58,6 +67,8 @@ class Script:
             self.where[robot].append(places[robot])
         for robot in [name for name, back_s in self._backs.items() if back_s <= now]:
             self._comes_back(robot)
+        for door in [name for name, open_s in self._opens.items() if open_s <= now]:
+            self._opens_again(door)
         for robot in self.robots:
             if robot not in self.down and self.simulation.status.robots[robot].out:
                 self.simulation.report(Event(at_s=0, robot_returns=robot))
@@ -69,7 +80,13 @@ class Script:
                     continue
                 self._stops(robot, kind)
             else:
-                {"new task": self._new_task, "cancel": self._cancel, "joins": self._joins}[kind]()
+                rare = {
+                    "new task": self._new_task,
+                    "cancel": self._cancel,
+                    "joins": self._joins,
+                    "closes": self._closes,
+                }
+                rare[kind]()
             self._ahead.remove((at_s, kind))
 
     def _now(self):
@@ -117,6 +134,29 @@ class Script:
             world.slow(robot, 1.0)
         else:
             world.recover(robot)
+
+    def _closes(self):
+        """A door closes, where there is one that is open."""
+        doors = sorted(self.space.doors.keys() - self.closed)
+        if doors:
+            door = self.random.choice(doors)
+            open_s = self.random.choice((None, self.random.uniform(2, 60), self.random.uniform(2, 60)))
+            if open_s is not None:
+                self._opens[door] = self.simulation.time_s + open_s
+            self.closed.add(door)
+            self.closings.append((door, self.simulation.time_s, inf))
+            self._tell("closes", f"{door}, open after {open_s} s")
+            self.simulation.report(Event(at_s=0, door_closes=door))
+
+    def _opens_again(self, door):
+        del self._opens[door]
+        self.closed.remove(door)
+        now = self.simulation.time_s
+        self.closings = [
+            (name, begin, now if (name, end) == (door, inf) else end) for name, begin, end in self.closings
+        ]
+        self._tell("opens", door)
+        self.simulation.report(Event(at_s=0, door_opens=door))
 
     def _new_task(self):
         task = Task(

@@ -13,7 +13,7 @@ from tests import trials
 from tests.disturbances.traffic.geometry import Space
 from tests.disturbances.traffic.missions import mission_of
 from tests.disturbances.traffic.script import Script
-from tests.disturbances.traffic.verdicts import Poses, Standing, check_contacts, check_lost, check_out
+from tests.disturbances.traffic.verdicts import Poses, Standing, check_contacts, check_doors, check_lost, check_out
 
 ENDS_S = 600.0
 """No run may last longer."""
@@ -56,6 +56,7 @@ def _carry_out(simulation, script, standing):
 def _check(report, simulation, script, standing, poses, space):
     report.check(simulation.done, f"the run does not end in {ENDS_S:g} s")
     check_contacts(report, poses, space, script.robots)
+    check_doors(report, poses, space, script.closings)
     check_out(report, poses.events, script.downs)
     check_lost(report, simulation, script, space)
     report.figures.append(standing.longest_s)

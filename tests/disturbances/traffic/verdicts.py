@@ -1,6 +1,7 @@
 """What must hold of a disturbed run, told from the record's poses and from who was broken when."""
 
 import numpy as np
+import shapely
 
 from tests.disturbances.traffic.geometry import joined
 from tests.disturbances.traffic.missions import RADIUS_M
@@ -56,6 +57,18 @@ def check_contacts(report, poses, space, robots):
         report.check(gaps[at] > RADIUS_M - 1e-3, f"{name} touches a wall at {track[at]}: {gaps[at]:.3f} m")
 
 
+def check_doors(report, poses, space, closings):
+    """Nobody is in a door that is closed, but who was in it when it was closed and has not come out since."""
+    for door, begin, end in closings:
+        within = None
+        for now, places in poses.steps:
+            if begin < now <= end:
+                away = shapely.distance(shapely.points(places), space.doors[door])
+                there = set(np.flatnonzero(away < RADIUS_M - 1e-3).tolist())
+                report.check(within is None or there <= within, f"{there} enter {door}, closed, at {now:.1f} s")
+                within = there
+
+
 class Standing:
     """For how long robots stand that have something to do."""
 
@@ -108,7 +121,8 @@ def check_lost(report, simulation, script, space):
     tasks, lost = script.tasks, dict(result.tasks_lost)
     report.check(set(result.tasks_done) | lost.keys() == tasks.keys(), "a task is neither done nor lost")
     report.check(not set(result.tasks_done) & lost.keys(), "a task is done and lost")
-    parts = space.free(RADIUS_M, [place for name in script.down for place in script.where[name]], margin_m=PASSES_M)
+    broken = [place for name in script.down for place in script.where[name]]
+    parts = space.free(RADIUS_M, broken, margin_m=PASSES_M, closed=script.closed)
     for name, reason in lost.items():
         report.counts[f"lost: {reason.split(':')[0].split(' at ')[0][:30]}"] += 1
         if status.tasks[name] == "cancelled":
