@@ -5,6 +5,7 @@ import pytest
 from tests.disturbances.traffic.verdicts import Poses
 
 from muster import MissionError, ParameterError, Simulation, load, solve
+from muster.cli.main import run
 from muster.mission.model import Event
 
 SITE = """
@@ -139,3 +140,19 @@ def test_events_of_doors_name_a_door(tmp_path):
     path.write_text((tmp_path / "site.yaml").read_text().replace("id: south, ", ""))
     with pytest.raises(MissionError, match="an id beside open: true"):
         load(path)
+
+
+def test_check_says_that_events_open_doors(tmp_path, capsys):
+    site(tmp_path, "[{at_s: 1, door_opens: north}]", north="false")
+    path = tmp_path / "site.yaml"
+    path.write_text(path.read_text().replace(", open: true", ""))
+    assert run(["check", str(path)]) == 0
+    said = capsys.readouterr().out
+    assert "1 task that can never be done" in said
+    assert "with doors as they are at first; events open north" in said
+
+
+def test_without_a_centre_doors_are_refused(tmp_path, capsys):
+    site(tmp_path, "[{at_s: 1, door_closes: south}]")
+    assert run(["simulate", str(tmp_path / "site.yaml"), "--negotiate"]) == 2
+    assert "door south; expected none without a centre" in capsys.readouterr().err

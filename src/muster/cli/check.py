@@ -114,6 +114,8 @@ def _print_checked(mission: Mission, lost: tuple[Unassigned, ...], errors: int) 
         rows = [(item.task, r.robot, r.reason, r.detail) for item in lost for r in item.reasons]
         title = f"{counted(len(lost), 'task')} that can never be done"
         print_table(("task", "robot", "reason", "detail"), rows, title=title)
+        if opened := sorted({event.door_opens for event in mission.events if event.door_opens}):
+            click.echo(f"with doors as they are at first; events open {', '.join(opened)}")
 
 
 def _print_blocked(blocked: tuple[BlockedWay, ...]) -> None:
