@@ -145,7 +145,9 @@ def test_the_examples_of_maps():
 
     text = (ROOT / "docs" / "maps.md").read_text(encoding="utf-8")
     rest = "\nschema: muster/1\nrobots: [{id: r_0, position: [1, 1]}]\ntasks: []\n"
-    *images, polygons = [parse_yaml(block + rest, Path("m.yaml")) for block in blocks(text, "yaml")]
+    *parts, doors = blocks(text, "yaml")
+    *images, polygons = [parse_yaml(part + rest, Path("m.yaml")) for part in parts]
+    assert World.of(parse_yaml(doors, Path("m.yaml"))).closed == {"north"}
     assert [(m.map.ros_yaml, m.map.image) for m in images] == [("floor.yaml", None), (None, "floor.png")]
     assert World.of(polygons).clearance(np.array([[1.0, 1.0]]), "ground") == 1
     (example,) = blocks(text, "python")
