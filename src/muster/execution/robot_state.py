@@ -198,6 +198,11 @@ class RobotState:
         return told + path_length(left[0].position, left[1:])
 
     @property
+    def steered(self) -> bool:
+        """Whether traffic decides when it goes on, and tells how far it has to go."""
+        return self._told_left_m is not None
+
+    @property
     def _told_left_m(self) -> float | None:
         """Metres to the next place of its order that marks no way, where its own navigation tells them."""
         return None if self.telemetry is None or self.telemetry.order != self._order else self.telemetry.left_m

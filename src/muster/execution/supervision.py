@@ -135,12 +135,11 @@ class Supervisor:
         return all(robot in self.traffic.waits or robot not in self.crew for robot in jam)
 
     def _steered(self, members: Sequence[Progress]) -> bool:
-        """Whether traffic decides who passes first of these robots: then it tells how far each has to go.
+        """Whether traffic decides who passes first of these robots.
 
         That one waits for another says the collision avoidance of a robot by itself, too.
         """
-        said = [self.crew[one.robot].telemetry for one in members]
-        return any(one is not None and one.left_m is not None for one in said)
+        return any(self.crew[one.robot].steered for one in members)
 
     def _turn(self, jam: Collection[str], members: Sequence[Progress]) -> int:
         """Which of a jam is the next to stand aside, from 1, as far as its robots do not know of each other.

@@ -267,7 +267,7 @@ class ReservedTraffic:
             part.port.waits_for, part.to_go = "", False
             return
         grant = self._order.grant(part.number)
-        part.to_go = grant.metres > _MOVED_M
+        part.to_go = grant.metres > _AT_GOAL_M
         left_m, away_m = self._order.metres_left(part.number), self._away_m(part)
         if left_m > 0 or away_m <= _AT_GOAL_M or part.port.left_m is None:  # without a way it has come no nearer
             part.port.left_m = left_m + away_m
@@ -286,6 +286,8 @@ class ReservedTraffic:
 
     def _held_up_by(self, part: Part, grant: core.Grant) -> str:
         """The robot that comes first, or stands next to one that has found no way; empty where nobody holds it up."""
+        if part.to_go:
+            return ""
         if grant.waits_for >= 0:
             return self._parts[grant.waits_for].robot.id
         return self._nearest(part) if self._falls_short(part) and not grant.points else ""
