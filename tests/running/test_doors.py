@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 from tests.disturbances.traffic.verdicts import Poses
+from tests.running.test_live import WorldAsFleet
 
 from muster import MissionError, ParameterError, Simulation, load, solve
 from muster.cli.main import run
 from muster.mission.model import Event
+from muster.running.live import Live, carry_out_live
+from muster.server.runs.crash_recovery import recovered_from
 
 SITE = """
 schema: muster/1
@@ -156,3 +159,32 @@ def test_without_a_centre_doors_are_refused(tmp_path, capsys):
     site(tmp_path, "[{at_s: 1, door_closes: south}]")
     assert run(["simulate", str(tmp_path / "site.yaml"), "--negotiate"]) == 2
     assert "door south; expected none without a centre" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("traffic", ["reserve", "free"])
+def test_real_robots_get_other_ways(traffic, tmp_path):
+    mission = site(tmp_path, "[{at_s: 2, door_closes: south}]")
+    fleet = WorldAsFleet(mission)  # whose walls do not change
+    poses = Poses()
+    report = carry_out_live(mission, solve(mission, "greedy"), fleet, traffic=traffic, recorder=poses)
+    assert len(report.tasks_done) == 2
+    assert entered(poses, SOUTH) == np.inf
+
+
+def test_a_run_that_goes_on_after_a_crash_knows_which_doors_are_closed(tmp_path):
+    mission = site(tmp_path)
+    log = [
+        {"time_s": 1.0, "kind": "door_closes", "data": {"door": "south"}},
+        {"time_s": 2.0, "kind": "door_closes", "data": {"door": "north"}},
+        {"time_s": 3.0, "kind": "door_opens", "data": {"door": "north"}},
+    ]
+    past = recovered_from(mission, solve(mission, "greedy"), log).past
+    assert past.closed == {"south"}
+    fleet, poses = WorldAsFleet(mission), Poses()
+    live = Live(mission, solve(mission, "greedy"), fleet, past=past, recorder=poses)
+    while not live.done:
+        live.look()
+        live.hear(live.time_s + 0.2)
+        assert live.time_s < 120
+    assert len(live.result().tasks_done) == 2
+    assert entered(poses, SOUTH) == np.inf
