@@ -202,7 +202,7 @@ def test_the_clock_of_a_mission_begins_with_it(tmp_path):
 
 def test_a_fleet_passes_a_door_in_the_order_of_one_plan():
     """The robots' own avoidance is the local layer: nobody touches, and all get through."""
-    there = scenes.one_way_door("differential-drive", 0, 5)
+    there = scenes.one_way_door("differential-drive", 0, 8)
     fleet = WorldAsFleet(there)
     report = flown(there, fleet)
     assert len(report.tasks_done) == len(there.tasks)

@@ -144,7 +144,7 @@ class Dispatch:
     def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:
         """The way from where a robot is; by way of the last place known to be free, if it stands where it cannot."""
         found = self._way(state.robot, state.position, goal)
-        if found is not None:
+        if found is not None or self._way(state.robot, state.position, state.position) is not None:
             return found
         onward = self._way(state.robot, state.refuge, goal)
         return None if onward is None else [state.refuge, *onward]
@@ -157,7 +157,8 @@ class Dispatch:
         way = self.way(state, work.entry)
         home = self._way_home(state, work)
         if way is None or home is None:
-            yield from self.refuse(state, task, "unreachable: there is no way", now)
+            reason = "there is no way" if way is None else "there is no way from it to the end of the route"
+            yield from self.refuse(state, task, f"unreachable: {reason}", now)
             return
         there = along(way, task)
         delay = self._ledger.delays_s.get(task, 0.0)

@@ -133,10 +133,10 @@ class OverMap:
 
     def way_out(self, robot: Robot, at: Place, goal: Place | None) -> Place | None:
         body, d = body_of(robot), self.robot_paths.world.dimensions
-        if self.robot_paths.clear(body, [at[:d], at[:d]]):
+        if self.robot_paths.stands(body, at):
             return None
         doors_open = RobotPaths(self.robot_paths.world.with_closed(()))
-        free = [there for there in _around(at) if self.robot_paths.clear(body, [there[:d], there[:d]])]
+        free = [there for there in _around(at) if self.robot_paths.stands(body, there)]
         seen = [there for there in free if doors_open.clear(body, [at[:d], there[:d]])]
 
         def metres(there: Place) -> tuple[float, float]:
@@ -151,7 +151,9 @@ class OverMap:
         here = {problem.task_index[name]: spot for name, spot in past.items()}
         here |= {problem.start(i): robots[robot.id] for i, robot in enumerate(problem.robots)}
         for k, metres in enumerate(found.table):
-            lost = [p for p in here if not np.isfinite(np.delete(metres[p], p)).any()]
+            body = over.bodies[k]
+            cut_off = [p for p in here if not np.isfinite(np.delete(metres[p], p)).any()]
+            lost = [p for p in cut_off if not self.robot_paths.stands(body, here[p].point)]
             if lost:
                 refuges = np.array([here[p].refuge for p in lost])
                 apart = np.linalg.norm(over.exits[k, lost] - refuges, axis=1)

@@ -87,6 +87,11 @@ class RobotPaths:
         """Whether a body can move straight from each point of the map frame, (k, d) metres, to the next."""
         return self._finder(body).clear(np.array(points, dtype=np.float64))
 
+    def stands(self, body: Body, place: Sequence[float]) -> bool:
+        """Whether a body can stand at a place, of which the map's coordinates count."""
+        at = place[: self.world.dimensions]
+        return self.clear(body, [at, at])
+
     def _told(self, found: NoPath, body: Body, start: Point, goal: Point) -> NoPath:
         """The same reason with what blocks an end of the path, or with the width of the body that has no path."""
         for blocked, point in (("start blocked", start), ("goal blocked", goal)):

@@ -267,7 +267,7 @@ class ReservedTraffic:
             part.port.waits_for, part.to_go = "", False
             return
         grant = self._order.grant(part.number)
-        part.to_go = grant.metres > _AT_GOAL_M
+        part.to_go = grant.metres > _MOVED_M
         left_m, away_m = self._order.metres_left(part.number), self._away_m(part)
         if left_m > 0 or away_m <= _AT_GOAL_M or part.port.left_m is None:  # without a way it has come no nearer
             part.port.left_m = left_m + away_m

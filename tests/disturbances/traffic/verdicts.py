@@ -135,6 +135,7 @@ def check_lost(report, simulation, script, space):
             and not status.robots[robot.id].out  # `check_out` says whether that is right
             and _may_do(robot, tasks[name])
             and joined(parts, places[robot.id], tasks[name].position)
+            and (not script.mission.rules.return_to_start or joined(parts, places[robot.id], robot.position))
         ]
         report.check(not able, f"{name} is lost, but {[robot.id for robot in able]} could do it: {reason}")
 
