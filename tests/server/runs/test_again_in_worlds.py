@@ -45,7 +45,9 @@ def test_robots_that_err(world):
 @pytest.mark.parametrize("world", WORLDS)
 def test_what_cameras_find_is_found_again(world):
     drone = replace(looking.DRONE, camera=replace(looking.CAMERA, rate_hz=2))
-    log = killed_anywhere(looking.mission(robots=(drone, looking.ROVER)), shares=(0.8,), world=world, settings={"seed": 2})
+    log = killed_anywhere(
+        looking.mission(robots=(drone, looking.ROVER)), shares=(0.8,), world=world, settings={"seed": 2}
+    )
     assert {"found", "new_task"} <= kinds(log)
     assert {"found-4", "found-9"} <= set(log[-1]["data"]["tasks_done"])
 
