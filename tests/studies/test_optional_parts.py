@@ -17,7 +17,7 @@ PARTIAL_INSTALL = Path(__file__).parent.parent / "partial_install.py"
 FIRST_TABLE = {"allocators": "6T-2R", "flown": "random", "thesis-6.1": "sizes"}
 """Instead of the first: that of `allocators` is made of all others, the others are made sooner."""
 SMALLER = {
-    "flown": "from muster_studies.flown import study; study.SETTINGS, study._QUICK_PER_SETTING = study.SETTINGS[-1:], 1",
+    "flown": "from muster_studies.flown import study as s; s.SETTINGS, s._QUICK_PER_SETTING = s.SETTINGS[-1:], 1",
     "jams": "from muster_studies.jams import study; study._QUICK_SCENES = study._QUICK_SCENES[:1]",
     "peers": "from muster_studies.peers import study; study._SHORT = study.Limits(0.2, 0.2, 0.2)",
 }
