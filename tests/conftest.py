@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, settings
 
 # The same examples at every run: a failure in CI is a failure everywhere. HYPOTHESIS_PROFILE=search looks for new ones.
 settings.register_profile(
-    "fixed", max_examples=40, derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+    "fixed", max_examples=25, derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.register_profile("few", settings.get_profile("fixed"), max_examples=10)
 settings.register_profile("search", deadline=None, max_examples=2000, suppress_health_check=[HealthCheck.too_slow])

@@ -1,7 +1,8 @@
 """Run the command as if only Muster's core and some extras were installed: `python partial_install.py EXTRAS CALL...`.
 
-EXTRAS is a list such as `physics,plot`, or empty; each CALL is a JSON list of arguments. Calls run in this process, one
-after the other; the result is one line of JSON for each: exit code, standard output and standard error. Of modules that
+EXTRAS is a list such as `physics,plot`, or empty; each CALL is a JSON list of arguments, or a JSON text: statements of
+Python that make smaller what follows. Calls run in this process, one after the other; the result is one line of JSON
+for each list: exit code, standard output and standard error. Of modules that
 no distribution owns only those of the standard library are seen, so ROS 1, which the system installs, is absent.
 """
 
@@ -69,10 +70,13 @@ def main(extras: str, *calls: str) -> None:
     sys.meta_path[:] = [finder]
     from muster.cli.main import run
 
-    for call in calls:
+    for call in map(json.loads, calls):
+        if isinstance(call, str):
+            exec(call, {})
+            continue
         out, err = StringIO(), StringIO()
         with redirect_stdout(out), redirect_stderr(err):
-            code = run(json.loads(call))
+            code = run(call)
         sys.stdout.write(json.dumps([code, out.getvalue(), err.getvalue()]) + "\n")
         sys.stdout.flush()
 

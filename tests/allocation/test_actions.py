@@ -16,7 +16,7 @@ from muster.mission.model import Action, Camera, Map, Zone
 from muster.mission.plan import Plan, Route
 from muster.verification.travel import Travel, doing_at, place_at_end, place_of_start, place_of_task
 
-CASES = [(seed, over_map) for seed in range(8) for over_map in (False, True)]
+CASES = [*((seed, False) for seed in range(8)), *((seed, True) for seed in range(4))]
 CAMERA = Camera(fov_deg=90, tilt_deg=90)
 
 
@@ -68,8 +68,9 @@ def test_who_may_do_what_is_what_the_judge_says(seed, over_map):
 
 
 @pytest.mark.parametrize(("seed", "over_map"), CASES)
-@pytest.mark.parametrize("allocator", ["search", "greedy", "auction", "consensus-bundle"])
-def test_plans_are_admissible(seed, over_map, allocator):
+def test_plans_are_admissible(seed, over_map):
+    """By each of four allocators, over a map and without."""
+    allocator = ("search", "greedy", "auction", "consensus-bundle")[seed % 4]
     mission = a_mission(seed, over_map)
     limits = {"iterations": 100} if allocator == "search" else {}
     plan = muster.solve(mission, allocator, seed=seed, **limits)
@@ -84,7 +85,7 @@ def test_plans_are_admissible(seed, over_map, allocator):
 def test_there_is_something_to_test(over_map):
     """Of each action some robot does one, some robots cannot, and over the map some are blocked."""
     done, refused, blocked = set(), set(), 0
-    for seed in range(8):
+    for seed in range(3):
         mission = a_mission(seed, over_map)
         problem = Problem.compile(mission)
         plan = muster.solve(mission, "greedy")

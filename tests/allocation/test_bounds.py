@@ -54,7 +54,7 @@ def by_table(seed):
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_no_plan_that_does_every_task_is_below_the_bound(make, objective):
     complete = gap = 0
-    for seed in range(20):
+    for seed in range(10):
         problem = Problem.compile(make(seed), objective)
         _, value, routes = best_plan(problem)
         bound = lower_bound(problem)
@@ -62,7 +62,7 @@ def test_no_plan_that_does_every_task_is_below_the_bound(make, objective):
             complete += 1
             assert bound <= value * (1 + ROUNDING) + ROUNDING, (seed, bound, value)
             gap += 1 - bound / value if value else 0
-    assert complete >= 10
+    assert complete >= 5
     assert gap / complete < 0.7  # a bound that is always 0 is none
 
 
@@ -87,7 +87,7 @@ def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(see
 
 def test_every_argument_says_why_it_holds():
     seen = set()
-    for name in ("16T-3R", "24T-5R", "31T-6R50", "eil51-7", "market-rescue-20"):
+    for name in ("16T-3R", "31T-6R50", "eil51-7"):
         for objective in OBJECTIVES:
             bound = best_bound(Problem.compile(muster.load(name), objective))
             assert all(f"{one}: {WHY[one]}" in bound.why for one in bound.arguments)

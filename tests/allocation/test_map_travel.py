@@ -70,6 +70,7 @@ def random_mission(seed, *, tasks=8, spatial=False):
 
 
 def assert_as_judged(mission, rel):
+    """Every leg of every robot; returns the problem, which takes long to compile in space."""
     problem, travel = Problem.compile(mission), Travel(mission)
     n = len(problem.tasks)
     for i, robot in enumerate(problem.robots):
@@ -81,6 +82,7 @@ def assert_as_judged(mission, rel):
             metres = travel.metres(robot, here, there)
             assert problem.legs(i, [a], [b])[0, 0] == pytest.approx(math.inf if metres is None else metres, rel=rel)
     assert n
+    return problem
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -137,8 +139,7 @@ def test_a_drone_does_not_pass_where_zones_touch(zones, radius):
     drone = Robot(id="drone", position=(8.0, 5.0, 1.0), kind="air", radius_m=radius)
     task = Task(id="t", position=(8.0, 12.0, 1.0))
     mission = Mission(name="slits", robots=(drone,), tasks=(task,), map=arena)
-    assert_as_judged(mission, rel=1e-2)
-    problem = Problem.compile(mission)
+    problem = assert_as_judged(mission, rel=1e-2)
     assert np.isinf(problem.legs(0, [problem.start(0)], [0])).all()
 
 
@@ -158,10 +159,9 @@ def test_on_the_shipped_floor_plan_they_are_those_of_the_judge():
     assert_as_judged(muster.load("floor"), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("allocator", ["search", "greedy", "auction"])
+@pytest.mark.parametrize(("seed", "allocator"), list(enumerate(2 * ["search", "greedy", "auction"])))
 def test_plans_are_admissible(seed, allocator):
-    mission = random_mission(seed, spatial=seed % 3 == 0)
+    mission = random_mission(seed, spatial=seed in (0, 4))
     limits = {"iterations": 200} if allocator == "search" else {}
     plan = muster.solve(mission, allocator, seed=seed, **limits)
     assert plan.complete

@@ -9,7 +9,7 @@ from tests.campaign.trial import trial
 
 pytest.importorskip("ortools", reason="needs the extra exact")
 pytest.importorskip("shapely", reason="needs the extra `map`")
-FIRST, MISSIONS, CHUNK = 15, 60, 20
+FIRST, MISSIONS, CHUNK = 15, 40, 20
 
 
 @pytest.mark.parametrize("first", range(FIRST, FIRST + MISSIONS, CHUNK))

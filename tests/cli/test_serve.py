@@ -58,12 +58,12 @@ def served(folder, *words):
 
 
 def test_from_start_to_end(tmp_path):
-    with served(tmp_path) as server:
-        assert re.fullmatch(r"mission control: http://127\.0\.0\.1:\d+/\n", server.line)
-        page = got(f"{server.address}/")
-        assert page.status_code == 200
-        assert "<title>" in page.text
-        assert got(f"{server.address}/healthz").json() == {"status": "ok"}
+    with served(tmp_path, "6T-2R") as server:
+        (root,) = re.fullmatch(r"mission control: (http://127\.0\.0\.1:\d+)/plan/6T-2R\n", server.line).groups()
+        for page in (got(f"{root}/"), got(server.address)):
+            assert page.status_code == 200
+            assert "<title>" in page.text
+        assert got(f"{root}/healthz").json() == {"status": "ok"}
         with served(tmp_path) as second:  # one server a database
             assert second.line == ""
             _, said = second.process.communicate(timeout=_PATIENCE_S)
@@ -73,9 +73,9 @@ def test_from_start_to_end(tmp_path):
         assert server.end(signal.SIGINT) == (0, "ended\n")
     assert stat.S_IMODE((tmp_path / "muster.db.lock").stat().st_mode) == 0o600
     (tmp_path / "yard.yaml").write_text(MISSION.replace("name: yard", "name: court"), encoding="utf-8")
-    for mission, page in (("yard.yaml", "court"), ("yard.yaml", "court"), ("6T-2R", "6T-2R")):  # it is uploaded once
-        with served(tmp_path, mission) as again:
-            assert again.address.endswith(f"/plan/{page}")
+    for _ in range(2):  # it is uploaded once
+        with served(tmp_path, "yard.yaml") as again:
+            assert again.address.endswith("/plan/court")
             assert got(again.address).status_code == 200
 
 

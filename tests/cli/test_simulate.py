@@ -313,7 +313,10 @@ class TestNegotiate:
     def _with_net(self):
         pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
-    def test_it_tells_what_happens_and_what_it_took(self, muster, eventful, tmp_path):
+    def test_it_tells_what_happens_and_what_it_took(self, muster, tmp_path):
+        """In a mission that is shorter than the others', as it takes real time."""
+        eventful = tmp_path / "eventful.yaml"
+        eventful.write_text(EVENTFUL.replace("[30, 0]", "[10, 0]").replace("[10, 10]", "[6, 8]"), encoding="utf-8")
         gantt = tmp_path / "gantt.png"
         code, out, err = muster("simulate", eventful, "--negotiate", "--speed", "10", "--gantt", str(gantt))
         assert code == 0

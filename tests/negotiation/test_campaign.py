@@ -16,7 +16,7 @@ from muster.running.negotiation_trials import replay
 from muster.running.negotiation_trials.observer import Observer
 from muster.running.negotiation_trials.scenario import scenario_of
 
-RUNS, TIMED_RUNS, CHUNK = 50, 25, 25
+RUNS, TIMED_RUNS, CHUNK = 30, 15, 15
 
 
 @pytest.mark.parametrize("first", range(0, RUNS, CHUNK))

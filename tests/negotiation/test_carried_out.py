@@ -6,7 +6,7 @@ import pytest
 from tests.negotiation.campaign.carried_out import carried_out
 from tests.negotiation.campaign.team_missions import team_scene
 
-SEEDS, CHUNK = 24, 12
+SEEDS, CHUNK = 12, 6
 
 
 @pytest.mark.parametrize("first", range(0, SEEDS, CHUNK))

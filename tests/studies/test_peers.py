@@ -24,7 +24,7 @@ from muster_studies.repetition import Repetition
 from muster_studies.tables import Report, Table
 from muster_studies.uniform import large_mission
 
-SECONDS = 0.15
+SECONDS = 0.1
 EXACT = "CP-SAT"
 
 
@@ -259,7 +259,7 @@ def test_only_random_solvers_run_with_several_seeds():
 
 def test_the_report_has_every_mission_solver_and_the_machine():
     counted = []
-    report = peers_study(Limits(0.1, 0.1, 0.5)).run(
+    report = peers_study(Limits(0.05, 0.05, 0.2)).run(
         Effort(quick=True, tables=("total+max", "large")), 1, lambda done, runs: counted.append((done, runs))
     )
     table, large = report.tables

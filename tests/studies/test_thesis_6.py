@@ -23,7 +23,7 @@ from muster_studies.thesis_6.totals import best_of, search_flights
 
 ROUTES = ("6.2", "6.6", "6.8", "6.9")
 FLOWN_PLANS = [plan for number in ROUTES for plan in plans(number)]
-TABLES = ("6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11", "actions", "noise", "capacity-reserve")
+TABLES = ("6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11", "actions", "noise")
 ACTIONS = ("16T-3R-actions", "31T-6R50-actions", "6T-2R-actions", "11T-2R-actions")
 
 
@@ -32,7 +32,8 @@ def report():
     """With the table of the physics world, where six robots fly one plan: that of all tasks, which takes longest."""
     report = study_named("thesis-6").run(Effort(seeds=2, iterations=300, tables=TABLES))
     assert report.runs > 0
-    return replace(report, tables=(*report.tables, table_of(BesidePhysics(routes=("6.8", "6.9")))))
+    reserves = study_named("thesis-6").run(Effort(seeds=1, iterations=300, tables=("capacity-reserve",)))
+    return replace(report, tables=(*report.tables, *reserves.tables, table_of(BesidePhysics(routes=("6.8", "6.9")))))
 
 
 def table_of(reproduction):
@@ -247,7 +248,7 @@ def test_capacity_is_never_exceeded(tables):
     for record in rows:
         assert record["over"] == 0
         assert (record["lost"] > 0) == (record["lost in"] > 0)
-        assert record["lost in"] <= record["again"] <= record["runs"] == 2
+        assert record["lost in"] <= record["again"] <= record["runs"] == 1
 
 
 def test_a_reserve_spares_planning_again():

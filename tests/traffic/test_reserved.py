@@ -8,10 +8,10 @@ from muster import ParameterError, Simulation, solve
 from muster_studies.jams import scenes
 
 COUNTS = {"one_way_door": 8, "two_way_door": 6, "corridor": 8, "aisles": 4, "dead_ends": 4}
+KINEMATICS = ("holonomic", "differential-drive", "holonomic", "differential-drive", "differential-drive")
 
 
-@pytest.mark.parametrize("kinematics", ["holonomic", "differential-drive"])
-@pytest.mark.parametrize("scene", COUNTS)
+@pytest.mark.parametrize(("scene", "kinematics"), list(zip(COUNTS, KINEMATICS, strict=True)))
 def test_all_get_through(scene, kinematics):
     mission = getattr(scenes, scene)(kinematics, 1, COUNTS[scene])
     simulation = Simulation(mission, solve(mission, "greedy"), traffic="reserve")

@@ -4,11 +4,12 @@ import json
 import os
 import signal
 import time
+from contextlib import closing
 from itertools import groupby, pairwise
 from pathlib import Path
 
 import pytest
-from tests.bridges.ros1.conftest import NODES, own_words
+from tests.bridges.ros1.conftest import NODES, Ros, master_in, own_words
 
 QUICK = ("--time-limit", "0.2", "--format", "json")
 ROBOT = "{id: r_0, position: [0, 0], speed_mps: 3, yaw_rate_radps: 6, radius_m: 0.2, kinematics: differential-drive}"
@@ -263,23 +264,33 @@ def test_a_node_that_dies_ends_the_whole(ros):
     assert twists[-1]["linear"]["x"] == 0
 
 
-@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP])
-def test_a_master_that_goes_away_ends_the_whole(own_ros, end):
-    """It refuses connections, or hangs. For one that is back in time see test_failures."""
-    (own_ros.folder / "far.yaml").write_text(FAR, encoding="utf-8")
-    robot = own_ros.robot("r_0", 0, 0)
-    user = own_ros.user()
-    carried = own_ros.muster("far.yaml", *QUICK, "--quiet")
-    state_is(user, "carrying-out")
-    user.until(NODES.issubset, nodes=True)  # one that begins without a master is what would be told
-    children = family(carried)
-    own_ros.master.send_signal(end)
-    out, err = carried.communicate(timeout=30)
-    assert (carried.returncode, out) == (2, "")
-    line = f"ROS master: {own_ros.master.address}: no answer for 5 s; expected it to stay"
-    assert err.splitlines()[-1] == line  # before it rospy may say a word of its own
-    assert alive(children) == []
-    assert robot.poll() is None
+def test_a_master_that_goes_away_ends_the_whole(own_ros, tmp_path):
+    """One hangs, and another, meanwhile, refuses connections. For one that is back in time see test_failures."""
+
+    def begun(ros):
+        (ros.folder / "far.yaml").write_text(FAR, encoding="utf-8")
+        robot, user = ros.robot("r_0", 0, 0), ros.user()
+        carried = ros.muster("far.yaml", *QUICK, "--quiet")
+        state_is(user, "carrying-out")
+        user.until(NODES.issubset, nodes=True)  # one that begins without a master is what would be told
+        return robot, carried, family(carried)
+
+    def judge(ros, robot, carried, children):
+        out, err = carried.communicate(timeout=30)
+        assert (carried.returncode, out) == (2, "")
+        line = f"ROS master: {ros.master.address}: no answer for 5 s; expected it to stay"
+        assert err.splitlines()[-1] == line  # before it rospy may say a word of its own
+        assert alive(children) == []
+        assert robot.poll() is None
+
+    hangs = begun(own_ros)
+    own_ros.master.send_signal(signal.SIGSTOP)
+    (tmp_path / "other").mkdir()
+    with master_in(tmp_path / "other") as master, closing(Ros(master, tmp_path / "other")) as other:
+        refuses = begun(other)
+        master.send_signal(signal.SIGKILL)
+        judge(other, *refuses)
+    judge(own_ros, *hangs)
 
 
 def test_ctrl_c_while_planning_leaves_nobody_behind(ros):

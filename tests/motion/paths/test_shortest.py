@@ -57,7 +57,7 @@ def without_pinches(blocked):
         blocked[1:, :-1] |= pinches
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_among_many_corners_nothing_is_shorter(seed):
     """So many that each way is bounded by one over cells, and looked for in an ellipse."""
     rng = np.random.default_rng(seed)

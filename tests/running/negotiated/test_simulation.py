@@ -58,8 +58,8 @@ def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and
             Event(at_s=8, robot_fails="r_1"),
             Event(at_s=8.5, robot_fails="r_1"),
             Event(at_s=20, new_task=new),
-            Event(at_s=70, robot_returns="r_1"),
-            Event(at_s=71, new_task=Task(id="last", position=(20.0, 5.0))),
+            Event(at_s=50, robot_returns="r_1"),
+            Event(at_s=51, new_task=Task(id="last", position=(20.0, 5.0))),
         ]
     )
     file = tmp_path / "record.mcap"
@@ -92,11 +92,11 @@ def test_when_all_robots_fail_the_mission_ends_with_what_was_done():
 
 def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
     mission = Mission(
-        robots=tuple(Robot(id=f"r_{k}", position=(30.0 * k, 0.0), radius_m=0.3) for k in range(2)),
-        tasks=tuple(Task(id=str(k), position=(30.0 * k, 8.0), duration_s=20.0) for k in range(2)),
+        robots=tuple(Robot(id=f"r_{k}", position=(12.0 * k, 0.0), radius_m=0.3) for k in range(2)),
+        tasks=tuple(Task(id=str(k), position=(12.0 * k, 8.0), duration_s=10.0) for k in range(2)),
         events=(
             Event(at_s=1, robot_silent="r_0"),
-            Event(at_s=100, robot_returns="r_0"),
+            Event(at_s=60, robot_returns="r_0"),
         ),
     )
     report, told = carried_out(mission)

@@ -11,7 +11,8 @@ import pytest
 from tests.report.page.browser import browser_found
 
 WIDE, NARROW = {"width": 1440, "height": 900}, {"width": 390, "height": 844}
-SHOTS = Path(os.environ.get("MUSTER_SCREENSHOTS", "build/screenshots"))
+PICTURES = os.environ.get("MUSTER_SCREENSHOTS")
+SHOTS = Path(PICTURES or "build/screenshots")
 DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 FLAGS = (
     "--no-sandbox",
@@ -50,8 +51,8 @@ def served(tmp_path_factory):
         yield origin
 
 
-@pytest.fixture(scope="module")
-def chromium():
+@contextmanager
+def running_chromium():
     if browser_found() is None:
         pytest.skip("no browser: tools/test_packages.sh installs one")
     from playwright.sync_api import sync_playwright
@@ -60,6 +61,12 @@ def chromium():
         browser = playwright.chromium.launch(executable_path=browser_found(), args=list(FLAGS))
         yield browser
         browser.close()
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with running_chromium() as browser:
+        yield browser
 
 
 class Watched:
@@ -78,15 +85,16 @@ class Watched:
         self.page.goto(f"{self.origin}{path}")
 
     def shoot(self, name, settles_ms=300):
-        """A picture of the page as it is, on a screen and on a phone."""
-        SHOTS.mkdir(parents=True, exist_ok=True)
+        """Draw the page as it is on a phone and on a screen, and keep pictures where they are asked for."""
         for size in (NARROW, WIDE):
             self.page.set_viewport_size(size)
-            self.page.wait_for_timeout(settles_ms)
+            self.page.wait_for_timeout(settles_ms if PICTURES else 0)
             for frame in self.page.frames:
                 frame.evaluate(DRAWN)  # a page within the page is laid out after it
-            phone = size is NARROW
-            self.page.screenshot(path=SHOTS / f"{name}-{size['width']}x{size['height']}.png", full_page=phone)
+            if PICTURES:
+                SHOTS.mkdir(parents=True, exist_ok=True)
+                phone = size is NARROW
+                self.page.screenshot(path=SHOTS / f"{name}-{size['width']}x{size['height']}.png", full_page=phone)
 
     def keep(self, name):
         """What is seen where a test has failed: a picture, and the page as text."""

@@ -1,7 +1,7 @@
 """The whole story in a real browser: open, plan, ask why, carry out, change, see what follows, replay, take away.
 
-Its parts are tests that follow one another on one page. Pictures of every view are kept (`MUSTER_SCREENSHOTS` says
-where, by default `build/screenshots`).
+Its parts are tests that follow one another on one page. Pictures of every view are kept where `MUSTER_SCREENSHOTS`
+names a folder.
 """
 
 import json
