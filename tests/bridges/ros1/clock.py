@@ -1,6 +1,7 @@
-"""A simulator's clock that knows nothing of Muster: TIMES real time, said on /clock 100 times a second.
+"""A simulator's clock that knows nothing of Muster: TIMES BACK LATER; said on /clock 100 times a second.
 
-With BACK it stands for a second when robot r_0 is that far east, and begins again at 100: a world that is reset.
+It goes TIMES real time until robot r_0 is BACK far east, stands for a second, and begins again at 100, a world that is
+reset; from there it goes LATER times real time.
 """
 
 import math
@@ -15,7 +16,7 @@ from rosgraph_msgs.msg import Clock
 
 rospy.init_node("simulator")
 said = rospy.Publisher("/clock", Clock, queue_size=1)
-times, back = float(sys.argv[1]), float(sys.argv[2]) if len(sys.argv) > 2 else math.inf
+times, back, later = map(float, sys.argv[1:])
 east = [0.0]
 rospy.Subscriber("/r_0/odom", Odometry, lambda message: east.append(message.pose.pose.position.x))
 at, last = 1000.0, time.monotonic()
@@ -26,4 +27,4 @@ while not rospy.is_shutdown():
     said.publish(Clock(rospy.Time.from_sec(at)))
     if east[-1] > back:
         time.sleep(1.0)
-        at, back, last = 100.0, math.inf, time.monotonic()
+        at, times, back, last = 100.0, later, math.inf, time.monotonic()

@@ -30,6 +30,15 @@ def own_words(err):
     return "".join(line for line in err.splitlines(keepends=True) if not line.startswith("[WARN] "))
 
 
+def family(process):
+    """Ids of a process' children."""
+    return [int(pid) for pid in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()]
+
+
+def alive(pids):
+    return [pid for pid in pids if Path(f"/proc/{pid}").exists()]
+
+
 class Ros:
     """Nodes under one master, each a process; all end with the test."""
 
@@ -186,10 +195,18 @@ def ros(shared_master, tmp_path):
             proxy.deleteParam("/test", node)
 
 
+@contextmanager
+def ros_in(folder):
+    """Nodes under a master of the test's own, whose parameters it may set, and which it may stop and start again."""
+    with master_in(folder) as master:
+        nodes = Ros(master, folder)
+        try:
+            yield nodes
+        finally:
+            nodes.close()
+
+
 @pytest.fixture
 def own_ros(rospy_there, tmp_path):
-    """Nodes under a master of the test's own, whose parameters it may set, and which it may stop and start again."""
-    with master_in(tmp_path) as master:
-        nodes = Ros(master, tmp_path)
+    with ros_in(tmp_path) as nodes:
         yield nodes
-        nodes.close()

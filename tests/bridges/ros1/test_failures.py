@@ -3,22 +3,17 @@
 import json
 import signal
 import time
+from contextlib import ExitStack
 
-import pytest
-from tests.bridges.ros1.conftest import NODES
+from tests.bridges.ros1.conftest import NODES, alive, family, ros_in
 
 FAR = """
 schema: muster/1
 robots: [{id: r_0, position: [0, 0], speed_mps: 3, yaw_rate_radps: 6, radius_m: 0.2, kinematics: differential-drive}]
 tasks: [{id: t_1, position: [6, 0]}, {id: t_2, position: [9, 0]}]
 """
+VERY_FAR = FAR.replace("[6, 0]", "[60, 0]").replace("[9, 0]", "[90, 0]")
 QUICK = ("--time-limit", "0.2", "--format", "json")
-
-
-@pytest.fixture
-def far(tmp_path):
-    (tmp_path / "m.yaml").write_text(FAR, encoding="utf-8")
-    return "m.yaml"
 
 
 def until_it_drives(carried):
@@ -27,33 +22,56 @@ def until_it_drives(carried):
             return
 
 
+def under_way(stack, folder, mission):
+    """A master of its own, a robot that drives, and what carries the mission out there."""
+    folder.mkdir()
+    (folder / "m.yaml").write_text(mission, encoding="utf-8")
+    ros = stack.enter_context(ros_in(folder))
+    robot, user, carried = ros.robot("r_0", 0, 0), ros.user(), ros.muster("m.yaml", *QUICK)
+    user.until(NODES.issubset, nodes=True)  # one that begins without a master does not stay
+    until_it_drives(carried)
+    return ros, robot, carried
+
+
 def velocities(listener):
     return [data for topic, data in listener.so_far() if topic == "/r_0/cmd_vel"]
 
 
-def test_a_master_that_is_started_anew_does_not_stop_a_mission(own_ros, far):
-    own_ros.robot("r_0", 0, 0)
-    user = own_ros.user()
-    carried = own_ros.muster(far, *QUICK)
-    user.until(NODES.issubset, nodes=True)  # one that begins without a master does not stay
-    until_it_drives(carried)
-    own_ros.master.stop()
-    time.sleep(1.0)  # it is looked for meanwhile
-    own_ros.master.start()
-    out, err = carried.communicate(timeout=40)
-    assert carried.returncode == 0, err
-    assert json.loads(out)["tasks_done"] == ["t_1", "t_2"]
-    assert "Traceback" not in err
+def test_masters_that_go_away_end_the_whole_and_one_that_is_started_anew_does_not(rospy_there, tmp_path):
+    """One hangs, one refuses connections, one is back in time: each under a mission of its own, for each takes long."""
+    with ExitStack() as stack:
+        lost = []
+        for end in (signal.SIGSTOP, signal.SIGKILL):
+            ros, robot, carried = under_way(stack, tmp_path / end.name, VERY_FAR)
+            lost.append((ros, robot, carried, family(carried)))
+            ros.master.send_signal(end)
+        ros, _, carried = under_way(stack, tmp_path / "anew", FAR)
+        ros.master.stop()
+        time.sleep(1.0)  # it is looked for meanwhile
+        ros.master.start()
+        out, err = carried.communicate(timeout=40)
+        assert carried.returncode == 0, err
+        assert json.loads(out)["tasks_done"] == ["t_1", "t_2"]
+        assert "Traceback" not in err
+        for ros, robot, carried, children in lost:
+            out, err = carried.communicate(timeout=30)
+            assert (carried.returncode, out) == (2, "")
+            line = f"ROS master: {ros.master.address}: no answer for 5 s; expected it to stay"
+            assert line in err.splitlines()  # beside it rospy may say a word of its own, and robots how they stand
+            assert alive(children) == []
+            assert robot.poll() is None
 
 
 def test_robots_stand_when_their_controller_ends_or_another_takes_its_place(ros):
-    (ros.folder / "far.yaml").write_text(FAR.replace("[6, 0]", "[60, 0]").replace("[9, 0]", "[90, 0]"), "utf-8")
+    (ros.folder / "far.yaml").write_text(VERY_FAR, "utf-8")
     ros.robot("r_0", 0, 0)
     listener = ros.listener("/r_0/cmd_vel=geometry_msgs/Twist", "/r_0/odom=nav_msgs/Odometry")
 
     # a second takes the place of the first, which ends with a line
     first = ros.muster("far.yaml", *QUICK, "--on-start")
-    assert ros.user().call("/command_interface/start")[0]
+    user = ros.user()
+    user.until(lambda status: status["state"] == "waiting", last="/muster/status")
+    assert user.call("/command_interface/start")[0]
     until_it_drives(first)
     second = ros.muster("far.yaml", *QUICK)
     _, err = first.communicate(timeout=20)

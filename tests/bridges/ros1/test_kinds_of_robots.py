@@ -62,9 +62,9 @@ def test_a_plan_is_carried_out_from_where_robots_stand_in_their_frames_and_in_th
     route = next(route for route in plan["routes"] if route["robot"] == "r_0")
     route["tasks"] = ["t_1", "t_2"]  # from where it stands the other way round would be shorter
     (tmp_path / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
-    ros.start(ros.file("robot.py"), "r_0", 1, 3, "frame=r_0/odom", "tied")
+    ros.start(ros.file("robot.py"), "r_0", 1, 3, "pose", "frame=r_0/odom", "tied")
     ros.robot("d_0", 0, 5, "--kind", "air", "--kinematics", "quadcopter", "--height", 1)
-    listener = ros.listener("/r_0/odom=nav_msgs/Odometry", "/d_0/odom=nav_msgs/Odometry")
+    listener = ros.listener("/r_0/pose=geometry_msgs/PoseStamped", "/d_0/odom=nav_msgs/Odometry")
     tasks, err = done(ros.muster("m.yaml", *QUICK, "--plan", "plan.json"), STILL_MOVING)
     assert set(tasks) == {"t_1", "t_2", "high", "low"}
     assert tasks.index("t_1") < tasks.index("t_2")
@@ -74,33 +74,45 @@ def test_a_plan_is_carried_out_from_where_robots_stand_in_their_frames_and_in_th
     heard = listener.heard()
     flown = places(heard, "/d_0/odom")
     assert max(nearest(flown, (2, 5, 3)), nearest(flown, (2, 7, 1.5))) < 0.15
-    said = places(heard, "/r_0/odom")
+    said = places(heard, "/r_0/pose")
     assert nearest(said, (2 * 0 + 5, 10 - 2, 0)) < 0.15  # t_1, seen from its own frame
     assert nearest(said, (2 + 5, 10 - 2, 0)) < 0.15
 
 
-def test_odometry_that_begins_at_the_start_counts_from_there(ros, tmp_path):
-    """(4.2)-(4.4) of [tcf-thesis]: r_0/odom is tied to the map by the start in the mission alone."""
+def test_a_robot_in_a_namespace_may_say_nothing_but_odometry_that_begins_at_its_start(ros, tmp_path):
+    """(4.2)-(4.4) of [tcf-thesis]: team/r_0/odom is tied to the map by the start in the mission alone."""
     (tmp_path / "m.yaml").write_text(
         ONE.replace("[0, 0]", "[10, -5], heading_deg: 90, camera: {fov_deg: 60, tilt_deg: 30, mount: [0.1, 0, 0.2]}")
         .replace("[2, 0]", "[12, -5]")
         .replace("[2, 2]", "[12, -3]"),
         "utf-8",
     )
-    ros.start(ros.file("robot.py"), "r_0", 10, -5, "frame=r_0/odom")
-    listener = ros.listener("/r_0/odom=nav_msgs/Odometry", "/tf_static=tf2_msgs/TFMessage")
-    tasks, err = done(ros.muster("m.yaml", *QUICK, "--odometry", "start"))
+    ros.start(ros.file("robot.py"), "r_0", 10, -5, "namespace=team", "frame=team/r_0/odom")
+    ros.start(ros.file("robot.py"), "r_9", 11, -4)
+    listener = ros.listener(
+        "/team/r_0/odom=nav_msgs/Odometry",
+        "/team/r_0/task_sequence=std_msgs/String",
+        "/r_9/cmd_vel=geometry_msgs/Twist",
+        "/muster/events=std_msgs/String",
+        "/tf_static=tf2_msgs/TFMessage",
+    )
+    tasks, err = done(ros.muster("m.yaml", *QUICK, "--namespace", "team", "--odometry", "start"))
     assert set(tasks) == {"t_1", "t_2"}
     assert "begins at" not in err
     heard = listener.heard()
-    said = places(heard, "/r_0/odom")
+    said = places(heard, "/team/r_0/odom")
     assert nearest(said, (0, -2, 0)) < 0.15  # t_1, two metres to the right of the start
     assert nearest(said, (2, -2, 0)) < 0.15
+    told = [json.loads(data["data"]) for topic, data in heard if topic == "/team/r_0/task_sequence"]
+    assert any(set(tasks) == {"t_1", "t_2"} for tasks in told)
+    assert not [topic for topic, _ in heard if topic == "/r_9/cmd_vel"]  # outside the namespace: it does not join
+    assert "robot_joins" not in [json.loads(data["data"])["kind"] for topic, data in heard if topic == "/muster/events"]
     frames = {
         one["child_frame_id"]: one for topic, data in heard if topic == "/tf_static" for one in data["transforms"]
     }
-    assert frames["r_0/odom"]["header"]["frame_id"] == "map"
-    assert frames["r_0/odom"]["transform"]["translation"] == {"x": 10.0, "y": -5.0, "z": 0.0}
+    start = frames["team/r_0/odom"]
+    assert start["header"]["frame_id"] == "map"
+    assert start["transform"]["translation"] == {"x": 10.0, "y": -5.0, "z": 0.0}
     camera = frames["muster/r_0/camera"]
     assert camera["header"]["frame_id"] == "muster/r_0"
     assert camera["transform"]["translation"] == {"x": 0.1, "y": 0.0, "z": 0.2}
@@ -152,25 +164,6 @@ def test_options_that_cannot_be_meant_are_one_line(rospy_there, one, monkeypatch
     assert err.count("\n") == 1
 
 
-def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is(ros, one):
-    ros.start(ros.file("robot.py"), "r_0", 0, 0, "namespace=team", "pose")
-    ros.start(ros.file("robot.py"), "r_9", 1, 1)
-    listener = ros.listener(
-        "/team/r_0/pose=geometry_msgs/PoseStamped",
-        "/team/r_0/task_sequence=std_msgs/String",
-        "/r_9/cmd_vel=geometry_msgs/Twist",
-        "/muster/events=std_msgs/String",
-    )
-    assert set(done(ros.muster(one, *QUICK, "--namespace", "team"))[0]) == {"t_1", "t_2"}
-    heard = listener.heard()
-    said = places(heard, "/team/r_0/pose")
-    assert max(nearest(said, (2, 0, 0)), nearest(said, (2, 2, 0))) < 0.15
-    told = [json.loads(data["data"]) for topic, data in heard if topic == "/team/r_0/task_sequence"]
-    assert any(set(tasks) == {"t_1", "t_2"} for tasks in told)
-    assert not [topic for topic, _ in heard if topic == "/r_9/cmd_vel"]  # outside the namespace: it does not join
-    assert "robot_joins" not in [json.loads(data["data"])["kind"] for topic, data in heard if topic == "/muster/events"]
-
-
 def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path):
     """A stranger and a robot of the mission, driven by hand while another of the mission's is waited for in vain.
 
@@ -180,17 +173,17 @@ def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path):
     own_ros.start(own_ros.file("robot.py"), "r_1", 5, 5, "frame=lost")
     moved = ("joy", "r_0")
     for k, name in enumerate(moved):
-        own_ros.start(own_ros.file("robot.py"), name, 0, k, "by_hand=1.0")
+        own_ros.start(own_ros.file("robot.py"), name, 0, k, "by_hand=2.0")
     listener = own_ros.listener(
         *(f"/{name}/cmd_vel=geometry_msgs/Twist" for name in moved),
         *(f"/{name}/WP=geometry_msgs/PoseStamped" for name in moved),
         *(f"/{name}/odom=nav_msgs/Odometry" for name in moved),
         "/tf=tf2_msgs/TFMessage",
     )
-    carried = own_ros.muster("m.yaml", "--wait", "4")
+    carried = own_ros.muster("m.yaml", "--wait", "2")
     out, err = carried.communicate(timeout=30)
     assert (carried.returncode, out) == (2, "")
-    said = "robot r_1: its poses are in frame lost, which tf does not tie to map within 4 s; expected its pose\n"
+    said = "robot r_1: its poses are in frame lost, which tf does not tie to map within 2 s; expected its pose\n"
     assert own_words(err) == said
     heard = listener.heard()
     met = {one["child_frame_id"] for topic, data in heard if topic == "/tf" for one in data["transforms"]}
