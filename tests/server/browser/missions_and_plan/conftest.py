@@ -17,7 +17,7 @@ tasks:
 """
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def served(tmp_path_factory):
     with serving(tmp_path_factory.mktemp("served")) as origin:
         yield origin
