@@ -146,7 +146,7 @@ class Listener:
         text = self._file.read_text(encoding="utf-8")
         return [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()]
 
-    def _until_quiet(self, quiet_s=0.3, within_s=5.0):
+    def _until_quiet(self, quiet_s=0.5, within_s=5.0):
         """What was said last may still be on its way to a busy listener."""
         heard, since = self._ending(), time.monotonic()
         until = since + within_s
