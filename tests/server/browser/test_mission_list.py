@@ -29,6 +29,6 @@ def test_a_list_that_is_read_twice_at_once_is_shown_once(chromium, tmp_path, mon
         )
         for name in ("6T-2R copy", "31T-6R50 copy"):
             page.get_by_role("button", name=f"Delete {name}", exact=True).wait_for()
-        page.wait_for_timeout(700)
+        page.wait_for_timeout(900)
         assert page.locator("#missions").count() == 1
         page.close()
