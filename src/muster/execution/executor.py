@@ -32,7 +32,7 @@ from muster.execution.robot_state import Activity, RobotState
 from muster.execution.script import Script
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
 from muster.execution.standing import KEPT_EVENTS, KEPT_REVISIONS, UNTIL_DONE, EventLog, Forgetting, Standing
-from muster.execution.supervision import Reaches, Supervisor
+from muster.execution.supervision import Reaches, Supervisor, everywhere
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
 from muster.execution.team_work import break_off
@@ -104,7 +104,7 @@ class Executor:
         peers: Peers | None = None,
         standing: Standing | None = None,
         on_doors: Callable[[Collection[str]], None] = lambda closed: None,
-        reaches: Reaches = lambda robot, places: [True for _ in places],
+        reaches: Reaches = everywhere,
     ) -> None:
         self.mission = mission
         self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored, plan.ignored)

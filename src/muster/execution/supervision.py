@@ -26,6 +26,11 @@ Reaches = Callable[[str, Sequence[Place]], list[bool]]
 """To which places a robot, by its name, can get."""
 
 
+def everywhere(robot: str, places: Sequence[Place]) -> list[bool]:
+    """Nobody is known to be cut off: a `Reaches` without traffic."""
+    return [True for _ in places]
+
+
 @dataclass
 class Supervisor:
     """Notices missed telemetry, way points refused, waiting in traffic, jams, no progress, and too little capacity.

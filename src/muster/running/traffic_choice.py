@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-
+from muster.execution.supervision import Reaches, everywhere
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.motion.avoidance_names import AUTO as ANY_AVOIDANCE
 from muster.motion.laws import PROFILE
 from muster.motion.map_world import World
-from muster.motion.port import Place
 from muster.traffic.manager import TrafficManager
 from muster.traffic.managers import manager_named
 from muster.traffic.names import RESERVE, of_run
@@ -51,6 +49,6 @@ def manager_for(
     return manager_named(chosen, mission, seed, world=world, margin_m=MARGIN_M if exact else LOOSE_MARGIN_M)
 
 
-def reaches_of(manager: TrafficManager | None) -> Callable[[str, Sequence[Place]], list[bool]]:
+def reaches_of(manager: TrafficManager | None) -> Reaches:
     """To which places a robot can get among the others, as its traffic knows; without any, to all."""
-    return (lambda robot, places: [True for _ in places]) if manager is None else manager.reaches
+    return everywhere if manager is None else manager.reaches
