@@ -91,10 +91,8 @@ class Changes:
             yield from self._move(self._task(event.move_task.task), event.move_task.position, now)
         elif event.delay_task is not None:
             yield from self._delay(self._task(event.delay_task.task), event.delay_task.by_s)
-        elif event.door_closes is not None:
-            yield from self._turn_door("door_closes", event.door_closes, event, now)
-        elif event.door_opens is not None:
-            yield from self._turn_door("door_opens", event.door_opens, event, now)
+        elif event.door is not None:
+            yield from self._turn_door(event, event.door, now)
 
     def exclude(self, state: RobotState, why: str, now: float, detail: str = "") -> Iterator[Change]:
         """Exclude a robot: its tasks are free, the current one too."""
@@ -181,8 +179,10 @@ class Changes:
             self.ledger.delay(task, by_s)
             yield Change("delay_task", {"task": task, "by_s": by_s})
 
-    def _turn_door(self, kind: str, door: str, event: Event, now: float) -> Iterator[Change]:
+    def _turn_door(self, event: Event, door: str, now: float) -> Iterator[Change]:
         """Robots under way are sent again, by other ways; where one opens they try what they had no way to."""
+        opens = event.door_opens is not None
+        kind = "door_opens" if opens else "door_closes"
         if door not in self.doors.known:
             expected = " or ".join(sorted(self.doors.known)) or "a zone or lane with an id"
             raise ParameterError(f"{kind}: {shown(door)}; expected {expected}")
@@ -193,9 +193,9 @@ class Changes:
                 state.left = self.travel.way_out(state.robot, state.position, goal) or state.left
                 if not state.out and state.activity in (Activity.DRIVING, Activity.RETURNING):
                     state.stop(now)
-                if kind == "door_opens" and state.cut_off:
+                if opens and state.cut_off:
                     state.cut_off = state.at_home = False
-            if kind == "door_opens":
+            if opens:
                 self.ledger.try_again()
             yield Change(kind, {"door": door})
 

@@ -197,7 +197,7 @@ class Executor:
             if the event does not fit (see `Changes.apply`).
         """
         changes = list(self._changes.apply(self._due_at_once(event), self.now_s, reason))
-        if event.door_closes is not None or event.door_opens is not None:
+        if event.door is not None:
             self._forecast.forget()
         self._ask(changes)
         self.ended_s = None if changes else self.ended_s

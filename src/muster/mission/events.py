@@ -40,6 +40,11 @@ class Event(Checked):
     door_closes: str | None = spec(Text(), "id of the zone or lane that is closed from then on", default=None)
     door_opens: str | None = spec(Text(), "id of the zone or lane that is open from then on", default=None)
 
+    @property
+    def door(self) -> str | None:
+        """The door that closes or opens."""
+        return self.door_opens if self.door_closes is None else self.door_closes
+
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         names = [f.name for f in specified(cls) if f.name != "at_s"]

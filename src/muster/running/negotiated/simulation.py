@@ -104,9 +104,10 @@ def negotiate_and_carry_out(
     if traffic == RESERVE:
         raise ParameterError(f"traffic: {traffic}; expected free: without a centre nobody plans for all")
     for event in problem.mission.events:
-        if event.door_closes is not None or event.door_opens is not None:
-            door = event.door_closes or event.door_opens
-            raise ParameterError(f"events: door {door}; expected none without a centre, where nobody tells of doors")
+        if event.door is not None:
+            raise ParameterError(
+                f"events: door {event.door}; expected none without a centre, where nobody tells of doors"
+            )
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         bodies = recorded_world(
