@@ -18,7 +18,7 @@ from muster.negotiation.participation import plan_of
 OTHERS = tuple(product(WINNERS, PLACEMENTS))
 
 
-def cut_down(mission, tasks=60, robots=8):
+def cut_down(mission, tasks=32, robots=8):
     """The mission with its first robots and tasks alone, if it has many; none of these tasks asks for another then."""
     if len(mission.tasks) <= tasks and len(mission.robots) <= 12:
         return mission
