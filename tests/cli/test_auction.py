@@ -2,9 +2,11 @@
 
 import json
 import signal
+import socket
 import subprocess
 import sys
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -126,9 +128,6 @@ def test_a_network_that_loses_too_much_is_told(muster, three):
 
 def free_ports(number):
     """Ports of this machine that are free at the moment."""
-    import socket
-    from contextlib import ExitStack
-
     with ExitStack() as stack:
         sockets = [stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(number)]
         for each in sockets:
@@ -141,10 +140,15 @@ def ports():
     return dict(zip("abc", free_ports(3), strict=True))
 
 
-def robot(name, ports, *others, mission="three.yaml", key="key", named=True):
+def of_robot(name, ports, *others, mission="three.yaml", key="key", named=True):
+    """The words of its command."""
     peers = ",".join(f"{other}=" * named + f"127.0.0.1:{port}" for other, port in ports.items() if other != name)
     address = ("--listen", f"127.0.0.1:{ports[name]}", "--connect", peers)
-    return running("auction", mission, "--robot", name, "--key-file", key, *address, *others)
+    return "auction", mission, "--robot", name, "--key-file", key, *address, *others
+
+
+def robot(name, ports, *others, **more):
+    return running(*of_robot(name, ports, *others, **more))
 
 
 def ended(*processes):
@@ -234,38 +238,29 @@ def test_without_either_something_is_missing(muster):
     assert err.endswith("Error: Missing argument 'MISSION'.\n")
 
 
-def test_another_key_is_told(muster, three, ports):
+def test_another_key_and_another_mission_are_told(muster, three, ports):
+    """The first two robots have the same key, the third and the first the same mission."""
     assert muster("auction", "--new-key", "other")[0] == 0
-    processes = [robot("a", ports, "--wait", 6), robot("b", ports, "--wait", 6, key="other")]
-    for name, (code, out, err) in zip("ab", ended(*processes), strict=True):
-        assert (code, out) == (2, "")
-        *_, last = err.splitlines()  # each may have said before that it is alone
-        assert last.startswith(f"{name}: ")
-        assert last.endswith(" messages, none made with this key; expected the same key everywhere")
-
-
-def test_another_mission_is_told(three, ports):
     Path("other.yaml").write_text(MISSION.replace("[1, 1]", "[1, 2]"), encoding="utf-8")
-    results = ended(robot("a", ports, "--wait", 10), robot("b", ports, "--wait", 10, mission="other.yaml"))
-    assert [code for code, *_ in results] == [2, 2]
-    assert any("hold another auction; expected everywhere the same mission and terms\n" in e for *_, e in results)
+    others = {"a": {}, "b": {"mission": "other.yaml"}, "c": {"key": "other"}}
+    told = ended(*(robot(name, ports, "--wait", 6, **more) for name, more in others.items()))
+    assert [(code, out) for code, out, _ in told] == [(2, "")] * 3
+    by_mission, by_key = [err for *_, err in told[:2]], told[2][2]
+    assert any("hold another auction; expected everywhere the same mission and terms\n" in err for err in by_mission)
+    *_, last = by_key.splitlines()  # it may have said before that it is alone
+    assert last.startswith("c: ")
+    assert last.endswith(" messages, none made with this key; expected the same key everywhere")
 
 
 def test_nobody_there_is_told(muster, three, ports):
-    [(code, out, err)] = ended(robot("a", ports, "--wait", 1))
+    code, out, err = muster(*of_robot("a", ports, "--wait", 1))
     assert (code, out, err) == (2, "", "a: nobody there for 1 s; expected to hear one of b, c\n")
 
 
-def test_a_port_in_use_is_told(three, ports):
-    first = robot("a", ports, "--wait", 30)
-    guard_s = time.monotonic() + GUARD_S
-    listing = Path("/proc/net/udp")
-    while f":{ports['a']:04X} " not in listing.read_text():
-        assert time.monotonic() < guard_s
-        time.sleep(0.05)
-    [(code, out, err)] = ended(robot("b", ports | {"b": ports["a"]}))
-    first.kill()
-    first.communicate()
+def test_a_port_in_use_is_told(muster, three, ports):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", ports["a"]))
+        code, out, err = muster(*of_robot("b", ports | {"b": ports["a"]}))
     assert (code, out) == (2, "")
     assert err.startswith(f"127.0.0.1:{ports['a']}: Address already in use; expected ")
 
