@@ -12,6 +12,8 @@ from tests.report.page.browser import browser_found
 
 WIDE, NARROW = {"width": 1440, "height": 900}, {"width": 390, "height": 844}
 SHOTS = Path(os.environ.get("MUSTER_SCREENSHOTS", "build/screenshots"))
+SHOOTS = "MUSTER_SCREENSHOTS" in os.environ
+"""Whether a picture of every view is wanted: they take about as long as all the rest."""
 DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 FLAGS = (
     "--no-sandbox",
@@ -50,8 +52,9 @@ def served(tmp_path_factory):
         yield origin
 
 
-@pytest.fixture(scope="module")
-def chromium():
+@contextmanager
+def browsing():
+    """The browser; ended before other tests: they could not use asyncio beside playwright."""
     if browser_found() is None:
         pytest.skip("no browser: tools/test_packages.sh installs one")
     from playwright.sync_api import sync_playwright
@@ -60,6 +63,12 @@ def chromium():
         browser = playwright.chromium.launch(executable_path=browser_found(), args=list(FLAGS))
         yield browser
         browser.close()
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with browsing() as browser:
+        yield browser
 
 
 class Watched:
@@ -78,13 +87,16 @@ class Watched:
         self.page.goto(f"{self.origin}{path}")
 
     def shoot(self, name, settles_ms=300):
-        """A picture of the page as it is, on a screen and on a phone."""
-        SHOTS.mkdir(parents=True, exist_ok=True)
+        """The page as it is, drawn on a phone and on a screen; where they are wanted, a picture of each."""
         for size in (NARROW, WIDE):
             self.page.set_viewport_size(size)
-            self.page.wait_for_timeout(settles_ms)
+            if SHOOTS:
+                self.page.wait_for_timeout(settles_ms)
             for frame in self.page.frames:
                 frame.evaluate(DRAWN)  # a page within the page is laid out after it
+            if not SHOOTS:
+                continue
+            SHOTS.mkdir(parents=True, exist_ok=True)
             phone = size is NARROW
             self.page.screenshot(path=SHOTS / f"{name}-{size['width']}x{size['height']}.png", full_page=phone)
 

@@ -1,7 +1,7 @@
-"""One server for all of these tests; each that edits has a mission of its own."""
+"""One server and one page for all of these tests, which are a package; each that edits has a mission of its own."""
 
 import pytest
-from tests.server.browser.conftest import serving
+from tests.server.browser.conftest import Watched, browsing, serving
 
 from muster.client import Client
 
@@ -17,10 +17,23 @@ tasks:
 """
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def served(tmp_path_factory):
     with serving(tmp_path_factory.mktemp("served")) as origin:
         yield origin
+
+
+@pytest.fixture(scope="package")
+def chromium():
+    with browsing() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="package")
+def watched(chromium, served):
+    watched = Watched(chromium, served)
+    yield watched
+    watched.page.close()
 
 
 @pytest.fixture
