@@ -1,6 +1,6 @@
 """What the description says holds, whatever is sent: schemathesis makes requests from it, and judges every answer.
 
-`MUSTER_SCHEMA_EXAMPLES` is how many requests of each kind a route gets, 5 where it is not set.
+`MUSTER_SCHEMA_EXAMPLES` is how many requests of each kind a route gets, 2 where it is not set.
 """
 
 import os
@@ -21,7 +21,7 @@ from tests.server.serving import plan_of, served
 
 from muster.server.api import api
 
-EXAMPLES = int(os.environ.get("MUSTER_SCHEMA_EXAMPLES", "5"))
+EXAMPLES = int(os.environ.get("MUSTER_SCHEMA_EXAMPLES", "2"))
 REFUSALS = ["400", "404", "409", "413", "422", "428", "429"]
 """What an answer to a request of the right form may be: it need not be a mission, nor of a plan that is there."""
 CHECKS = ChecksConfig(positive_data_acceptance=PositiveDataAcceptanceConfig(expected_statuses=["2xx", *REFUSALS]))

@@ -27,6 +27,10 @@ def killed_anywhere(mission, asked=(), shares=(0.0, 0.3, 0.9), **how):
     return log
 
 
+def fast(robot, times):
+    return replace(robot, speed_mps=times * robot.speed_mps)
+
+
 def kinds(log):
     return {entry["kind"] for entry in log}
 
@@ -34,6 +38,7 @@ def kinds(log):
 @pytest.mark.parametrize("world", WORLDS)
 def test_robots_that_err(world):
     mission = muster.load("6T-2R")
+    mission = replace(mission, robots=tuple(fast(robot, 3) for robot in mission.robots))
     asked = [(5.0, "event", {"robot_fails": "r_0"}), (9.0, "pause", {}), (9.0, "resume", {})]
     plain = killed_anywhere(mission, asked, shares=(0.3,), world=world)
     noisy = killed_anywhere(mission, asked, world=world, settings={"seed": 3, "noise": NOISE})
@@ -43,7 +48,8 @@ def test_robots_that_err(world):
 
 @pytest.mark.parametrize("world", WORLDS)
 def test_what_cameras_find_is_found_again(world):
-    log = killed_anywhere(looking.mission(), shares=(0.8,), world=world, settings={"seed": 2})
+    mission = looking.mission(robots=(fast(looking.DRONE, 2), fast(looking.ROVER, 3)))
+    log = killed_anywhere(mission, shares=(0.8,), world=world, settings={"seed": 2})
     assert {"found", "new_task"} <= kinds(log)
     assert {"found-4", "found-9"} <= set(log[-1]["data"]["tasks_done"])
 

@@ -7,14 +7,14 @@ import sys
 HUNGRY = """
 import sys
 from muster.server.runs import runner
-runner.mission_of = lambda _: bytearray(3 * 2**30)
+runner.mission_of = lambda _: bytearray(5 * 2**28)
 runner.alone = lambda *_: __import__("contextlib").nullcontext()
-sys.exit(runner.main(["2048"]))
+sys.exit(runner.main(["1024"]))
 """
 
 
 def hungry(world):
-    """What a runner says whose mission takes 3 GB."""
+    """What a runner says whose mission takes 1.25 GB."""
     begin = {"run": 1, "world": world, "log": [], "mission": {}, "lock": ""}
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     with subprocess.Popen([sys.executable, "-c", HUNGRY], text=True, **pipes) as runner:
@@ -24,7 +24,7 @@ def hungry(world):
 
 
 def test_a_simulated_run_may_have_so_much_and_says_what_it_would_need():
-    reason = "it needs more than 2048 MB of memory; expected more (--memory)"
+    reason = "it needs more than 1024 MB of memory; expected more (--memory)"
     assert hungry("kinematic") == [{"type": "failed", "reason": reason}]
 
 
