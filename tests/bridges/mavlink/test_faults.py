@@ -15,7 +15,7 @@ from muster.mission.model import Task
 from muster.running.live import carry_out_live
 
 PAGE = Path(__file__).parents[3] / "docs" / "mavlink.md"
-FAR = tuple(Task(id=f"t_{k}", position=(60.0, 6.0 * k, 10.0)) for k in range(2))
+FAR = tuple(Task(id=f"t_{k}", position=(30.0, 6.0 * k, 10.0)) for k in range(2))
 
 
 @dataclass(frozen=True)
