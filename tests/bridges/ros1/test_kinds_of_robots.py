@@ -103,7 +103,7 @@ def test_a_plan_is_carried_out_from_where_motion_capture_sees_robots_and_drawn_f
     assert set(ended) == {ended[0]} != {begun}  # all are done at the end
 
 
-def test_a_robot_in_a_namespace_may_say_nothing_but_odometry_that_begins_at_its_start(ros, tmp_path):
+def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is_from_its_start(ros, tmp_path):
     """(4.2)-(4.4) of [tcf-thesis]: team/r_0/odom is tied to the map by the start in the mission alone.
 
     Steered by the method that is asked for: the thesis' node RVO_planner.
@@ -114,10 +114,10 @@ def test_a_robot_in_a_namespace_may_say_nothing_but_odometry_that_begins_at_its_
         .replace("[2, 2]", "[12, -3]"),
         "utf-8",
     )
-    ros.start(ros.file("robot.py"), "r_0", 10, -5, "namespace=team", "frame=team/r_0/odom")
+    ros.start(ros.file("robot.py"), "r_0", 10, -5, "namespace=team", "pose", "frame=team/r_0/odom")
     ros.start(ros.file("robot.py"), "r_9", 11, -4)
     listener = ros.listener(
-        "/team/r_0/odom=nav_msgs/Odometry",
+        "/team/r_0/pose=geometry_msgs/PoseStamped",
         "/team/r_0/task_sequence=std_msgs/String",
         "/r_9/cmd_vel=geometry_msgs/Twist",
         "/muster/events=std_msgs/String",
@@ -128,7 +128,7 @@ def test_a_robot_in_a_namespace_may_say_nothing_but_odometry_that_begins_at_its_
     assert set(tasks) == {"t_1", "t_2"}
     assert "begins at" not in err
     heard = listener.heard()
-    said = places(heard, "/team/r_0/odom")
+    said = places(heard, "/team/r_0/pose")
     assert nearest(said, (0, -2, 0)) < 0.15  # t_1, two metres to the right of the start
     assert nearest(said, (2, -2, 0)) < 0.15
     told = [json.loads(data["data"]) for topic, data in heard if topic == "/team/r_0/task_sequence"]
