@@ -14,7 +14,7 @@ from muster.mission.model import Task
 from muster.running.live import carry_out_live
 
 KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
-FAR = (Task(id="t_0", position=(200.0, 0.0, 10.0)), Task(id="t_1", position=(200.0, 8.0, 10.0)))
+FAR = (Task(id="t_0", position=(100.0, 0.0, 10.0)), Task(id="t_1", position=(100.0, 8.0, 10.0)))
 
 
 def ended(kind, faults, at_end):
@@ -50,7 +50,7 @@ def test_a_drone_whose_heartbeats_were_late_by_7_s_ends_as_the_others(kind, at_e
 
 @KINDS
 def test_a_drone_that_is_heard_only_after_the_end_is_told_then(kind):
-    _, _, states, drones = ended(kind, Faults(late_heartbeats_s=50, late_by_s=10), "return")
+    _, _, states, drones = ended(kind, Faults(late_heartbeats_s=25, late_by_s=10), "return")
     assert not drones["r_0"].armed
     assert states["r_0"].state == "returned, landed, not armed"
 
@@ -74,7 +74,7 @@ def test_a_drone_that_falls_silent_as_it_arms_counts_as_flying(kind):
 
 
 def test_a_drone_that_returns_for_its_battery_is_not_told_to_land_on_its_way():
-    _, _, states, drones = ended(PX4, Faults(low_battery_at_s=30), "land")
+    _, _, states, drones = ended(PX4, Faults(low_battery_at_s=15), "land")
     assert states["r_0"].state == "returned, landed, not armed"
     assert drones["r_0"].flight.place[:2] == pytest.approx((0.0, 0.0), abs=0.1)
 

@@ -98,6 +98,7 @@ def test_with_arm_it_flies(mission, port, drone, capsys):
     assert "mission" in said
     assert re.search(r"^r_0: hovers, armed; at \(1?\d\.\d\d, -?\d\.\d\d, \d\.\d\d\)$", said, re.MULTILINE)
     assert drone.armed
+    assert drone.mode == PX4.hold
     assert drone.flight.place == pytest.approx((0.0, 10.0, -5.0), abs=0.05)
 
 
@@ -166,7 +167,7 @@ def asked_to_arm(drone):
 
 @pytest.mark.parametrize(
     ("end", "mode", "more"),
-    [("hold", PX4.hold, ()), ("return", PX4.back, ()), ("land", PX4.land, ()), ("hold", PX4.hold, ("--offboard",))],
+    [("return", PX4.back, ()), ("land", PX4.land, ()), ("hold", PX4.hold, ("--offboard",))],
 )
 def test_what_drones_do_at_the_end(mission, port, sky, end, mode, more, capsys):
     drone = sky(speed=1.0 if more else 8.0)

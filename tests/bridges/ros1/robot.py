@@ -2,7 +2,8 @@
 
 `pose`: it says PoseStamped instead of Odometry. `frame=NAME`: its poses are in that frame, whose origin is at (10, -5)
 of the map, turned by a right angle. `tied`: it tells tf so. `namespace=NAME`: in which its own is. `topic=NAME`: where
-it says its pose, in place of its own. `by_hand=SPEED`: a person drives it ahead, m/s, until it is told a velocity.
+it says its pose, in place of its own. `up=Z`: how high it begins. `by_hand=SPEED`: a person drives it ahead, m/s, until
+it is told a velocity.
 """
 
 import math
@@ -19,7 +20,7 @@ from tf2_msgs.msg import TFMessage
 name, x, y, *words = sys.argv[1:]
 given = dict(word.partition("=")[::2] for word in words)
 frame, own = given.get("frame", "map"), "/".join(["", *filter(None, [given.get("namespace")]), name])
-x, y, z, heading = float(x), float(y), 0.0, 0.0
+x, y, z, heading = float(x), float(y), float(given.get("up", 0)), 0.0
 told = [Twist()]
 told[0].linear.x = float(given.get("by_hand", 0))
 rospy.init_node(name)

@@ -14,7 +14,7 @@ from muster import load
 from muster.cli.exits import DONE, STILL_MOVING
 from muster.library.shipped import mission_path
 
-SPEED, YAW_RATE, RADIUS = 2.0, 6.0, 0.3
+SPEED, YAW_RATE, RADIUS = 3.0, 6.0, 0.3
 ROBOTS = {"r_0": (-2.021, 1.461, "beta"), "r_1": (-2.023, -0.661, "epsilon"), "r_2": (-2.0, 0.4, "tau")}
 """The third is in no mission file: it is discovered. Its type can do what the two others can, but for the patrol."""
 

@@ -33,7 +33,7 @@ def mission(tmp_path):
 
 def test_robots_are_given_goals_wait_for_a_window_and_begin_together(ros):
     """Of points that find their way: robots with bodies that meet at one place may stand off on a busy machine."""
-    opens_s = 3.0
+    opens_s = 2.0
     places = {f"r_{k}": (0.0, 3.0 * k) for k in range(3)}
     robots = tuple(Robot(id=name, position=place, speed_mps=3.0) for name, place in places.items())
     tasks = tasks_of(opens_s)

@@ -2,6 +2,7 @@
 
 import json
 import math
+import time
 from importlib.util import find_spec
 
 import numpy as np
@@ -73,7 +74,9 @@ def test_what_a_drone_sees_becomes_a_task_of_another_robot_whose_laser_shows_obs
     user.until(bool, publishers="/target_localization/points")
     scanner = Scanner(field_rad=math.pi, step_rad=math.radians(0.5))
     ranges = scanner.ranges((1.0, 2.0, math.pi / 2), np.array([[0.5, 4.0, 1.5, 4.0]]))
-    for _ in range(20):
+    until = time.monotonic() + 30
+    while topics[1] not in {topic for topic, _ in heard.so_far()}:
+        assert time.monotonic() < until
         user.do(scan="/r_0/scan", ranges=ranges.tolist(), first=scanner.bearings[0], step=math.radians(0.5))
     assert user.call("/command_interface/start")[0]
     out, err = carried.communicate(timeout=60)

@@ -48,18 +48,21 @@ def newest(participant, reader):
     return taken[-1].pose.pose.position
 
 
-def test_robots_carry_a_mission_out_one_joins_and_one_that_dies_is_planned_for(simulated, start, mission, tmp_path):
-    simulated("r_0", 0, 0)
-    killed = simulated("r_1", 0, 3)
+def test_robots_of_a_namespace_carry_a_mission_out_one_joins_and_one_that_dies_is_planned_for(
+    simulated, start, mission, tmp_path
+):
+    team = ("--namespace", "team")
+    simulated("r_0", 0, 0, *team)
+    killed = simulated("r_1", 0, 3, *team)
     record = tmp_path / "r.mcap"
-    carried = start("-m", "muster.cli", "ros2", mission, *QUICK, "--record", record)
+    carried = start("-m", "muster.cli", "ros2", mission, *QUICK, *team, "--record", record)
     told = []
     for line in carried.stderr:
         told.append(line)
         if "robot r-1" in line and "sets out" in line:
             killed.kill()  # in the middle of its way
             break
-    simulated("r_2", 8, 8)
+    simulated("r_2", 8, 8, *team)
     out, rest = carried.communicate(timeout=40)
     assert carried.returncode == 4, rest  # r-1 may go on to its last goal
     ends = rest.splitlines()[-3:]
@@ -75,17 +78,6 @@ def test_robots_carry_a_mission_out_one_joins_and_one_that_dies_is_planned_for(s
     assert "r-1" in next(line for line in said.splitlines() if "silent" in line)
     assert "r_2" in next(line for line in said.splitlines() if "joins" in line)
     assert record.stat().st_size > 0
-
-
-def test_a_mission_is_carried_out_in_a_namespace(simulated, start, tmp_path):
-    (tmp_path / "m.yaml").write_text(
-        "schema: muster/1\nrobots: [{id: r_0, position: [0, 0], speed_mps: 3}]\ntasks: [{id: t_1, position: [1, 0]}]\n"
-    )
-    simulated("r_0", 0, 0, "--namespace", "team")
-    carried = start("-m", "muster.cli", "ros2", tmp_path / "m.yaml", *QUICK, "--namespace", "team")
-    out, err = carried.communicate(timeout=40)
-    assert carried.returncode == 0, err
-    assert json.loads(out)["tasks_done"] == ["t_1"]
 
 
 def test_ctrl_c_lets_robots_stay_where_they_are(simulated, start, mission):

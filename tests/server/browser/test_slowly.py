@@ -21,6 +21,12 @@ pytestmark = pytest.mark.xdist_group("slowly")
 
 MISSION = "6T-2R"
 SCENE_MS = 90_000
+EACH_WAS_SEEN = """words => {
+  window.wordsSeen ??= new Set();
+  for (const each of words) if (document.body.innerText.includes(each)) window.wordsSeen.add(each);
+  return words.every(each => window.wordsSeen.has(each));
+}"""
+"""Whether all of these words have been on the page since it was first asked, be they gone again by now."""
 
 
 @pytest.fixture(scope="module")
@@ -118,6 +124,35 @@ def test_a_page_waits_for_a_database_that_takes_its_time(served, hold):
     held = hold(Missions, "list")
     threading.Timer(4.0, held.let_go).start()
     assert httpx.get(served, timeout=60).status_code == 200
+
+
+def test_two_missions_are_duplicated_at_once_and_the_list_is_shown_once(watched, client, monkeypatch):
+    """It is made anew by whichever is first, while the other is under way."""
+    read, page = Missions.list, watched.page
+
+    async def slowly(self):
+        await asyncio.sleep(0.5)
+        return await read(self)
+
+    monkeypatch.setattr(Missions, "list", slowly)
+    watched.open("/")
+    page.get_by_role("button", name="Duplicate 31T-6R50", exact=True).wait_for()
+    page.evaluate(
+        "names => names.forEach(name => document.querySelector(`[aria-label='Duplicate ${name}']`).click())",
+        ["6T-2R", "31T-6R50"],
+    )
+    copies = ("6T-2R copy", "31T-6R50 copy")
+    told = [f"is a copy of {name.removesuffix(' copy')}." for name in copies]
+    page.wait_for_function(EACH_WAS_SEEN, arg=told)
+    for name in copies:
+        page.get_by_role("button", name=f"Delete {name}", exact=True).wait_for()
+    page.wait_for_timeout(1500)
+    assert page.locator("#missions").count() == 1
+    for name in copies:
+        page.get_by_role("button", name=f"Delete {name}", exact=True).click()
+        page.get_by_role("button", name=f"Delete {name}", exact=True).wait_for(state="detached")
+    assert not [mission.name for mission in client.missions.list() if mission.name.endswith("copy")]
+    watched.require_clean()
 
 
 @contextmanager

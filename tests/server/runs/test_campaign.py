@@ -4,6 +4,6 @@ from tests.server.runs.campaign import Campaign
 
 
 def test_what_is_killed_at_random_moments_goes_on(tmp_path):
-    counted = Campaign(4, 2, f"sqlite:///{tmp_path / 'muster.db'}").go()
-    assert counted["servers"] + counted["runners"] + counted["workers"] == 4
+    counted = Campaign(3, 4, f"sqlite:///{tmp_path / 'muster.db'}").go()
+    assert counted["servers"] + counted["runners"] + counted["workers"] == 3
     assert min(counted["servers"], counted["actions"], counted["jobs"]) > 0

@@ -7,7 +7,7 @@ import signal
 from itertools import pairwise
 
 from tests.server.databases import postgresql, postgresql_url
-from tests.server.runs.process import serving, until
+from tests.server.runs.process import kill, serving, until
 from tests.server.runs.store import ADA, planned
 from tests.server.services.opened import TINY
 
@@ -51,42 +51,6 @@ def judge(store, run, tasks, resumed):
     return log
 
 
-def test_a_run_is_killed_and_resumed_by_the_next_server(postgresql_url):
-    """On SQLite see test_runs and the campaign."""
-    mission = muster.load("31T-6R50")
-    settings = Settings(database=postgresql_url, workers=1)
-
-    async def first():
-        async with open_services(settings) as services:
-            run = (await services.runs.start(ADA, planned(services.store, mission), speed=20.0)).id
-            await watched(services.runs, run, going_at(5))
-            await services.runs.act(ADA, run, "event", {"robot_fails": "r_0"})
-            os.kill(services.runs.pid(run), signal.SIGKILL)
-            await watched(services.runs, run, lambda said: said.get("kind") == "resumed")
-            return run
-
-    async def second(run):
-        async with open_services(settings) as services:
-            await services.runs.act(ADA, run, "speed", {"speed": None})
-            await watched(services.runs, run)
-            page = await services.records.page(run)
-            return (
-                page,
-                services.store,
-                judge(services.store, run, [task.id for task in mission.tasks], 2),
-                await kept(services, run),
-            )
-
-    async def kept(services, run):
-        return {(action.verb, action.outcome) for action in await services.actions.list(run=run)}
-
-    run = asyncio.run(first())
-    page, _, log, actions = asyncio.run(second(run))
-    assert "<html" in page
-    assert [entry.data["verb"] for entry in log if entry.kind == "command"] == ["event", "speed"]
-    assert actions == {(f"run.{verb}", "done") for verb in ("start", "event", "speed")}
-
-
 def test_a_run_and_a_job_outlive_the_databases_server(postgresql, postgresql_url):
     mission = muster.load("31T-6R50")
 
@@ -123,23 +87,32 @@ def test_a_run_and_a_job_outlive_the_databases_server(postgresql, postgresql_url
     assert asked == [(f"run.{verb}", "done") for verb in ("speed", "resume", "pause", "start")]
 
 
-def test_a_server_on_postgresql_is_killed_and_another_goes_on(postgresql_url):
+def test_a_run_and_then_its_server_are_killed_and_another_goes_on(postgresql_url):
+    """On SQLite see test_runs and the campaign."""
     with serving(postgresql_url) as first:
         job = first.http.post("/missions/6T-2R/plans", json={"iterations": 10}).json()["id"]
         plan = until(lambda: first.http.get(f"/jobs/{job}").json()["result"])["plan"]
         run = first.http.post("/runs", json={"plan": plan, "speed": 10}).json()["id"]
-        until(lambda: len(first.http.get(f"/runs/{run}/events").json()) > 5)
+        actions, events = f"/runs/{run}/actions", f"/runs/{run}/events"
+        until(lambda: len(first.http.get(events).json()) > 5)
+        fails = {"verb": "event", "data": {"robot_fails": "r_0"}}
+        assert first.http.post(actions, json=fails).status_code == 202
+        (runner,) = first.children("muster.server.runs.runner")
+        kill(runner)
+        until(lambda: "resumed" in {entry["kind"] for entry in first.http.get(events).json()})
         waits = first.http.post("/missions/6T-2R/plans", json={"time_limit": 1}).json()["id"]
         first.kill()
     with serving(postgresql_url) as again:
-        assert (
-            again.http.post(f"/runs/{run}/actions", json={"verb": "speed", "data": {"speed": None}}).status_code == 202
-        )
+        assert again.http.post(actions, json={"verb": "speed", "data": {"speed": None}}).status_code == 202
         until(lambda: again.http.get(f"/runs/{run}").json()["state"] == "ended")
         assert again.http.get(f"/records/{run}/record.mcap").content.startswith(b"\x89MCAP")
+        assert "<html" in again.http.get(f"/records/{run}/page.html").text
         until(lambda: again.http.get(f"/jobs/{waits}").json()["state"] == "done")
         again.end()
     store = Store.open(postgresql_url)
-    judge(store, run, [task.id for task in muster.load("6T-2R").tasks], 1)
+    log = judge(store, run, [task.id for task in muster.load("6T-2R").tasks], 2)
+    assert [entry.data["verb"] for entry in log if entry.kind == "command"] == ["event", "speed"]
+    asked = {(action.verb, action.outcome) for action in store.actions.list(run=run)}
+    assert asked == {(f"run.{verb}", "done") for verb in ("start", "event", "speed")}
     assert sorted(plan.id for plan in store.plans.list()) == sorted(one.result["plan"] for one in store.jobs.list())
     store.close()

@@ -26,9 +26,9 @@ def mission(kinematics):
         Robot(id=name, position=place, speed_mps=3.0, yaw_rate_radps=6.0, radius_m=0.2, kinematics=kinematics)
         for name, place in PLACES.items()
     )
-    tasks = [Task(id="t_1", position=(4.0, 0.0)), Task(id="t_2", position=(4.0, 3.0))]
-    tasks += [Task(id=f"t_{k}", position=(8.0, 3.0 * (k - 3)), duration_s=1.0) for k in (3, 4)]
-    tasks += [Task(id="t_5", position=(9.0, 0.0), prerequisites=("t_3",))]
+    tasks = [Task(id="t_1", position=(2.0, 0.0)), Task(id="t_2", position=(2.0, 3.0))]
+    tasks += [Task(id=f"t_{k}", position=(4.0, 3.0 * (k - 3)), duration_s=1.0) for k in (3, 4)]
+    tasks += [Task(id="t_5", position=(5.0, 0.0), prerequisites=("t_3",))]
     return Mission(robots=robots, tasks=tuple(tasks))
 
 
