@@ -113,7 +113,7 @@ class Changes:
     def readmit(self, state: RobotState, now: float, reason: str = "") -> Iterator[Change]:
         """Let a robot take part again, from where it is."""
         if state.out:
-            state.out, state.last_heard_s, state.stuck_before = "", now, False
+            state.out, state.last_heard_s, state.sent_again = "", now, 0
             self.ledger.unblock(state.robot.id)
             state.stop(now)
             yield Change("robot_returns", {"robot": state.robot.id} | ({"reason": reason} if reason else {}))

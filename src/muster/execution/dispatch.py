@@ -16,6 +16,7 @@ from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, Work, along, path_length, travel_s, work_of
 from muster.execution.team_work import break_off
+from muster.execution.way_round import way_round
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 
@@ -70,7 +71,7 @@ class Dispatch:
         if state.activity is Activity.WORKING and state.arrived:
             self._end_work(state, now)
         if state.activity is Activity.RETURNING and state.arrived:
-            state.at_home, state.stuck_before = True, False
+            state.at_home, state.sent_again = True, 0
             state.begin_activity(now, Activity.IDLE)
             self._emit("robot_at_end", {"robot": state.robot.id})
 
@@ -103,7 +104,7 @@ class Dispatch:
 
     def again(self, state: RobotState, now: float) -> None:
         """Send a robot without progress once more, by a new path if it drives."""
-        state.stuck_before = True
+        state.sent_again += 1
         if state.activity is Activity.WORKING:
             state.send_again(now)
         else:
@@ -140,6 +141,18 @@ class Dispatch:
             self._ledger.give_up(task)
         if state.activity is not Activity.IDLE:
             state.stop(now)
+
+    def go_round(self, state: RobotState, broken: RobotState, now: float) -> bool:
+        """Send a robot round one that is out; returns whether it has not tried that yet, and there is a way."""
+        if state.activity not in (Activity.DRIVING, Activity.RETURNING) or broken.robot.id in state.went_round:
+            return False
+        about, *others = [(one.position, one.robot.radius_m) for one in (broken, *self._crew.values()) if one.out]
+        way = way_round(self._way, state.robot, state.position, state.next_stop, about, others)
+        if way is None:
+            return False
+        state.turn_off(now, way, broken.robot.id)
+        self._emit("robot_goes_round", {"robot": state.robot.id, "broken": broken.robot.id})
+        return True
 
     def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:
         """The way from where a robot is; by way of the last place known to be free, if it stands where it cannot."""
@@ -187,7 +200,7 @@ class Dispatch:
     def _arrive(self, state: RobotState, now: float) -> None:
         task = state.route[0]
         self._ledger.arrive(task, state.used, now)
-        state.arrived_s, state.arrived_used, state.stuck_before = now, state.used, False
+        state.arrived_s, state.arrived_used, state.sent_again = now, state.used, 0
         self._emit("arrives", {"robot": state.robot.id, "task": task})
         if state.works:
             self._begin(task, [state], (state.robot.id,), now)

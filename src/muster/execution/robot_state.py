@@ -83,7 +83,8 @@ class RobotState:
     since_s: float = 0.0  # up to when `busy_s` counts
     nearest_m: float = math.inf  # least way left of this order, and when it was reached, or it last waited in traffic
     nearest_s: float = 0.0
-    stuck_before: bool = False
+    went_round: frozenset[str] = frozenset()  # robots that are out, on this way
+    sent_again: int = 0  # so often for want of progress, to the current goal
     warned_of: str = ""  # the task on the way to which its capacity was found too small
     left: Place | None = None  # the last place known to be free: a way point passed
     home_usage: float = 0.0  # from the exit of the current task to `home`, in the mission's unit
@@ -111,14 +112,19 @@ class RobotState:
         return self._order
 
     @property
+    def takes_orders(self) -> bool:
+        """Whether it has accepted its last order."""
+        return self.telemetry is not None and self.telemetry.order == self._order
+
+    @property
     def passed(self) -> int:
         """How many way points of the last order it has passed."""
-        return self.telemetry.passed if self.telemetry is not None and self.telemetry.order == self._order else 0
+        return self.telemetry.passed if self.telemetry is not None and self.takes_orders else 0
 
     @property
     def refused(self) -> str:
         """Why the robot will not reach the next way point of its last order; empty while it makes progress."""
-        return self.telemetry.refused if self.telemetry is not None and self.telemetry.order == self._order else ""
+        return self.telemetry.refused if self.telemetry is not None and self.takes_orders else ""
 
     @property
     def arrived(self) -> bool:
@@ -147,6 +153,7 @@ class RobotState:
         """Order it to pass way points."""
         self._waypoints = tuple(waypoints)
         self._order = self.port.send(self._waypoints)
+        self.went_round = frozenset()
         self.begin_activity(now, activity)
 
     def send_again(self, now: float) -> None:
@@ -154,6 +161,20 @@ class RobotState:
         begun = self.begun_s
         self.send(now, self.activity, self._waypoints[self.passed :])
         self.begun_s = begun
+
+    @property
+    def next_stop(self) -> Place:
+        """The place of the next way point of its order that does not only mark a way. There must be one."""
+        return self._waypoints[self.passed + self._marks_next].position
+
+    def turn_off(self, now: float, way: Sequence[Place], broken: str) -> None:
+        """Order it to go another way round a robot, (n,) places, to its next stop, and then what is left to do."""
+        round_, begun, done = self.went_round | {broken}, self.begun_s, self.passed + self._marks_next
+        stop = self._waypoints[done]
+        marks = [Waypoint(point, label=stop.label, via=True) for point in way[:-1]]
+        self.to_task += len(marks) - done
+        self.send(now, self.activity, [*marks, *self._waypoints[done:]])
+        self.begun_s, self.went_round = begun, round_
 
     def stop(self, now: float) -> None:
         """Let it stop where it is, available. Work that is broken off is charged as far as it went."""
@@ -205,13 +226,16 @@ class RobotState:
     @property
     def _told_left_m(self) -> float | None:
         """Metres to the next place of its order that marks no way, where its own navigation tells them."""
-        return None if self.telemetry is None or self.telemetry.order != self._order else self.telemetry.left_m
+        return self.telemetry.left_m if self.telemetry is not None and self.takes_orders else None
 
     @property
     def _marks_left(self) -> int:
         """How many of the next places of its order mark a way only, where its own navigation chooses that."""
-        if self._told_left_m is None:
-            return 0
+        return 0 if self._told_left_m is None else self._marks_next
+
+    @property
+    def _marks_next(self) -> int:
+        """How many of the next places of its order mark a way only."""
         return sum(1 for _ in takewhile(lambda waypoint: waypoint.via, self._waypoints[self.passed :]))
 
     @property

@@ -18,6 +18,8 @@ GIVES_UP_AFTER = 4
 """Times the limit of a jam after which one of its robots gives up its task."""
 AGAIN_AFTER_S = 5.0
 """For so long a robot waits for one that is out, where another has given up their task for it."""
+MOST_SENT_AGAIN = 4
+"""So often a robot is sent again that does not take its orders."""
 LONGEST_ASIDE = 3
 """Times the first time that a robot stands aside at most."""
 
@@ -91,12 +93,15 @@ class Supervisor:
         return [state for state in self.crew.values() if not state.out]
 
     def _free_or_put_out(self, state: RobotState, now: float) -> Iterator[Change]:
-        """A robot without progress is sent again, and excluded the next time; not if a failed robot blocks it."""
+        """A robot without progress is sent again, and excluded the next time; not if a failed robot blocks it.
+
+        One that has not taken its last order is sent again a few times more: it may take the next one.
+        """
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, state.robot, state.points_left)), None)
         if blocking is not None:
             yield from self._give_way_to_broken(state, blocking, now)
-        elif state.stuck_before:
+        elif state.sent_again >= (1 if state.takes_orders else MOST_SENT_AGAIN):
             yield from self.changes.exclude(state, STUCK, now, "no progress with nobody in its way")
         else:
             self.emit("robot_sent_again", {"robot": state.robot.id, "reason": "no progress"})
@@ -112,6 +117,9 @@ class Supervisor:
         return other if self.traffic.progress[state.robot.id].behind_s.get(other.robot.id, 0.0) > least_s else None
 
     def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> Iterator[Change]:
+        """Where there is no way round it a robot ends here or gives up its task; traffic leads those that it steers."""
+        if not state.steered and self.dispatch.go_round(state, broken, now):
+            return
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
         else:

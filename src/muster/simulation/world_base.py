@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from types import MappingProxyType
 
 import numpy as np
@@ -57,6 +57,7 @@ OF_THE_THESIS = ("quadcopter", "differential-drive")
 """The kinematics for which [tcf-thesis] has control laws."""
 _NO_FACES = np.empty((0, 6))
 _SLICE = 10_000
+_LOOKS_EVERY_M = 0.05
 """Steps between checks for Ctrl-C."""
 
 
@@ -255,10 +256,14 @@ class WorldBase(SimulatedWorld, ABC):
         return frozenset() if self._map is None else self._map.closed
 
     def _turn_doors(self) -> None:
-        """Open and close doors as asked; those that robots are in stay open for now."""
+        """Open and close doors as asked; those that robots are in, or cannot stop before, stay open for now."""
         if self._map is None:
             return
-        bodies = [(body_of(robot), place) for robot, place in zip(self._robots, self.positions, strict=True)]
+        bodies = [
+            (body_of(robot), place)
+            for robot, at, velocity in zip(self._robots, self.positions, self.velocities, strict=True)
+            for place in self._until_it_stands(robot, at, velocity)
+        ]
         closing = self._doors_to_close - self._map.closed
         closed = self._doors_to_close - {door for door in closing if self._map.holds_open(door, bodies)}
         if closed == self._map.closed:
@@ -266,6 +271,13 @@ class WorldBase(SimulatedWorld, ABC):
         self._map, self._paths = self._map.with_closed(closed), None
         for number, robot in enumerate(self._robots):
             self._crowd.set_walls(number, self._walls_for(body_of(robot)))
+
+    def _until_it_stands(self, robot: Robot, at: Floats, velocity: Floats) -> Iterator[Floats]:
+        """Where a robot is and passes, if it stops at once."""
+        speed_mps = float(np.linalg.norm(velocity))
+        ahead = velocity * (self._crowd.dt + speed_mps / (2 * self._limits(robot).acceleration_mps2))
+        pieces = max(1, math.ceil(speed_mps and float(np.linalg.norm(ahead)) / _LOOKS_EVERY_M))
+        return (at + k / pieces * ahead for k in range(pieces + 1))
 
     def leave_to_traffic(self, robot: str) -> None:
         self._crowd.leave_to_traffic(self._number(robot))

@@ -185,16 +185,19 @@ class RoadmapPlan:
 
     def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, int]]:
         """Moves as (traveller, edge, stop), to first stops, as far as the horizon."""
+        first = {on.number[who.start]: k for k, who in reversed(list(enumerate(travellers)))}
+        numbers = sorted(first.values())  # without those who are only thought to be where another is
+        there = [travellers[k] for k in numbers]
         found = on.planner.planned(
-            [on.number[who.start] for who in travellers],
-            [on.number[who.stops[0].at] if who.stops else None for who in travellers],
-            [who.robot.radius_m for who in travellers],
+            [on.number[who.start] for who in there],
+            [on.number[who.stops[0].at] if who.stops else None for who in there],
+            [who.robot.radius_m for who in there],
             margin_m=on.roadmap.margin_m,
-            pinned=[who.fixed or who.ready_s > 0 or _is_there(who) for who in travellers],
+            pinned=[who.fixed or who.ready_s > 0 or _is_there(who) for who in there],
             seed=self.seed,
-            params=Parameters(horizon=_HORIZON * len(travellers)),
+            params=Parameters(horizon=_HORIZON * len(there)),
         )
-        return [(traveller, edge, 0) for traveller, edge in found.moves]
+        return [(numbers[k], edge, 0) for k, edge in found.moves]
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,8 @@ def trial(seed):
         space, poses = Space(mission.map), Poses()
         plan = muster.solve(mission, "greedy", seed=seed)
         with closing(Simulation(mission, plan, traffic=traffic, seed=seed, recorder=poses)) as simulation:
-            script, standing = Script(simulation, mission, space, seed), Standing(report)
+            script = Script(simulation, mission, space, seed)
+            standing = Standing(report, reserves=simulation._traffic is not None)
             report.story.append(f"{mission.name}, {len(mission.robots)} robots, {traffic}")
             _carry_out(simulation, script, standing)
             _check(report, simulation, script, standing, poses, space)

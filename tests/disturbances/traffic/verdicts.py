@@ -8,10 +8,13 @@ from tests.disturbances.traffic.missions import RADIUS_M
 
 STANDS_S = 60.0
 """While no robot is broken none that has something to do stands still for longer."""
-STILL_S, STILL_BROKEN_S = 15.0, 100.0
-"""For no longer all stand, though one has something to do and none works: while none is broken, and while one is."""
+STILL_S, STILL_FREE_S, STILL_BROKEN_S = 15.0, 31.0, 100.0
+"""For no longer all stand, though one has something to do and none works: while none is broken, the same where robots
+pass as they meet (one that has dropped its order is sent again after 30 s), and while one is."""
 NOTICED_S = 15.0
 """So long after its return a robot that was broken is taken for that."""
+STOPS_S = 1.5
+"""Within this time of its being told to a robot has come to a stand."""
 MOVED_M = 0.05
 ROUNDING_M = 1e-6
 PASSES_M = 0.1
@@ -58,22 +61,23 @@ def check_contacts(report, poses, space, robots):
 
 
 def check_doors(report, poses, space, closings):
-    """Nobody is in a door that is closed, but who was in it when it was closed and has not come out since."""
+    """Nobody is in a door that is closed, but who was in it or could not stop before it, and has not come out."""
     for door, begin, end in closings:
         within = None
         for now, places in poses.steps:
             if begin < now <= end:
                 away = shapely.distance(shapely.points(places), space.doors[door])
                 there = set(np.flatnonzero(away < RADIUS_M - 1e-3).tolist())
-                report.check(within is None or there <= within, f"{there} enter {door}, closed, at {now:.1f} s")
+                stops = within is None or now <= begin + STOPS_S
+                report.check(stops or there <= within, f"{there} enter {door}, closed, at {now:.1f} s")
                 within = there
 
 
 class Standing:
     """For how long robots stand that have something to do."""
 
-    def __init__(self, report):
-        self.report = report
+    def __init__(self, report, *, reserves):
+        self.report, self._still_s = report, STILL_S if reserves else STILL_FREE_S
         self._anchors, self._since = {}, {}
         self.longest_s = {"one": 0.0, "all": 0.0, "all, one broken": 0.0}
         self._all_since, self._with_broken = 0.0, False
@@ -95,7 +99,7 @@ class Standing:
         if moved or works or not to_do or bool(down) != self._with_broken:
             self._all_since = now
         self._with_broken = bool(down)
-        kind, limit_s = ("all, one broken", STILL_BROKEN_S) if down else ("all", STILL_S)
+        kind, limit_s = ("all, one broken", STILL_BROKEN_S) if down else ("all", self._still_s)
         self._tell(kind, now - self._all_since, limit_s, f"all, {sorted(to_do)} have something to do", now)
 
     def _tell(self, kind, stood_s, limit_s, who, now):

@@ -45,6 +45,7 @@ _ITS_OWN = {
     "robot_runs_low",
     "robot_stuck",
     "robot_stands_aside",
+    "robot_goes_round",
     "waits_in_traffic",
     "goes_on",
     "traffic_jam",
