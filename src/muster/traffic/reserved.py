@@ -27,6 +27,9 @@ AHEAD_M = 2.0
 """For how many metres a robot may have begun moves, which a new plan does not change."""
 PLAN_EVERY_S = 1.0
 """The least time between two plans where nobody has a new goal."""
+STEPS_FOR_S = 10.0
+"""So long at most robots go on by moves that were planned step by step, as long as there are any: a plan anew in their
+midst may send them back."""
 STOPS_PLANNED = 120
 """Stops of all robots to which moves are planned, but `LEAST_STOPS` of each; anew where one has fewer than half of
 these left."""
@@ -183,6 +186,8 @@ class ReservedTraffic:
             return True
         if now - self._planned_s < PLAN_EVERY_S:
             return False
+        if self.plan.stepwise and now - self._planned_s < STEPS_FOR_S:
+            return not any(self._order.metres_left(part.number) > _MOVED_M for part in self._parts if not part.fixed)
         return any(
             self._falls_short(part) or (part.more and len(part.ahead) < LEAST_STOPS // 2) for part in self._parts
         )

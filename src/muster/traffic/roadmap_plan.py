@@ -68,6 +68,8 @@ class RoadmapPlan:
         of the mission, which close and open.
     cut_off
         see `Planner`; where many travel on a large roadmap this is not found out: any of them may be.
+    stepwise
+        see `Planner`.
     """
 
     roadmap: Roadmap
@@ -75,6 +77,7 @@ class RoadmapPlan:
     seed: int = 0
     doors: RoadmapDoors = NO_DOORS
     cut_off: frozenset[int] = frozenset()
+    stepwise: bool = False
     _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
     _known: _Network | None = None
@@ -96,6 +99,7 @@ class RoadmapPlan:
         self.cut_off = frozenset(range(len(travellers)))
         whole = len(travellers) * len(on.roadmap.edges) <= _MOST_BY_INTERVALS
         moves = self._by_safe_intervals(on, travellers) if whole else None
+        self.stepwise = moves is None
         if moves is None:
             moves = self._by_inheritance(on, travellers)
         for traveller, edge, stop in moves:

@@ -69,6 +69,11 @@ class Planner(Protocol):
         """The travellers of the last plan, by number, that those who never leave let to none of their stops."""
         ...
 
+    @property
+    def stepwise(self) -> bool:
+        """Whether the last moves were planned step by step, without whole ways: made anew they may lead back."""
+        ...
+
     def close(self, doors: Collection[str]) -> None:
         """From now on these doors are closed, and the others open."""
         ...
