@@ -110,6 +110,12 @@ class ManagedPort:
         return bool(self._numbers) and self._sent_passed < self._marks + len(self._numbers) and self._at_goal
 
     @property
+    def at_work(self) -> bool:
+        """Whether the robot is busy by its own account: it has taken the order to be."""
+        said = self._port.telemetry()
+        return self.busy and said is not None and said.order == self._sent_order
+
+    @property
     def marks_passed(self) -> int:
         """How many of the places are passed to which it was last sent, its goal not counted."""
         return min(self._marks, self._sent_passed)

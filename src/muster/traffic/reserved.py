@@ -140,7 +140,7 @@ class ReservedTraffic:
                 if now - part.broken_s >= TRIED_AFTER_S * 2**part.tried:
                     part.tried = min(part.tried + 1, MOST_TRIES) if part.port.goal is None else 0
                     self._mend(part, now)
-            elif moved or not part.to_go or part.port.busy:
+            elif moved or not part.to_go or part.port.at_work:
                 part.stood, part.moved_s = part.near, now
             elif now - part.moved_s > BROKEN_AFTER_S:
                 self._break(part, now)
@@ -268,7 +268,7 @@ class ReservedTraffic:
 
     def _let_go(self, part: Part) -> None:
         """Send a robot as far as it may go."""
-        if part.port.busy:
+        if part.port.at_work:
             part.port.waits_for, part.to_go = "", False
             return
         grant = self._order.grant(part.number)
@@ -278,6 +278,7 @@ class ReservedTraffic:
             part.port.left_m = left_m + away_m
         part.port.waits_for = self._held_up_by(part, grant)
         to_goal = grant.last and part.port.arrives and self._away_m(part) <= _AT_GOAL_M
+        part.to_go = part.to_go or to_goal
         if grant.points or to_goal:
             said = part.port.heard
             height = said.position[2] if said is not None else 0.0
