@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from muster.execution.changes import SILENT, STUCK, Change, Changes
 from muster.execution.dispatch import Dispatch, Emit
 from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.robot_state import MOVING, Activity, RobotState
+from muster.execution.standstill import Standstill
 from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import place
 from muster.execution.traffic_waits import Progress, TrafficWaits, plain_place
@@ -63,6 +64,7 @@ class Supervisor:
     emit: Emit
     look_s: float
     reaches: Reaches
+    standstill: Standstill = field(default_factory=Standstill)
 
     def look(self, now: float) -> Iterator[Change]:
         """Check all robots that take part, if that is due; yields changes that require a new plan."""
@@ -76,6 +78,7 @@ class Supervisor:
         for robot in self.traffic.sent_round:
             self.crew[robot].nearest_m, self.crew[robot].nearest_s = self.crew[robot].way_left_m, now
         yield from self._break_jams(now)
+        yield from self._break_standstill(now)
         for state in self._present:
             if is_silent(state, now, self.limits):
                 yield from self.changes.exclude(state, SILENT, now)
@@ -142,6 +145,21 @@ class Supervisor:
                 for one in members:
                     one.held_s = 0.0
                 self._let_stand_aside(self._first_to_yield(members), now)
+
+    def _break_standstill(self, now: float) -> Iterator[Change]:
+        """Where robots that traffic leads have not got on for as long as a jam may last one of them gives up."""
+        self.standstill.look(self.crew.values(), now)
+        longest_s = GIVES_UP_AFTER * self.limits.jam_after_s
+        under_way = [one for one in self._present if one.steered and one.activity in MOVING]
+        if not under_way or now - self.standstill.since_s < longest_s:
+            return
+        self.standstill.since_s = now
+        state = self._first_to_yield([self.traffic.progress[one.robot.id] for one in under_way])
+        if state.activity is Activity.RETURNING:
+            self.dispatch.end_here(state, now)
+        else:
+            reason = f"jam: nobody has got on for {longest_s:g} s"
+            yield from self.dispatch.refuse(state, state.route[0], reason, now)
 
     def _is_ring(self, jam: Collection[str]) -> bool:
         """Whether all of a jam want to get on, as far as is known; else one that stands is to make room."""
