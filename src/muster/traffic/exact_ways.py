@@ -50,6 +50,20 @@ class Network:
     clearance_m: Floats
     places: Indices
 
+    def merged(self) -> Network:
+        """With one point in place of several at one place; of two edges between the same points one is left."""
+        _, first, number = np.unique(self.points, axis=0, return_index=True, return_inverse=True)
+        if len(first) == len(self.points):
+            return self
+        same = first[number.reshape(-1)]
+        kept = np.unique(same)
+        to = np.searchsorted(kept, same)
+        ends = np.sort(to[self.edges], axis=1)
+        between = np.flatnonzero(ends[:, 0] != ends[:, 1])
+        edges, once = np.unique(ends[between], axis=0, return_index=True)
+        places = np.where(self.places < 0, -1, to[self.places])
+        return Network(self.points[kept], self.narrow[kept], edges, self.clearance_m[between[once]], places)
+
     def with_way(self, start: int, way: Floats, end: int) -> Network:
         """With the corners (k, 2) of a way between two points; of its clearance only that it is free is known."""
         first = len(self.points)

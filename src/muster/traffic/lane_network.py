@@ -74,7 +74,7 @@ def network(space: GridSpace | PolygonSpace, apart_m: float, places: Floats, mos
     metres[numbers[is_free]] = places[is_free]
     column, row = points.astype(np.int64).T
     made = Network(metres, room.narrow[row, column], pairs, _clearance(depth, points, pairs) * cell, numbers)
-    return _both_ways(joined_exactly(made, space, places))
+    return _both_ways(joined_exactly(made.merged(), space, places))
 
 
 def _both_ways(made: Network) -> Network:
