@@ -35,12 +35,14 @@ class Drive:
 class Traffic:
     """Traffic of one robot that is sent to a goal; its plans, and who was fixed in each."""
 
+    stepwise = False
+
     def __init__(self) -> None:
         self.fixed: list[bool] = []
-        self.traffic, self.drive = ReservedTraffic(self.plan), Drive()
+        self.traffic, self.drive = ReservedTraffic(self), Drive()
         self.traffic.managed(Robot(id="r_0", position=(0.0, 0.0), radius_m=0.3), self.drive).send([Waypoint(GOAL)])
 
-    def plan(self, travellers):
+    def __call__(self, travellers):
         self.fixed.append(travellers[0].fixed)
         return [] if travellers[0].fixed else [Move(0, GOAL[:2])]
 
@@ -82,3 +84,25 @@ def test_who_drives_is_not_told_anew(traffic):
     traffic.go_on(2 * BROKEN_AFTER_S, speed=0.5)
     assert traffic.times_sent == 1
     assert not any(traffic.fixed)
+
+
+def test_who_drops_the_order_to_work_at_its_goal_is_told_anew(traffic):
+    traffic.go_on(GOAL[0] / 0.5, speed=0.5)
+    traffic.drive.x = GOAL[0]
+    before = len(traffic.drive.sent)
+    traffic.go_on(BROKEN_AFTER_S + TRIED_AFTER_S + 2.0, speed=0.0)
+    assert [way[-1].position for way in traffic.drive.sent[before:] if way] == [
+        GOAL,
+        GOAL,
+    ]  # to be at work there, and anew
+
+
+def test_moves_that_were_planned_step_by_step_are_not_planned_anew_in_their_midst(traffic):
+    """Though they end before the goal: made anew they may lead back."""
+    plans = len(traffic.fixed)
+    traffic.stepwise, traffic.traffic._planned_s = True, traffic.drive.now
+    traffic.traffic._parts[0].goal = None  # as if it were to go elsewhere
+    assert traffic.traffic._plan_is_due(traffic.drive.now + 2.0)  # another goal
+    traffic.traffic._parts[0].goal = GOAL[:2]
+    assert not traffic.traffic._plan_is_due(traffic.drive.now + 2.0)
+    assert len(traffic.fixed) == plans

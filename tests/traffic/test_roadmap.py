@@ -13,6 +13,7 @@ from muster.motion.grid import Grid
 from muster.motion.maps.distances import inflated
 from muster.motion.maps.polygons import free_region
 from muster.traffic.edge_conflicts import conflicts
+from muster.traffic.exact_ways import Network
 from muster.traffic.roadmap import Roadmap
 
 RADIUS = 0.3
@@ -213,3 +214,14 @@ def test_a_robot_rests_neither_in_a_passage_nor_before_another_ones_place():
     assert roadmap.passable[hall].all()
     assert roadmap.places[0] == -1
     assert not roadmap.holding[in_corridor(roadmap)].any()
+
+
+def test_of_points_at_one_place_one_is_left():
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
+    edges = np.array([[0, 1], [1, 2], [2, 3], [0, 2]])
+    made = Network(points, np.ones(4, dtype=np.bool_), edges, np.array([0.4, 0.1, 0.5, 0.4]), np.array([2, -1, 3]))
+    one = made.merged()
+    np.testing.assert_array_equal(one.points, [[0, 0], [1, 0], [2, 0]])
+    np.testing.assert_array_equal(one.edges, [[0, 1], [1, 2]])
+    np.testing.assert_array_equal(one.clearance_m, [0.4, 0.5])
+    np.testing.assert_array_equal(one.places, [1, -1, 2])
