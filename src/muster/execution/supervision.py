@@ -98,13 +98,14 @@ class Supervisor:
     def _free_or_put_out(self, state: RobotState, now: float) -> Iterator[Change]:
         """A robot without progress is sent again, and excluded the next time; not if a failed robot blocks it.
 
-        One that has not taken its last order is sent again a few times more: it may take the next one.
+        One under way that has not taken its last order is sent again a few times more: it may take the next one.
         """
+        takes = state.takes_orders or state.activity is Activity.WORKING
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, state.robot, state.points_left)), None)
         if blocking is not None:
             yield from self._give_way_to_broken(state, blocking, now)
-        elif state.sent_again >= (1 if state.takes_orders else MOST_SENT_AGAIN):
+        elif state.sent_again >= (1 if takes else MOST_SENT_AGAIN):
             yield from self.changes.exclude(state, STUCK, now, "no progress with nobody in its way")
         else:
             self.emit("robot_sent_again", {"robot": state.robot.id, "reason": "no progress"})
