@@ -123,6 +123,7 @@ class Supervisor:
     def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> Iterator[Change]:
         """Where there is no way round it a robot ends here or gives up its task; traffic leads those that it steers."""
         if not state.steered and self.dispatch.go_round(state, broken, now):
+            self.traffic.progress[state.robot.id].goes_round(state.way_left_m)
             return
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
