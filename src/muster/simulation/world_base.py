@@ -57,8 +57,9 @@ OF_THE_THESIS = ("quadcopter", "differential-drive")
 """The kinematics for which [tcf-thesis] has control laws."""
 _NO_FACES = np.empty((0, 6))
 _SLICE = 10_000
-_LOOKS_EVERY_M = 0.05
 """Steps between checks for Ctrl-C."""
+_LOOKS_EVERY_M = 0.05
+"""Of the way on which a robot comes to a stand: so near to each other are the places that may hold a door open."""
 
 
 class WorldBase(SimulatedWorld, ABC):
