@@ -146,7 +146,8 @@ class Dispatch:
         """Send a robot round one that is out; returns whether it has not tried that yet, and there is a way."""
         if state.activity not in (Activity.DRIVING, Activity.RETURNING) or broken.robot.id in state.went_round:
             return False
-        about, *others = [(one.position, one.robot.radius_m) for one in (broken, *self._crew.values()) if one.out]
+        others = [(one.position, one.robot.radius_m) for one in self._crew.values() if one.out and one is not broken]
+        about = (broken.position, broken.robot.radius_m)
         way = way_round(self._way, state.robot, state.position, state.next_stop, about, others)
         if way is None:
             return False

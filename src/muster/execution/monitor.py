@@ -74,7 +74,7 @@ def moves_again(state: RobotState) -> bool:
     """Whether a robot that was put out is elsewhere by now, farther than it took to brake."""
     if state.out_at is None:
         return False
-    braking_m = state.robot.speed_mps**2 / (2 * limits_of(state.robot).acceleration_mps2)
+    braking_m = limits_of(state.robot).braking_m(state.robot.speed_mps)
     return math.dist(state.position, state.out_at) > braking_m + max(_MOVED_M, state.robot.radius_m)
 
 

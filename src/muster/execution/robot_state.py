@@ -114,17 +114,22 @@ class RobotState:
     @property
     def takes_orders(self) -> bool:
         """Whether it has accepted its last order."""
-        return self.telemetry is not None and self.telemetry.order == self._order
+        return self._said is not None
+
+    @property
+    def _said(self) -> Telemetry | None:
+        """What it last said, if that is of its last order."""
+        return self.telemetry if self.telemetry is not None and self.telemetry.order == self._order else None
 
     @property
     def passed(self) -> int:
         """How many way points of the last order it has passed."""
-        return self.telemetry.passed if self.telemetry is not None and self.takes_orders else 0
+        return 0 if self._said is None else self._said.passed
 
     @property
     def refused(self) -> str:
         """Why the robot will not reach the next way point of its last order; empty while it makes progress."""
-        return self.telemetry.refused if self.telemetry is not None and self.takes_orders else ""
+        return "" if self._said is None else self._said.refused
 
     @property
     def arrived(self) -> bool:
@@ -158,9 +163,7 @@ class RobotState:
 
     def send_again(self, now: float) -> None:
         """Order what is left of the last order."""
-        begun = self.begun_s
-        self.send(now, self.activity, self._waypoints[self.passed :])
-        self.begun_s = begun
+        self._order_instead(now, self._waypoints[self.passed :])
 
     @property
     def next_stop(self) -> Place:
@@ -169,12 +172,18 @@ class RobotState:
 
     def turn_off(self, now: float, way: Sequence[Place], broken: str) -> None:
         """Order it to go another way round a robot, (n,) places, to its next stop, and then what is left to do."""
-        round_, begun, done = self.went_round | {broken}, self.begun_s, self.passed + self._marks_next
+        went_round, done = self.went_round | {broken}, self.passed + self._marks_next
         stop = self._waypoints[done]
         marks = [Waypoint(point, label=stop.label, via=True) for point in way[:-1]]
         self.to_task += len(marks) - done
-        self.send(now, self.activity, [*marks, *self._waypoints[done:]])
-        self.begun_s, self.went_round = begun, round_
+        self._order_instead(now, [*marks, *self._waypoints[done:]])
+        self.went_round = went_round
+
+    def _order_instead(self, now: float, waypoints: Sequence[Waypoint]) -> None:
+        """Order it to pass other way points, with the same to do as before."""
+        begun = self.begun_s
+        self.send(now, self.activity, waypoints)
+        self.begun_s = begun
 
     def stop(self, now: float) -> None:
         """Let it stop where it is, available. Work that is broken off is charged as far as it went."""
@@ -226,7 +235,7 @@ class RobotState:
     @property
     def _told_left_m(self) -> float | None:
         """Metres to the next place of its order that marks no way, where its own navigation tells them."""
-        return self.telemetry.left_m if self.telemetry is not None and self.takes_orders else None
+        return None if self._said is None else self._said.left_m
 
     @property
     def _marks_left(self) -> int:

@@ -83,7 +83,7 @@ class Supervisor:
             if is_silent(state, now, self.limits):
                 yield from self.changes.exclude(state, SILENT, now)
             elif state.refused and state.activity in MOVING:
-                yield from self._let_refuse(state, now)
+                yield from self._give_up(state, state.refused, now)
             elif (broken := self._broken_before(state)) is not None:
                 yield from self._give_way_to_broken(state, broken, now)
             elif is_stuck(state, now, self.limits):
@@ -139,7 +139,7 @@ class Supervisor:
                 self._tell_jam(jam, members, now - lasted_s)
             if self._steered(members):  # who steers them lets them pass
                 continue
-            if lasted_s >= GIVES_UP_AFTER * self.limits.jam_after_s:
+            if lasted_s >= self._longest_jam_s:
                 for one in members:
                     one.jammed_s = self.limits.jam_after_s
                 yield from self._give_up_in_jam(self._first_to_yield(members), jam, now)
@@ -151,17 +151,16 @@ class Supervisor:
     def _break_standstill(self, now: float) -> Iterator[Change]:
         """Where robots that traffic leads have not got on for as long as a jam may last one of them gives up."""
         self.standstill.look(self.crew.values(), now)
-        longest_s = GIVES_UP_AFTER * self.limits.jam_after_s
         under_way = [one for one in self._present if one.steered and one.activity in MOVING]
-        if not under_way or now - self.standstill.since_s < longest_s:
+        if not under_way or now - self.standstill.since_s < self._longest_jam_s:
             return
         self.standstill.since_s = now
         state = self._first_to_yield([self.traffic.progress[one.robot.id] for one in under_way])
-        if state.activity is Activity.RETURNING:
-            self.dispatch.end_here(state, now)
-        else:
-            reason = f"jam: nobody has got on for {longest_s:g} s"
-            yield from self.dispatch.refuse(state, state.route[0], reason, now)
+        yield from self._give_up(state, f"jam: nobody has got on for {self._longest_jam_s:g} s", now)
+
+    @property
+    def _longest_jam_s(self) -> float:
+        return GIVES_UP_AFTER * self.limits.jam_after_s
 
     def _is_ring(self, jam: Collection[str]) -> bool:
         """Whether all of a jam want to get on, as far as is known; else one that stands is to make room."""
@@ -208,19 +207,15 @@ class Supervisor:
             self.dispatch.stand_aside(state, now + aside_s, now)
 
     def _give_up_in_jam(self, state: RobotState, jam: Collection[str], now: float) -> Iterator[Change]:
-        if state.activity is Activity.RETURNING:
-            self.dispatch.end_here(state, now)
-        else:
-            others = ", ".join(robot for robot in sorted(jam) if robot != state.robot.id)
-            reason = f"jam: held up by {others} for {GIVES_UP_AFTER * self.limits.jam_after_s:g} s"
-            yield from self.dispatch.refuse(state, state.route[0], reason, now)
+        others = ", ".join(robot for robot in sorted(jam) if robot != state.robot.id)
+        return self._give_up(state, f"jam: held up by {others} for {self._longest_jam_s:g} s", now)
 
-    def _let_refuse(self, state: RobotState, now: float) -> Iterator[Change]:
-        """A robot cannot reach its way point: other robots do the task, or it ends where it is."""
+    def _give_up(self, state: RobotState, reason: str, now: float) -> Iterator[Change]:
+        """A robot does not get to its way point: other robots do the task, or it ends where it is."""
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
         else:
-            yield from self.dispatch.refuse(state, state.route[0], state.refused, now)
+            yield from self.dispatch.refuse(state, state.route[0], reason, now)
 
     def _give_up_blocked(self, state: RobotState, blocking: RobotState, now: float) -> Iterator[Change]:
         """A failed robot stands in the way to a task: others that have no way to it, or to others, get none either."""

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
 from muster.execution.monitor import distance_to_piece
-from muster.execution.task_motion import Way
+from muster.execution.task_motion import Way, along, path_length
 from muster.mission.model import Robot
 from muster.motion.port import Place
 
@@ -30,7 +30,7 @@ def way_round(
 
     ways = ([*first, *second] for first, second in _ways(way, robot, start, goal, about))
     clear = [places for places in ways if is_clear([start, *places])]
-    return min(clear, key=lambda places: sum(map(math.dist, [start, *places], places)), default=None)
+    return min(clear, key=lambda places: path_length(start, along(places)), default=None)
 
 
 def _ways(

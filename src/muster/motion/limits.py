@@ -51,6 +51,10 @@ class Limits:
     def climb(self) -> float:
         return self.speed_mps if self.climb_mps is None else self.climb_mps
 
+    def braking_m(self, speed_mps: float) -> float:
+        """How far a robot of this speed goes until it stands."""
+        return speed_mps**2 / (2 * self.acceleration_mps2)
+
     def turning_radius_m(self, *, faces_its_way: bool) -> float:
         """The least radius that is driven at full speed; 0 where nothing limits turns.
 

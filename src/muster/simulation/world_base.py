@@ -277,8 +277,8 @@ class WorldBase(SimulatedWorld, ABC):
         """Where a robot is and passes, if it stops at once."""
         speed_mps = float(np.linalg.norm(velocity))
         ahead = velocity * (self._crowd.dt + speed_mps / (2 * self._limits(robot).acceleration_mps2))
-        pieces = max(1, math.ceil(speed_mps and float(np.linalg.norm(ahead)) / _LOOKS_EVERY_M))
-        return (at + k / pieces * ahead for k in range(pieces + 1))
+        pieces = math.ceil(float(np.linalg.norm(ahead)) / _LOOKS_EVERY_M)
+        return (at + share * ahead for share in np.linspace(0.0, 1.0, pieces + 1))
 
     def leave_to_traffic(self, robot: str) -> None:
         self._crowd.leave_to_traffic(self._number(robot))

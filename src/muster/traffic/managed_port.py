@@ -112,8 +112,7 @@ class ManagedPort:
     @property
     def at_work(self) -> bool:
         """Whether the robot is busy by its own account: it has taken the order to be."""
-        said = self._port.telemetry()
-        return self.busy and said is not None and said.order == self._sent_order
+        return self.busy and self._said is not None
 
     @property
     def marks_passed(self) -> int:
@@ -162,5 +161,10 @@ class ManagedPort:
 
     @property
     def _sent_passed(self) -> int:
+        return 0 if self._said is None else self._said.passed
+
+    @property
+    def _said(self) -> Telemetry | None:
+        """What the robot last said, if that is of the order that it was last sent."""
         said = self._port.telemetry()
-        return said.passed if said is not None and said.order == self._sent_order else 0
+        return said if said is not None and said.order == self._sent_order else None

@@ -53,7 +53,7 @@ class Part:
         """
         said, limits = self.port.heard, limits_of(self.robot)
         unheard_s = 0.0 if said is None else now - said.time_s
-        left_m = limits.speed_mps * unheard_s + limits.speed_mps**2 / (2 * limits.acceleration_mps2)
+        left_m = limits.speed_mps * unheard_s + limits.braking_m(limits.speed_mps)
         for (x, y), (u, v) in self.pieces_ahead():
             long_m = math.dist((x, y), (u, v))
             pieces = math.ceil(long_m / self.robot.radius_m)
