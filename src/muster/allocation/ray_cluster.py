@@ -85,8 +85,9 @@ def joined(address: str) -> Iterator[Cluster]:
 def _join(address: str) -> None:
     """Join, more than once if need be.
 
-    What speaks for Ray to those outside starts a process for each of them by a fork beside threads of its own, and now
-    and then that process is dead at once (Ray 2.60); the next one lives.
+    What speaks for Ray to those outside starts a process for each of them by a fork beside threads of gRPC, and that
+    process may be dead at once (Ray 2.60); the next one may live. A head that was started with
+    GRPC_ENABLE_FORK_SUPPORT=0 in its environment does not have this fault.
     """
     import ray
 
