@@ -200,7 +200,7 @@ def traffic_option(verb: Verb) -> Verb:
         default=DEFAULT,
         show_default=True,
         help="Who passes first: reserve, by one plan for all that drive; free, as they meet. auto: reserve where the "
-        "mission gives lanes or its map has passages for one.",
+        "mission gives lanes or its map has passages for one, or where robots at their ends can close others out.",
     )(verb)
 
 

@@ -52,7 +52,8 @@ def carry_out(
         for a fleet that stays on duty: until when, and for which orders.
     traffic
         who says which robot passes first: free, robots pass each other as they meet; reserve, in the order of one plan
-        for all that drive; auto, reserve where the mission gives lanes or its map has passages for one robot.
+        for all that drive; auto, reserve where the mission gives lanes, its map has passages for one robot, or robots
+        at their ends can close others out of theirs.
     record
         a file (.mcap) for the record of the run; needs the extra `record`.
     observers

@@ -67,8 +67,8 @@ class Simulation:
         how robots pass each other: auto (the method that jams least), orca, rvo, hrvo, avo or none.
     traffic
         free: robots pass each other as they meet; reserve: robots that drive pass in the order of one plan for all,
-        and go round nothing; auto: reserve where the mission gives lanes or its map has passages for one robot, and
-        no avoidance and no other law than profile is asked for.
+        and go round nothing; auto: reserve where the mission gives lanes, its map has passages for one robot, or robots
+        at their ends can close others out of theirs, and no avoidance and no other law than profile is asked for.
     law
         how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
     noise

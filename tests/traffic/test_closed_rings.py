@@ -1,0 +1,61 @@
+"""Where robots at rest close others out of their ends."""
+
+from __future__ import annotations
+
+import pytest
+
+from muster import Mission, Robot, Task
+from muster.traffic.closed_rings import can_close_out
+
+
+def mission(places, robots=None, radius_m=0.3, **more):
+    """As many robots as places, if nothing else is said, in a line far away."""
+    count = len(places) if robots is None else robots
+    return Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=(3.0 * k, -50.0), radius_m=radius_m, **more) for k in range(count)),
+        tasks=tuple(Task(id=f"t_{k}", position=place) for k, place in enumerate(places)),
+    )
+
+
+def block(columns, rows, apart_m=1.0):
+    return [(column * apart_m, row * apart_m) for column in range(columns) for row in range(rows)]
+
+
+RING = [place for place in block(3, 3) if place != (1.0, 1.0)]
+
+
+@pytest.mark.parametrize(
+    ("places", "closes"),
+    [
+        (block(3, 3), True),
+        (block(9, 2), False),
+        (block(3, 3, 1.25), False),  # one gets through between two
+        (RING, False),  # nobody has to go in
+        ([place for place in block(3, 3) if place != (0.0, 1.0)], False),
+        ([place for place in block(3, 3) if place != (2.0, 1.0)], False),
+        ([*RING, (1.0, 7.0)], False),
+        ([*block(3, 3), *((x + 9.0, y) for x, y in block(4, 2))], True),
+    ],
+)
+def test_a_ring_around_a_place(places, closes):
+    assert can_close_out(mission(places)) is closes
+
+
+def test_it_takes_as_many_robots_as_stand_in_the_ring():
+    assert can_close_out(mission(block(7, 7), 9))
+    assert not can_close_out(mission(block(7, 7), 8))
+    assert not can_close_out(mission(block(3, 3), 1))
+    assert not can_close_out(mission([], 9))
+
+
+def test_where_robots_drive_home_only_their_homes_count():
+    assert not can_close_out(mission(block(3, 3), return_to_start=True))
+    homes = tuple(
+        Robot(id=f"r_{k}", position=at, radius_m=0.3, return_to_start=True) for k, at in enumerate(block(3, 3))
+    )
+    assert can_close_out(Mission(robots=homes, tasks=(Task(id="t", position=(50.0, 0.0)),)))
+
+
+def test_robots_without_a_radius_or_in_the_air_close_nobody_out():
+    assert not can_close_out(mission(block(3, 3), radius_m=0.0))
+    assert not can_close_out(mission(block(3, 3), kind="air"))
