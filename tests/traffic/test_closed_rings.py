@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from muster import Mission, Robot, Task
@@ -50,10 +52,9 @@ def test_it_takes_as_many_robots_as_stand_in_the_ring():
 
 def test_where_robots_drive_home_only_their_homes_count():
     assert not can_close_out(mission(block(3, 3), return_to_start=True))
-    homes = tuple(
-        Robot(id=f"r_{k}", position=at, radius_m=0.3, return_to_start=True) for k, at in enumerate(block(3, 3))
-    )
-    assert can_close_out(Mission(robots=homes, tasks=(Task(id="t", position=(50.0, 0.0)),)))
+    at_home = mission(block(3, 3), return_to_start=True)
+    homes = tuple(replace(robot, position=place) for robot, place in zip(at_home.robots, block(3, 3), strict=True))
+    assert can_close_out(replace(at_home, robots=homes))
 
 
 def test_robots_without_a_radius_or_in_the_air_close_nobody_out():
