@@ -126,18 +126,19 @@ def test_lengths_are_those_of_the_judge_between_places_on_borders(seed, offset):
 @pytest.mark.parametrize(
     ("zones", "radius"),
     [
-        ((box(0, 8, 8, 1), box(8, 8, 12, 1)), 0.0),  # side by side
-        ((box(0, 8, 8, 1), box(8, 7, 12, 1)), 0.0),  # corner to corner
-        ((box(0, 8, 7.5, 1), box(8, 8, 12, 1)), 0.25),  # as far apart as the drone is wide
-        ((box(1e-9, 8, 20, 1),), 0.0),  # almost at the boundary
-        ((box(0, 8, 20, 1, ceiling_m=4), box(0, 8, 20, 1, floor_m=4)), 0.0),  # one upon the other
-        ((box(0, 8, 20, 1, ceiling_m=4), box(0, 9, 20, 1, floor_m=4)), 0.0),  # edge to edge
+        ((box(0, 8, 4, 1), box(4, 8, 6, 1)), 0.0),  # side by side
+        ((box(0, 8, 4, 1), box(4, 7, 6, 1)), 0.0),  # corner to corner
+        ((box(0, 8, 3.5, 1), box(4, 8, 6, 1)), 0.25),  # as far apart as the drone is wide
+        ((box(1e-9, 8, 10, 1),), 0.0),  # almost at the boundary
+        ((box(0, 8, 10, 1, ceiling_m=4), box(0, 8, 10, 1, floor_m=4)), 0.0),  # one upon the other
+        ((box(0, 8, 10, 1, ceiling_m=4), box(0, 9, 10, 1, floor_m=4)), 0.0),  # edge to edge
     ],
 )
 def test_a_drone_does_not_pass_where_zones_touch(zones, radius):
-    arena = Map(boundary=((0, 0), (20, 0), (20, 16), (0, 16)), zones=zones)
-    drone = Robot(id="drone", position=(8.0, 5.0, 1.0), kind="air", radius_m=radius)
-    task = Task(id="t", position=(8.0, 12.0, 1.0))
+    """In a narrow arena: where there is no way, all of it is searched."""
+    arena = Map(boundary=((0, 0), (10, 0), (10, 16), (0, 16)), zones=zones)
+    drone = Robot(id="drone", position=(4.0, 5.0, 1.0), kind="air", radius_m=radius)
+    task = Task(id="t", position=(4.0, 12.0, 1.0))
     mission = Mission(name="slits", robots=(drone,), tasks=(task,), map=arena)
     problem = assert_as_judged(mission, rel=1e-2)
     assert np.isinf(problem.legs(0, [problem.start(0)], [0])).all()
