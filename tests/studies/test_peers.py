@@ -115,7 +115,7 @@ def test_every_rule_is_translated(seed):
 
 
 @pytest.mark.parametrize("objective", OBJECTIVES)
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_prerequisites_hold_across_robots(seed, objective):
     mission = random_mission(100 + seed, tasks=6, robots=3)
     for peer, own_objective in taken(mission):
