@@ -10,10 +10,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from tests.running import test_camera_search as looking
 
 import muster as package
 from muster.library import mission_names
 from muster.mission.plan_reader import read_plan
+from muster.mission.yaml_writer import yaml_text
 
 EVENTFUL = """
 schema: muster/1
@@ -229,7 +231,7 @@ def is_written(muster, record, seconds):
     return code == 0 and json.loads(out)["duration_s"] >= seconds
 
 
-@pytest.mark.parametrize(("written_s", "after_s"), [(0.0, 0.5), (0.0, 1.0), (1.0, 0.0)])
+@pytest.mark.parametrize(("written_s", "after_s"), [(0.0, 0.5), (1.0, 0.0)])
 def test_killed_at_any_moment_it_leaves_a_record_that_replays(muster, tmp_path, written_s, after_s):
     """The point of the record: what was carried out up to there can be looked at."""
     record = tmp_path / "killed.mcap"
@@ -365,11 +367,12 @@ def test_a_mission_is_carried_out_in_the_physics_world(muster):
 
 
 def test_what_cameras_found_is_told_and_drawn(muster, tmp_path):
-    file = tmp_path / "found.png"
-    code, out, _ = muster("simulate", "scout-and-deliver", "--iterations", "100", "--found", file)
+    mission, file = tmp_path / "m.yaml", tmp_path / "found.png"
+    mission.write_text(yaml_text(looking.mission(robots=(looking.DRONE, looking.ROVER))), encoding="utf-8")
+    code, out, _ = muster("simulate", mission, "--iterations", "100", "--found", file)
     assert code == 0
     assert "found by cameras" in out
-    assert "found-37" in out
+    assert "found-4" in out
     assert file.read_bytes().startswith(b"\x89PNG")
 
 
