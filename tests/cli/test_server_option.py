@@ -123,7 +123,9 @@ def test_tasks_that_no_plan_does_together_are_named(folder, muster, url):
 def test_a_simulation_is_as_here(plan, muster, url):
     arguments = ("simulate", "yard.yaml", "--plan", plan, "--seed", 3, "--format", "json")
     assert muster(*arguments, "--server", url)[:2] == muster(*arguments)[:2]
-    again = (*arguments, "--allocator", "greedy", "--rewire")
+    assert muster("solve", "6T-2R", "-a", "greedy", "-o", "short.json", "-q")[0] == 0
+    short = ("simulate", "6T-2R", "--plan", "short.json", "--seed", 3, "--format", "json")
+    again = (*short, "--allocator", "greedy", "--rewire")
     assert muster(*again, "--server", url)[:2] == muster(*again)[:2]
     code, _, err = muster("simulate", "yard.yaml", "--plan", plan, "--set", "hott=1", "--server", url)
     assert code == 2
