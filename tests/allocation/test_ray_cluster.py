@@ -43,7 +43,7 @@ def cluster():
     """A cluster of two nodes with one CPU each; nothing of it runs afterwards."""
     head = {"num_cpus": 1, "include_dashboard": False, "ray_client_server_port": free_port(), **STORE}
     with pytest.MonkeyPatch.context() as environment:
-        environment.setenv("GRPC_ENABLE_FORK_SUPPORT", "0")  # with it, every second one outside is not let in
+        environment.setenv("GRPC_ENABLE_FORK_SUPPORT", "0")  # with it, who asks from outside is often not let in
         nodes = Cluster(initialize_head=True, head_node_args=head)
     nodes.add_node(num_cpus=1, **STORE)
     until_it_listens(nodes.head_node._ray_params.ray_client_server_port)

@@ -8,10 +8,9 @@ from muster.mission.model import Mission
 from muster.motion.avoidance_names import AUTO as ANY_AVOIDANCE
 from muster.motion.laws import PROFILE
 from muster.motion.map_world import World
-from muster.traffic.closed_rings import can_close_out
 from muster.traffic.manager import TrafficManager
 from muster.traffic.managers import manager_named
-from muster.traffic.names import AUTO, RESERVE, of_run
+from muster.traffic.names import RESERVE, of_run
 from muster.traffic.roadmap import MARGIN_M
 
 LOOSE_MARGIN_M = 0.1
@@ -31,7 +30,6 @@ def manager_for(
     """The manager of a run's traffic; None where robots pass each other as they meet.
 
     `auto` leaves traffic free where a method of avoidance is asked for, or a law by which robots leave straight ways.
-    Else it is by reservation where the roadmap says so, and where robots at rest can close others out of their ends.
 
     Parameters
     ----------
@@ -48,8 +46,6 @@ def manager_for(
     if law != PROFILE and traffic == RESERVE:
         raise ParameterError(f"traffic: {traffic}; expected free: by law {law} robots leave straight ways")
     chosen = of_run(traffic, avoidance=avoidance, law=law)
-    if chosen == AUTO and can_close_out(mission):
-        chosen = RESERVE
     return manager_named(chosen, mission, seed, world=world, margin_m=MARGIN_M if exact else LOOSE_MARGIN_M)
 
 

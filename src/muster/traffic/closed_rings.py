@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
 
 from muster.mission.model import Mission
-from muster.motion.actions import TaskMotion, plan
+from muster.motion.grid import Floats
+from muster.traffic.mission_roadmap import task_motions
 from muster.traffic.names import drives
-
-Place = tuple[float, float]
 
 
 def can_close_out(mission: Mission) -> bool:
@@ -18,61 +20,66 @@ def can_close_out(mission: Mission) -> bool:
     Walls are not looked at.
     """
     robots = [robot for robot in mission.all_robots if drives(robot)]
-    if len(robots) < 2 or not mission.tasks:
+    ends = _ends(mission)
+    if len(robots) < 2 or not len(ends):
         return False
     gap_m = 4 * max(robot.radius_m for robot in robots)  # between two at rest, through which none of them gets
-    ends = _ends(mission)
-    middle = tuple(sum(values) / len(values) for values in zip(*ends, strict=True))
-    beside = {end: [other for other in ends if 0 < math.dist(end, other) < gap_m] for end in ends}
-    inner_first = sorted(ends, key=lambda end: math.dist(end, middle))
-    return any(_is_closed_in(end, beside, len(robots) - 1, gap_m) for end in inner_first)
+    beside = _Beside(ends, gap_m)
+    inner_first = np.argsort(np.hypot(*(ends - ends.mean(axis=0)).T), kind="stable")
+    return any(beside.rings(int(k), len(robots) - 1) for k in inner_first)
 
 
-def _ends(mission: Mission) -> list[Place]:
-    """Where robots that drive may come to rest: at an end of their own, or where their last task leaves them."""
-    ends: set[Place] = set()
-    for robot in filter(drives, mission.all_robots):
-        end = robot.place_at_end(mission.rules)
-        if end is not None:
-            ends.add((end[0], end[1]))
-            continue
-        for task in mission.tasks:
-            if task.only_robots is None or robot.id in task.only_robots:
-                motion = plan(task, robot)
-                if isinstance(motion, TaskMotion):
-                    ends.add((motion.exit[0], motion.exit[1]))
-    return sorted(ends)
+def _ends(mission: Mission) -> Floats:
+    """Where robots that drive may come to rest, (n, 2) metres: their own ends, or where their last task leaves them."""
+    robots = list(filter(drives, mission.all_robots))
+    own = [robot.place_at_end(mission.rules) for robot in robots]
+    anywhere = [robot for robot, end in zip(robots, own, strict=True) if end is None]
+    exits = [motion.exit for motion in task_motions(mission, anywhere)]
+    ends = sorted({(end[0], end[1]) for end in [*own, *exits] if end is not None})
+    return np.array(ends).reshape(-1, 2)
 
 
-def _is_closed_in(place: Place, beside: dict[Place, list[Place]], most: int, gap_m: float) -> bool:
-    """Whether at most so many of the other places make a closed ring around one."""
-    near = [other for other in beside if 0 < math.dist(place, other) < most * gap_m / 2]
-    return any(
-        _ring_from(start, place, beside, most)
-        for start in near
-        if any(_crosses(place, start, other) for other in beside[start])
-    )
+class _Beside:
+    """Which ends, (n, 2) metres, are so close that nobody gets through between robots that stand there."""
 
+    def __init__(self, ends: Floats, gap_m: float) -> None:
+        self._ends = ends
+        near = [np.flatnonzero(np.hypot(*(ends - end).T) < gap_m) for end in ends]
+        pairs = [(a, b) for a, others in enumerate(near) for b in others.tolist() if a < b]
+        self._pairs: NDArray[np.int_] = np.array(pairs, dtype=int).reshape(-1, 2)
+        self._of: list[list[tuple[int, int]]] = [[] for _ in ends]
+        """Of each end the others beside it, and the number of the pair."""
+        for number, (a, b) in enumerate(pairs):
+            self._of[a].append((b, number))
+            self._of[b].append((a, number))
 
-def _ring_from(start: Place, place: Place, beside: dict[Place, list[Place]], most: int) -> bool:
-    """Whether a ring of at most so many goes through a start: it crosses a ray from the place oddly often."""
-    steps = {(start, False): 0}
-    queue = deque(steps)
-    while queue:
-        at, odd = node = queue.popleft()
-        if node == (start, True):
-            return True
-        if steps[node] < most:
-            for other in beside[at]:
-                after = (other, odd != _crosses(place, at, other))
-                if other != place and after not in steps:
-                    steps[after] = steps[node] + 1
-                    queue.append(after)
-    return False
+    def rings(self, place: int, most: int) -> bool:
+        """Whether at most so many of the other ends make a closed ring around one: all rays from there cross it."""
+        crossed = min((self._crossed(place, axis, sign) for axis, sign in product((0, 1), (1, -1))), key=np.sum)
+        return any(self._ring_from(int(start), place, crossed, most) for start in set(self._pairs[crossed, 0].tolist()))
 
+    def _crossed(self, place: int, axis: int, sign: int) -> NDArray[np.bool_]:
+        """Which pairs the ray from a place along an axis crosses; none of which the place is one."""
+        along, across = sign * (self._ends - self._ends[place])[:, [axis, 1 - axis]].T
+        a, b = self._pairs.T
+        spans = (across[a] > 0) != (across[b] > 0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            meets = along[a] - across[a] / (across[b] - across[a]) * (along[b] - along[a])
+        crossed: NDArray[np.bool_] = spans & (meets > 0) & (a != place) & (b != place)
+        return crossed
 
-def _crosses(place: Place, a: Place, b: Place) -> bool:
-    """Whether the way from a to b crosses the ray from the place along the x axis."""
-    if (a[1] > place[1]) == (b[1] > place[1]):
+    def _ring_from(self, start: int, place: int, crossed: NDArray[np.bool_], most: int) -> bool:
+        """Whether a ring of at most so many goes through a start: it crosses the ray an odd number of times."""
+        steps = {(start, False): 0}
+        queue = deque(steps)
+        while queue:
+            at, odd = node = queue.popleft()
+            if node == (start, True):
+                return True
+            if steps[node] < most:
+                for other, pair in self._of[at]:
+                    after = (other, odd != bool(crossed[pair]))
+                    if other != place and after not in steps:
+                        steps[after] = steps[node] + 1
+                        queue.append(after)
         return False
-    return a[0] + (place[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > place[0]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from muster.mission.model import Mission
 from muster.motion.map_world import World
+from muster.traffic.closed_rings import can_close_out
 from muster.traffic.manager import TrafficManager
 from muster.traffic.mission_roadmap import MissionRoadmap
-from muster.traffic.names import AUTO, may_reserve
+from muster.traffic.names import AUTO, RESERVE, may_reserve
 from muster.traffic.reserved import ReservedTraffic
 from muster.traffic.roadmap import MARGIN_M
 
@@ -16,8 +17,11 @@ def manager_named(
 ) -> TrafficManager | None:
     """The manager of a mission's traffic; None where robots pass each other as they meet.
 
-    Parameters and errors are those of `shared_roadmap`.
+    Parameters and errors are those of `shared_roadmap`. With `auto` traffic is by reservation also where robots at rest
+    can close others out of their ends.
     """
+    if name == AUTO and can_close_out(mission):
+        name = RESERVE
     shared = shared_roadmap(name, mission, world=world, margin_m=margin_m)
     if shared is None:
         return None

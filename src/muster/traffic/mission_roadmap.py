@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.mission.errors import ParameterError
@@ -100,10 +100,16 @@ def _places(mission: Mission, robots: tuple[Robot, ...]) -> Iterator[Point]:
         yield robot.position
         if robot.end_position is not None:
             yield robot.end_position
+    for motion in task_motions(mission, robots):
+        yield motion.entry
+        yield motion.exit
+
+
+def task_motions(mission: Mission, robots: Sequence[Robot]) -> Iterator[TaskMotion]:
+    """How each task is done by each of these robots that may do it and can."""
     for task in mission.tasks:
         for robot in robots:
             if task.only_robots is None or robot.id in task.only_robots:
                 motion = plan(task, robot)
                 if isinstance(motion, TaskMotion):
-                    yield motion.entry
-                    yield motion.exit
+                    yield motion
