@@ -24,10 +24,10 @@ robots:
   - {id: r_0, position: [0, 0, 0], speed_mps: 3, yaw_rate_radps: 6, radius_m: 0.2, kinematics: differential-drive}
   - {id: d_0, position: [0, 5, 1], kind: air, kinematics: quadcopter, speed_mps: 3, radius_m: 0.3, skills: [fly]}
 tasks:
-  - {id: t_1, position: [2, 0, 0]}
+  - {id: t_1, position: [2, 0, 0], duration_s: 2}
   - {id: t_2, position: [2, 2, 0]}
   - {id: high, position: [2, 5, 3], requires: [fly]}
-  - {id: low, position: [2, 7, 1.5], requires: [fly], duration_s: 0.5}
+  - {id: low, position: [2, 7, 1.5], requires: [fly], duration_s: 4}
 """
 QUICK = ("--time-limit", "0.2", "--format", "json")
 
@@ -89,7 +89,9 @@ def test_a_plan_is_carried_out_from_where_motion_capture_sees_robots_and_drawn_f
     assert nearest(said, (2 * 0 + 5, 10 - 2, 0)) < 0.15  # t_1, seen from its own frame
     assert nearest(said, (2 + 5, 10 - 2, 0)) < 0.15
     rows = [json.loads(data["data"]) for topic, data in heard if topic == "/r_0/status"]
-    assert max(row["usage_m"] for row in rows) > 2.0
+    watched = [row["position"] for row in rows if row["position"] is not None]
+    assert nearest(watched, (2, 2, 0)) < 0.15  # in the map
+    assert max(row["usage_m"] for row in rows) > 1.0  # tasks last so long that a monitor that comes late hears it too
 
     drawn = [data["markers"] for topic, data in heard if topic == "/muster/markers"]
     first, last = ([marker for marker in some if marker["action"] == 0] for some in (drawn[1], drawn[-1]))
