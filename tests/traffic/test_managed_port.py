@@ -6,7 +6,7 @@ import pytest
 
 from muster import Robot
 from muster.motion.port import Telemetry, Waypoint
-from muster.traffic.reserved import BROKEN_AFTER_S, TRIED_AFTER_S, ReservedTraffic
+from muster.traffic.reserved import BROKEN_AFTER_S, MOST_TRIES, TRIED_AFTER_S, ReservedTraffic
 from muster.traffic.travellers import Move
 
 GOAL = (9.0, 0.0, 0.0)
@@ -35,16 +35,21 @@ class Drive:
 class Traffic:
     """Traffic of one robot that is sent to a goal; its plans, and who was fixed in each."""
 
-    stepwise = False
+    stepwise, cut_off, way = False, (), None
 
     def __init__(self) -> None:
         self.fixed: list[bool] = []
+        self.sought = 0
         self.traffic, self.drive = ReservedTraffic(self), Drive()
         self.traffic.managed(Robot(id="r_0", position=(0.0, 0.0), radius_m=0.3), self.drive).send([Waypoint(GOAL)])
 
     def __call__(self, travellers):
         self.fixed.append(travellers[0].fixed)
         return [] if travellers[0].fixed else [Move(0, GOAL[:2])]
+
+    def whole(self, travellers):
+        self.sought += 1
+        return self.way
 
     def go_on(self, seconds, speed):
         until_s = self.drive.now + seconds
@@ -97,12 +102,31 @@ def test_who_drops_the_order_to_work_at_its_goal_is_told_anew(traffic):
     ]  # to be at work there, and anew
 
 
-def test_moves_that_were_planned_step_by_step_are_not_planned_anew_in_their_midst(traffic):
-    """Though they end before the goal: made anew they may lead back."""
-    plans = len(traffic.fixed)
-    traffic.stepwise, traffic.traffic._planned_s = True, traffic.drive.now
+def test_who_cuts_others_off_is_told_anew_as_often_as_who_has_a_goal(traffic):
+    traffic.traffic._parts[0].tried = MOST_TRIES
+    traffic.traffic._break(traffic.traffic._parts[0], traffic.drive.now)
+    traffic.go_on(TRIED_AFTER_S + 1.0, speed=0.0)
+    assert traffic.traffic._parts[0].broken
+    traffic.cut_off = (1,)
+    traffic.go_on(1.0, speed=0.0)
+    assert not traffic.traffic._parts[0].broken
+
+
+def test_moves_that_were_planned_step_by_step_give_way_to_whole_ways_alone(traffic):
+    """Other steps may lead back, though these end before the goal."""
+    plans, now = len(traffic.fixed), traffic.drive.now
+    traffic.stepwise, traffic.traffic._planned_s = True, now
     traffic.traffic._parts[0].goal = None  # as if it were to go elsewhere
-    assert traffic.traffic._plan_is_due(traffic.drive.now + 2.0)  # another goal
+    assert traffic.traffic._plan_is_due(now + 2.0)  # another goal
     traffic.traffic._parts[0].goal = GOAL[:2]
-    assert not traffic.traffic._plan_is_due(traffic.drive.now + 2.0)
+    left_m = traffic.traffic._order.metres_left(0)
+    for _ in range(2):
+        traffic.go_on(2.0, speed=0.5)
+        assert (len(traffic.fixed), traffic.sought) == (plans, traffic.drive.now - now)
+        assert traffic.traffic._planned_s == now
+    assert traffic.traffic._order.metres_left(0) < left_m
+    traffic.way = [Move(0, (GOAL[0] - 1.0, 1.0)), Move(0, GOAL[:2])]
+    traffic.go_on(1.0, speed=0.5)
+    assert traffic.traffic._planned_s > now
+    assert [point[:2] for point in traffic.traffic._parts[0].port.sent_ahead][-1] == GOAL[:2]
     assert len(traffic.fixed) == plans

@@ -854,6 +854,8 @@ class PassingOrder:
         Metres that are left between robots, and for which a robot may have begun moves.
         """
 
+    def __copy__(self) -> PassingOrder: ...
+
     def add(self, place: tuple[float, float], radius: float) -> int:
         """A robot that stands; returns its number."""
 

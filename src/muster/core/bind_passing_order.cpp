@@ -73,6 +73,7 @@ void bind_passing_order(nb::module_& m) {
                            "[hoenig2019]. Places are in metres.")
       .def(nb::init<double, double>(), nb::kw_only(), "margin"_a, "ahead"_a,
            "Metres that are left between robots, and for which a robot may have begun moves.")
+      .def("__copy__", [](const CheckedOrder& order) { return order; })
       .def("add", &CheckedOrder::add, "place"_a, "radius"_a, "A robot that stands; returns its number.")
       .def("stands", &CheckedOrder::stands, "robot"_a, "place"_a,
            "A robot stands elsewhere than was thought; nothing changes where it has moves.")

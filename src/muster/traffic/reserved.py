@@ -8,7 +8,8 @@ it, and when one stands that should go.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -21,15 +22,15 @@ from muster.traffic.managed_port import ManagedPort
 from muster.traffic.names import drives
 from muster.traffic.part import Part, planar
 from muster.traffic.roadmap import MARGIN_M
-from muster.traffic.travellers import Planner, Point, Stop, Traveller
+from muster.traffic.travellers import Move, Planner, Point, Stop, Traveller
 
 AHEAD_M = 2.0
 """For how many metres a robot may have begun moves, which a new plan does not change."""
 PLAN_EVERY_S = 1.0
 """The least time between two plans where nobody has a new goal."""
 STEPS_FOR_S = 10.0
-"""So long at most robots go on by moves that were planned step by step, as long as there are any: a plan anew in their
-midst may send them back."""
+"""So long at most robots go on by moves that were planned step by step, as long as there are any and no plan of whole
+ways is found: other steps may send them back."""
 STOPS_PLANNED = 120
 """Stops of all robots to which moves are planned, but `LEAST_STOPS` of each; anew where one has fewer than half of
 these left."""
@@ -41,7 +42,7 @@ BROKEN_AFTER_S = 5.0
 TRIED_AFTER_S = 6.0
 """So long after that it is told anew where to go: it may have dropped its order."""
 MOST_TRIES = 4
-"""So often that time is doubled for one that has no goal."""
+"""So often that time is doubled for one that has no goal, but where it cuts others off."""
 _MOVED_M = 0.05
 _AT_GOAL_M = 1e-3
 
@@ -65,6 +66,7 @@ class ReservedTraffic:
     _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
     _parts: list[Part] = field(default_factory=list)
     _planned_s: float = -math.inf
+    _sought_s: float = -math.inf  # when a plan was last sought
     _travellers: list[Traveller] = field(default_factory=list)  # of the last plan
     _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
 
@@ -108,7 +110,9 @@ class ReservedTraffic:
             self._lead_on(part, now)
         self._watch(now)
         if self._plan_is_due(now):
-            self._plan_anew(now)
+            self._plan_anew(now, self.plan)
+        elif now - self._sought_s >= PLAN_EVERY_S and self._on_steps(now):
+            self._plan_anew(now, self.plan.whole)
         for part in self._parts:
             self._let_go(part)
 
@@ -137,7 +141,8 @@ class ReservedTraffic:
                 if part.broken:
                     self._mend(part, now)
             if part.broken:
-                if now - part.broken_s >= TRIED_AFTER_S * 2**part.tried:
+                patient = 0 if self.plan.cut_off else part.tried
+                if now - part.broken_s >= TRIED_AFTER_S * 2**patient:
                     part.tried = min(part.tried + 1, MOST_TRIES) if part.port.goal is None else 0
                     self._mend(part, now)
             elif moved or not part.to_go or part.port.at_work:
@@ -172,7 +177,7 @@ class ReservedTraffic:
     def _lead_on(self, part: Part, now: float) -> None:
         """A robot that goes where it was planned to go next, or has done all, goes on along the moves that it has."""
         goal, arrives = self._goal(part), part.port.arrives
-        to_next = arrives and goal != part.goal and part.ahead[:1] == [goal]
+        to_next = arrives and goal != part.goal and part.ahead[:1] == [goal] and not self.plan.stepwise
         to_rest = goal is None and part.goal is not None and not part.ahead and not part.stays
         if to_next or to_rest:
             part.goal, part.arrives, part.ahead = goal, arrives, part.ahead[1:]
@@ -184,13 +189,17 @@ class ReservedTraffic:
     def _plan_is_due(self, now: float) -> bool:
         if any(self._goes_elsewhere(part, now) for part in self._parts):
             return True
-        if now - self._planned_s < PLAN_EVERY_S:
+        if now - self._planned_s < PLAN_EVERY_S or self._on_steps(now):
             return False
-        if self.plan.stepwise and now - self._planned_s < STEPS_FOR_S:
-            return not any(self._order.metres_left(part.number) > _MOVED_M for part in self._parts if not part.fixed)
         return any(
             self._falls_short(part) or (part.more and len(part.ahead) < LEAST_STOPS // 2) for part in self._parts
         )
+
+    def _on_steps(self, now: float) -> bool:
+        """Whether robots go on by moves that were planned step by step."""
+        if not self.plan.stepwise or now - self._planned_s >= STEPS_FOR_S:
+            return False
+        return any(self._order.metres_left(part.number) > _MOVED_M for part in self._parts if not part.fixed)
 
     def _goes_elsewhere(self, part: Part, now: float) -> bool:
         """Whether a robot has been sent elsewhere than was planned; one that has done its work is told soon."""
@@ -214,8 +223,10 @@ class ReservedTraffic:
             return None
         return planar(goal)
 
-    def _plan_anew(self, now: float) -> None:
-        self._planned_s, self.plans = now, self.plans + 1
+    def _plan_anew(self, now: float, plan: Callable[[Sequence[Traveller]], Iterable[Move] | None]) -> None:
+        """Moves after those that have begun; where none are found all goes on as it was planned before."""
+        self._sought_s = now
+        before = copy(self._order), [copy(part) for part in self._parts]
         self._order.drop_ahead()
         travellers = []
         for part in self._parts:
@@ -223,9 +234,13 @@ class ReservedTraffic:
             self._find_again(part)
             travellers.append(self._traveller(part))
         travellers += [Traveller(part.robot, at, fixed=True) for part in self._parts for at in part.may_be_at]
-        self._travellers = travellers
+        moves = plan(travellers)
+        if moves is None:
+            self._order, self._parts = before
+            return
+        self._planned_s, self.plans, self._travellers = now, self.plans + 1, travellers
         stopped = set[int]()
-        for traveller, to, stop in self.plan(travellers):
+        for traveller, to, stop in moves:
             part = self._parts[traveller]
             if traveller not in stopped and not self._order.append(part.number, to, part.stop + stop):
                 stopped.add(traveller)

@@ -93,18 +93,27 @@ class RoadmapPlan:
         """Whether a straight way (2, 2) leads through no closed door."""
         return bool(self.doors.open_ways(piece[np.newaxis], self._closed)[0])
 
-    def __call__(self, travellers: Sequence[Traveller]) -> Iterator[Move]:
+    def __call__(self, travellers: Sequence[Traveller]) -> list[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
+        moves = self.whole(travellers)
+        self.stepwise = moves is None
+        return self._by_inheritance(travellers) if moves is None else moves
+
+    def whole(self, travellers: Sequence[Traveller]) -> list[Move] | None:
+        """See `Planner`."""
         on = self._network_for(travellers)
         self.cut_off = frozenset(range(len(travellers)))
-        whole = len(travellers) * len(on.roadmap.edges) <= _MOST_BY_INTERVALS
-        moves = self._by_safe_intervals(on, travellers) if whole else None
-        self.stepwise = moves is None
-        if moves is None:
-            moves = self._by_inheritance(on, travellers)
-        for traveller, edge, stop in moves:
-            x, y = on.roadmap.points[on.roadmap.edges[edge, 1]]
-            yield Move(traveller, (float(x), float(y)), stop)
+        if len(travellers) * len(on.roadmap.edges) > _MOST_BY_INTERVALS:
+            return None
+        moves, ends, order = self._searched(on, travellers)
+        if math.inf in ends and any(len(who.stops) > 1 for who in travellers):
+            moves, ends, order = self._searched(on, [_to_first_stop(who) for who in travellers])
+        self._priorities = [travellers[k].robot.id for k in order]
+        self.cut_off = frozenset(k for k, end in enumerate(ends) if math.isnan(end))
+        if math.inf in ends:
+            return None
+        self.stepwise = False
+        return [on.move(traveller, edge, stop) for _, traveller, edge, stop in moves]
 
     def journeys(self, travellers: Sequence[Traveller], *, ways: int) -> list[Journey]:
         """How each gets through all its stops among the others.
@@ -166,17 +175,6 @@ class RoadmapPlan:
             if self.clear(np.array([place, place])):
                 yield place
 
-    def _by_safe_intervals(
-        self, on: _Network, travellers: Sequence[Traveller]
-    ) -> Sequence[tuple[int, int, int]] | None:
-        """Moves as (traveller, edge, stop), at least to first stops; None where some find no path."""
-        moves, ends, order = self._searched(on, travellers)
-        if math.inf in ends and any(len(who.stops) > 1 for who in travellers):
-            moves, ends, order = self._searched(on, [_to_first_stop(who) for who in travellers])
-        self._priorities = [travellers[k].robot.id for k in order]
-        self.cut_off = frozenset(k for k, end in enumerate(ends) if math.isnan(end))
-        return None if math.inf in ends else [(traveller, edge, stop) for _, traveller, edge, stop in moves]
-
     def _searched(
         self, on: _Network, travellers: Sequence[Traveller], ways: int = _WAYS
     ) -> tuple[list[tuple[float, int, int, int]], list[float], list[int]]:
@@ -187,8 +185,9 @@ class RoadmapPlan:
         told = [_told(who, on.number) for who in travellers]
         return on.intervals.best_of(told, order=first, tries=max(1, ways // max(1, len(told))), seed=self.seed)
 
-    def _by_inheritance(self, on: _Network, travellers: Sequence[Traveller]) -> Sequence[tuple[int, int, int]]:
-        """Moves as (traveller, edge, stop), to first stops, as far as the horizon."""
+    def _by_inheritance(self, travellers: Sequence[Traveller]) -> list[Move]:
+        """To first stops, as far as the horizon."""
+        on = self._network_for(travellers)
         first = {on.number[who.start]: k for k, who in reversed(list(enumerate(travellers)))}
         numbers = sorted(first.values())  # without those who are only thought to be where another is
         there = [travellers[k] for k in numbers]
@@ -201,7 +200,7 @@ class RoadmapPlan:
             seed=self.seed,
             params=Parameters(horizon=_HORIZON * len(there)),
         )
-        return [(numbers[k], edge, 0) for k, edge in found.moves]
+        return [on.move(numbers[k], edge, 0) for k, edge in found.moves]
 
 
 @dataclass(frozen=True)
@@ -219,6 +218,11 @@ class _Network:
         planner = MovePlanner(roadmap)
         rests = roadmap.holding.tolist()
         return cls(roadmap, number, planner, core.SafeIntervals(planner.shared, rests, roadmap.margin_m))
+
+    def move(self, traveller: int, edge: int, stop: int) -> Move:
+        """A move along an edge."""
+        x, y = self.roadmap.points[self.roadmap.edges[edge, 1]]
+        return Move(traveller, (float(x), float(y)), stop)
 
     def metres(self, who: Traveller) -> float:
         """The length of the shortest way to a robot's first stop; below 0 without one."""

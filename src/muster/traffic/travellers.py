@@ -89,3 +89,7 @@ class Planner(Protocol):
     def __call__(self, travellers: Sequence[Traveller]) -> Iterable[Move]:
         """Moves, as far as they are found."""
         ...
+
+    def whole(self, travellers: Sequence[Traveller]) -> Iterable[Move] | None:
+        """Moves along whole ways to all first stops at least; None where some find no way."""
+        ...
