@@ -147,10 +147,12 @@ class Dispatch:
         if state.activity not in (Activity.DRIVING, Activity.RETURNING) or broken.robot.id in state.went_round:
             return False
         others = [(one.position, one.robot.radius_m) for one in self._crew.values() if one.out and one is not broken]
-        about = (broken.position, broken.robot.radius_m)
-        way = way_round(self._way, state.robot, state.position, state.next_stop, about, others)
+        about, begin = (broken.position, broken.robot.radius_m), self._free_place(state)
+        way = way_round(self._way, state.robot, begin, state.next_stop, about, others)
         if way is None:
             return False
+        if begin != state.position:
+            way = [begin, *way]
         state.turn_off(now, way, broken.robot.id)
         self._emit("robot_goes_round", {"robot": state.robot.id, "broken": broken.robot.id})
         return True
@@ -158,10 +160,16 @@ class Dispatch:
     def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:
         """The way from where a robot is; by way of the last place known to be free, if it stands where it cannot."""
         found = self._way(state.robot, state.position, goal)
-        if found is not None or self._way(state.robot, state.position, state.position) is not None:
+        begin = self._free_place(state) if found is None else state.position
+        if begin == state.position:
             return found
-        onward = self._way(state.robot, state.refuge, goal)
-        return None if onward is None else [state.refuge, *onward]
+        onward = self._way(state.robot, begin, goal)
+        return None if onward is None else [begin, *onward]
+
+    def _free_place(self, state: RobotState) -> Place:
+        """Where a robot is; the last place known to be free, if it stands where it cannot."""
+        stands = self._way(state.robot, state.position, state.position) is not None
+        return state.position if stands else state.refuge
 
     def _to_task(self, state: RobotState, task: str, now: float) -> Iterator[Change]:
         work = work_of(self._ledger.tasks[task], state.robot, self._plan_motion, self._way, state.times)

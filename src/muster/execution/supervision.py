@@ -103,7 +103,7 @@ class Supervisor:
         takes = state.takes_orders or state.activity is Activity.WORKING
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, state.robot, state.points_left)), None)
-        if blocking is not None:
+        if blocking is not None and takes:
             yield from self._give_way_to_broken(state, blocking, now)
         elif state.sent_again >= (1 if takes else MOST_SENT_AGAIN):
             yield from self.changes.exclude(state, STUCK, now, "no progress with nobody in its way")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Sequence
-from itertools import pairwise
+from itertools import pairwise, product
 
 from muster.execution.monitor import distance_to_piece
 from muster.execution.task_motion import Way, along, path_length
@@ -13,7 +13,7 @@ from muster.motion.port import Place
 
 _TIMES_APART = (1.2, 1.5, 2.0)
 """How far from the middle of the one to get round the way may turn, in distances at which the two touch."""
-_DIRECTIONS = 12
+_TURNS = 12
 _SPARE_M = 0.05
 
 Standing = tuple[Place, float]
@@ -23,27 +23,50 @@ Standing = tuple[Place, float]
 def way_round(
     way: Way, robot: Robot, start: Place, goal: Place, about: Standing, others: Collection[Standing]
 ) -> Sequence[Place] | None:
-    """The shortest way that turns once near a robot that stands there, and keeps clear of this and others; or None."""
+    """The shortest way that turns near a robot that stands there, and keeps clear of this and others; or None."""
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.csgraph import dijkstra
 
-    def is_clear(places: Sequence[Place]) -> bool:
-        return all(_passes(robot, start, piece, other) for piece in pairwise(places) for other in (about, *others))
+    turns = {number: _turn(robot, start, about, number) for number in product(range(len(_TIMES_APART)), range(_TURNS))}
+    places = [start, *turns.values(), goal]
+    pieces = {}
+    for a, b in _joined(list(turns)):
+        piece = way(robot, places[a], places[b])
+        if piece is not None and _is_clear(robot, start, [places[a], *piece], (about, *others)):
+            pieces[a, b] = piece
+    if not pieces:
+        return None
+    lengths = [path_length(places[a], along(piece)) for (a, _), piece in pieces.items()]
+    graph = csr_matrix((lengths, tuple(zip(*pieces, strict=True))), shape=(len(places), len(places)))
+    _, before = dijkstra(graph, indices=0, return_predecessors=True)
+    at, found = len(places) - 1, list[Place]()
+    while before[at] >= 0:
+        found, at = [*pieces[before[at], at], *found], before[at]
+    return found or None
 
-    ways = ([*first, *second] for first, second in _ways(way, robot, start, goal, about))
-    clear = [places for places in ways if is_clear([start, *places])]
-    return min(clear, key=lambda places: path_length(start, along(places)), default=None)
 
-
-def _ways(
-    way: Way, robot: Robot, start: Place, goal: Place, about: Standing
-) -> Iterator[tuple[Sequence[Place], Sequence[Place]]]:
+def _turn(robot: Robot, start: Place, about: Standing, number: tuple[int, int]) -> Place:
+    """A place beside the one to get round."""
     (x, y, _), radius_m = about
-    for times in _TIMES_APART:
-        for k in range(_DIRECTIONS):
-            angle, away_m = 2 * math.pi * k / _DIRECTIONS, times * (radius_m + robot.radius_m + _SPARE_M)
-            turn = (x + away_m * math.cos(angle), y + away_m * math.sin(angle), start[2])
-            first, second = way(robot, start, turn), way(robot, turn, goal)
-            if first is not None and second is not None:
-                yield first, second
+    ring, direction = number
+    away_m = _TIMES_APART[ring] * (radius_m + robot.radius_m + _SPARE_M)
+    angle = 2 * math.pi * direction / _TURNS
+    return (x + away_m * math.cos(angle), y + away_m * math.sin(angle), start[2])
+
+
+def _joined(turns: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+    """Which places a way may join, by number: the start, 0, with all turns, these with their neighbours and the end."""
+    for a, (ring, direction) in enumerate(turns, 1):
+        yield 0, a
+        yield a, len(turns) + 1
+        for b, (other, to) in enumerate(turns, 1):
+            steps = (to - direction) % _TURNS
+            if (ring == other and steps in (1, _TURNS - 1)) or (steps == 0 and abs(ring - other) == 1):
+                yield a, b
+
+
+def _is_clear(robot: Robot, start: Place, places: Sequence[Place], standing: Collection[Standing]) -> bool:
+    return all(_passes(robot, start, piece, other) for piece in pairwise(places) for other in standing)
 
 
 def _passes(robot: Robot, start: Place, piece: tuple[Place, Place], other: Standing) -> bool:
