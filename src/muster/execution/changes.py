@@ -114,7 +114,7 @@ class Changes:
         """Let a robot take part again, from where it is."""
         if state.out:
             state.out, state.last_heard_s, state.sent_again = "", now, 0
-            self.ledger.unblock(state.robot.id)
+            self._open_ways()
             state.stop(now)
             yield Change("robot_returns", {"robot": state.robot.id} | ({"reason": reason} if reason else {}))
 
@@ -193,11 +193,16 @@ class Changes:
                 state.left = self.travel.way_out(state.robot, state.position, goal) or state.left
                 if not state.out and state.activity in (Activity.DRIVING, Activity.RETURNING):
                     state.stop(now)
-                if opens and state.cut_off:
-                    state.cut_off = state.at_home = False
             if opens:
-                self.ledger.try_again()
+                self._open_ways()
             yield Change(kind, {"door": door})
+
+    def _open_ways(self) -> None:
+        """What stood in the way may do so no more: robots try what they had no way to."""
+        self.ledger.try_again()
+        for state in self.crew.values():
+            if state.cut_off:
+                state.cut_off = state.at_home = False
 
     def set_doors(self, closed: frozenset[str]) -> None:
         """From now on these doors are closed, and the others open, for all that ask for ways."""

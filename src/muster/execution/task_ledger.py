@@ -235,14 +235,9 @@ class Ledger:
     def refuse(self, task: str, robot: str, reason: str) -> None:
         self.refusals.setdefault(task, {})[robot] = reason
 
-    def unblock(self, robot: str) -> None:
-        """Unblock the tasks that a broken robot had blocked: it moves again, so other robots may try them."""
-        for task in [task for task, by in self.blocked_by.items() if by == robot]:
-            del self.blocked_by[task]
-            self.refusals.pop(task, None)
-
     def try_again(self) -> None:
         """Robots may try again what they had no way to."""
+        self.blocked_by.clear()
         for refusals in self.refusals.values():
             for robot in [robot for robot, reason in refusals.items() if reason.startswith("unreachable")]:
                 del refusals[robot]

@@ -148,6 +148,7 @@ class TrafficWaits:
         self._crew = crew
         self._left_m: dict[str, tuple[int, float]] = {}  # of which order, at the last look
         self._looked_s = 0.0
+        self._out: set[str] = set()
         self.waits: dict[str, TrafficWait] = {}
         self.progress: dict[str, Progress] = {}
         self.sent_round: set[str] = set()
@@ -156,6 +157,7 @@ class TrafficWaits:
     def look(self, now: float) -> Iterator[tuple[str, dict[str, Any]]]:
         """See who waits now; yields an event of each wait that begins to count, or is over."""
         self.sent_round.clear()
+        self._notice_returns()
         for robot, state in self._crew.items():
             nearer_m = self._nearer_m(state)
             could_m = state.robot.speed_mps * (now - self._looked_s)
@@ -184,6 +186,14 @@ class TrafficWaits:
         for jam in self.jams():
             for one in self.members(jam):
                 one.held_s += now - since_s
+
+    def _notice_returns(self) -> None:
+        """Where one that was out takes part again all wait anew: whom they wait for may not be who cut them off."""
+        out = {robot for robot, state in self._crew.items() if state.out}
+        if self._out - out:
+            for one in self.progress.values():
+                one.behind_s.clear()
+        self._out = out
 
     def waits_for(self, robot: str) -> str:
         """For whom a robot waits in traffic; empty where it does not."""
