@@ -32,7 +32,7 @@ from muster.execution.robot_state import Activity, RobotState
 from muster.execution.script import Script
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
 from muster.execution.standing import KEPT_EVENTS, KEPT_REVISIONS, UNTIL_DONE, EventLog, Forgetting, Standing
-from muster.execution.supervision import Reaches, Supervisor, everywhere
+from muster.execution.supervision import Leader, NoLeader, Supervisor
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
 from muster.execution.team_work import break_off
@@ -78,8 +78,8 @@ class Executor:
         how long a fleet stays on duty when its tasks are done, and for which orders; None: not at all.
     on_doors
         receives the ids of the doors that are closed, when one closes or opens.
-    reaches
-        to which places a robot can get past those that stand for good, for all that is known.
+    leader
+        who leads robots through traffic; None: nobody.
 
     Raises
     ------
@@ -104,7 +104,7 @@ class Executor:
         peers: Peers | None = None,
         standing: Standing | None = None,
         on_doors: Callable[[Collection[str]], None] = lambda closed: None,
-        reaches: Reaches = everywhere,
+        leader: Leader | None = None,
     ) -> None:
         self.mission = mission
         self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored, plan.ignored)
@@ -142,7 +142,7 @@ class Executor:
             limits or Limits(),
             self.emit,
             now,
-            reaches,
+            NoLeader() if leader is None else leader,
         )
         self._forgetting = Forgetting(self.ledger, self.crew, self._forecast, self._standing.keep_s)
         self._script = self._script_after(-math.inf if past is None else now)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol
 
 from muster.execution.changes import SILENT, STUCK, Change, Changes
 from muster.execution.dispatch import Dispatch, Emit
@@ -25,13 +26,28 @@ LONGEST_ASIDE = 3
 """Times the first time that a robot stands aside at most."""
 
 
-Reaches = Callable[[str, Sequence[Place]], list[bool]]
-"""To which places a robot, by its name, can get."""
+class Leader(Protocol):
+    """Who leads robots through traffic, and what of them it knows."""
+
+    def reaches(self, robot: str, places: Sequence[Place]) -> list[bool]:
+        """To which places a robot, by its name, can get past those that stand for good, for all that is known."""
+        ...
+
+    def stays(self, robot: str) -> bool:
+        """Whether a robot that has nothing to do was told several times to make room, and has not moved."""
+        ...
 
 
-def everywhere(robot: str, places: Sequence[Place]) -> list[bool]:
-    """Nobody is known to be cut off: a `Reaches` without traffic."""
-    return [True for _ in places]
+class NoLeader:
+    """Nobody is known to be cut off, or told to make room."""
+
+    def reaches(self, robot: str, places: Sequence[Place]) -> list[bool]:
+        """See `Leader`."""
+        return [True for _ in places]
+
+    def stays(self, robot: str) -> bool:
+        """See `Leader`."""
+        return False
 
 
 @dataclass
@@ -50,8 +66,8 @@ class Supervisor:
         receives every event that asks for no new plan.
     look_s
         when the next look is due.
-    reaches
-        to which places a robot can get past those that stand for good, for all that is known.
+    leader
+        who leads robots through traffic.
     """
 
     crew: Mapping[str, RobotState]
@@ -63,7 +79,7 @@ class Supervisor:
     limits: Limits
     emit: Emit
     look_s: float
-    reaches: Reaches
+    leader: Leader
     standstill: Standstill = field(default_factory=Standstill)
 
     def look(self, now: float) -> Iterator[Change]:
@@ -86,6 +102,8 @@ class Supervisor:
                 yield from self._give_up(state, state.refused, now)
             elif (broken := self._broken_before(state)) is not None:
                 yield from self._give_way_to_broken(state, broken, now)
+            elif state.activity is Activity.IDLE and self.leader.stays(state.robot.id):
+                yield from self.changes.exclude(state, STUCK, now, "makes no room for others")
             elif is_stuck(state, now, self.limits):
                 yield from self._free_or_put_out(state, now)
             elif state.activity is Activity.DRIVING and self.capacity(state) is not None:
@@ -233,7 +251,7 @@ class Supervisor:
         """A robot is given no task to which traffic knows no way for it."""
         known = [task for task in self.ledger.open if state.robot.id not in self.ledger.refusals.get(task.id, {})]
         places = [place(task.position if task.entry is None else task.entry) for task in known]
-        for task, reached in zip(known, self.reaches(state.robot.id, places), strict=True):
+        for task, reached in zip(known, self.leader.reaches(state.robot.id, places), strict=True):
             if not reached and state.route[:1] != [task.id]:
                 self.ledger.refuse(task.id, state.robot.id, reason)
                 self.ledger.blocked_by[task.id] = blocking

@@ -33,7 +33,7 @@ from muster.planning.options import PlanningOptions
 from muster.running.fleet_clock import FleetWithMissionClock
 from muster.running.fleet_in_traffic import FleetInTraffic
 from muster.running.replanning import planning_of
-from muster.running.traffic_choice import manager_for, reaches_of
+from muster.running.traffic_choice import manager_for
 from muster.traffic.names import DEFAULT
 
 if TYPE_CHECKING:
@@ -179,7 +179,7 @@ class Live:
             past=past,
             standing=self._standing,
             on_doors=lambda closed: None if manager is None else manager.close(closed),
-            reaches=reaches_of(manager),
+            leader=manager,
         )
         if manager is not None:
             manager.expect(self.executor.outlook)

@@ -33,7 +33,7 @@ from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.replanning import planning_of
 from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
-from muster.running.traffic_choice import manager_for, reaches_of
+from muster.running.traffic_choice import manager_for
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, Charges
 from muster.traffic.names import DEFAULT
@@ -168,7 +168,7 @@ class Simulation:
             now=self._world.time_s,
             standing=self._standing,
             on_doors=self._close,
-            reaches=reaches_of(manager),
+            leader=manager,
         )
         if manager is not None:
             manager.expect(self._executor.outlook)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from muster.execution.supervision import Reaches, everywhere
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.motion.avoidance_names import AUTO as ANY_AVOIDANCE
@@ -47,8 +46,3 @@ def manager_for(
         raise ParameterError(f"traffic: {traffic}; expected free: by law {law} robots leave straight ways")
     chosen = of_run(traffic, avoidance=avoidance, law=law)
     return manager_named(chosen, mission, seed, world=world, margin_m=MARGIN_M if exact else LOOSE_MARGIN_M)
-
-
-def reaches_of(manager: TrafficManager | None) -> Reaches:
-    """To which places a robot can get among the others, as its traffic knows; without any, to all."""
-    return everywhere if manager is None else manager.reaches

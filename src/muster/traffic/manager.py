@@ -32,6 +32,10 @@ class TrafficManager(Protocol):
         """To which places a robot, by its name, can get past those that stand for good, for all that is known."""
         ...
 
+    def stays(self, robot: str) -> bool:
+        """Whether a robot that has nothing to do was told several times to make room, and has not moved."""
+        ...
+
     def look(self, now: float) -> None:
         """See how far robots are and send them on; to be called every `LOOK_S` seconds of the mission's clock."""
         ...

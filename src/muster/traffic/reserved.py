@@ -43,6 +43,8 @@ TRIED_AFTER_S = 6.0
 """So long after that it is told anew where to go: it may have dropped its order."""
 MOST_TRIES = 4
 """So often that time is doubled for one that has no goal, but where it cuts others off."""
+STAYS_AFTER = 2
+"""One that has nothing to do, and was told anew so often, does not move at all."""
 _MOVED_M = 0.05
 _AT_GOAL_M = 1e-3
 
@@ -100,6 +102,10 @@ class ReservedTraffic:
             if part.robot.id == robot:
                 return self.plan.reaches(self._travellers, part.number, [planar(place) for place in places])
         return [True for _ in places]
+
+    def stays(self, robot: str) -> bool:
+        """See `TrafficManager`."""
+        return any(part.robot.id == robot and part.tried >= STAYS_AFTER for part in self._parts)
 
     def look(self, now: float) -> None:
         """See how far robots are, plan anew where that is due, and send robots on."""
