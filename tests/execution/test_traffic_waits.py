@@ -13,6 +13,7 @@ from muster.execution.monitor import Limits
 from muster.execution.report import report_of
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.status import status_of
+from muster.execution.supervision import NoLeader
 from muster.execution.traffic_waits import HeldUp, TrafficWaits
 from muster.mission.model import Event
 from muster.motion.leg_times import LegTimes
@@ -180,6 +181,31 @@ def test_nobody_waits_for_ever_for_one_that_is_out():
     assert executor.done
     assert "unreachable: r_1 stands there, out (r_0)" in executor.lost()["0"]
     assert not executor.crew["r_0"].out
+
+
+def test_one_that_has_nothing_to_do_and_makes_no_room_is_out_until_it_moves():
+    class Leader(NoLeader):
+        def stays(self, robot):
+            return robot == "r_1" and 5 <= world.now < 20
+
+    mission = line(40.0, robots=2)
+    world = World(mission)
+    executor = Executor(mission, plan_of(r_0=["0"]), world.ports, leader=Leader())
+    carry_out(executor, world, until=10)
+    assert executor.crew["r_1"].out == STUCK
+    assert next(e.data for e in executor.events if e.kind == STUCK)["reason"] == "makes no room for others"
+    assert not executor.crew["r_0"].out
+
+
+def test_all_wait_anew_where_one_that_was_out_takes_part_again():
+    """Else one would give up for r_2 what r_1 kept from it."""
+    waits_on, out, moves = standing("r_0", (4.3, 0), (6, 0)), standing("r_1", (9, 9)), standing("r_2", (5, 0))
+    out.out = moves.out = STUCK
+    _, waits = waiting_among(waits_on, out, moves, looks=8)
+    assert waits.progress["r_0"].behind_s["r_2"] > 2.0
+    out.out = ""
+    list(waits.look(4.0))
+    assert waits.progress["r_0"].behind_s["r_2"] == 0.5
 
 
 def test_a_robot_that_was_stuck_is_back_when_it_moves():
