@@ -142,19 +142,19 @@ class Dispatch:
         if state.activity is not Activity.IDLE:
             state.stop(now)
 
-    def go_round(self, state: RobotState, broken: RobotState, now: float) -> bool:
-        """Send a robot round one that is out; returns whether it has not tried that yet, and there is a way."""
-        if state.activity not in (Activity.DRIVING, Activity.RETURNING) or broken.robot.id in state.went_round:
+    def go_round(self, state: RobotState, standing: RobotState, now: float) -> bool:
+        """Send a robot round one that stands; returns whether it has not tried that yet, and there is a way."""
+        if state.activity not in (Activity.DRIVING, Activity.RETURNING) or standing.robot.id in state.went_round:
             return False
-        others = [(one.position, one.robot.radius_m) for one in self._crew.values() if one.out and one is not broken]
-        about, begin = (broken.position, broken.robot.radius_m), self._free_place(state)
+        others = [(one.position, one.robot.radius_m) for one in self._crew.values() if one.out and one is not standing]
+        about, begin = (standing.position, standing.robot.radius_m), self._free_place(state)
         way = way_round(self._way, state.robot, begin, state.next_stop, about, others)
         if way is None:
             return False
         if begin != state.position:
             way = [begin, *way]
-        state.turn_off(now, way, broken.robot.id)
-        self._emit("robot_goes_round", {"robot": state.robot.id, "broken": broken.robot.id})
+        state.turn_off(now, way, standing.robot.id)
+        self._emit("robot_goes_round", {"robot": state.robot.id, "round": standing.robot.id})
         return True
 
     def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:

@@ -161,10 +161,19 @@ class Supervisor:
                 for one in members:
                     one.jammed_s = self.limits.jam_after_s
                 yield from self._give_up_in_jam(self._first_to_yield(members), jam, now)
+            elif not self._is_ring(jam) and lasted_s >= self.limits.jam_after_s:
+                self._lead_round(jam, now)
             elif self._is_ring(jam) and held_s >= self._turn(jam, members) * self.limits.aside_after_s:
                 for one in members:
                     one.held_s = 0.0
                 self._let_stand_aside(self._first_to_yield(members), now)
+
+    def _lead_round(self, jam: Collection[str], now: float) -> None:
+        """Those who wait for one that has nothing to do, and makes no room for so long, go round it where they can."""
+        for robot in sorted(jam & self.traffic.waits.keys()):
+            state, other = self.crew[robot], self.crew.get(self.traffic.waits_for(robot))
+            if other is not None and other.activity is Activity.IDLE and self.dispatch.go_round(state, other, now):
+                self.traffic.progress[robot].goes_round(state.way_left_m)
 
     def _break_standstill(self, now: float) -> Iterator[Change]:
         """Where robots that traffic leads have not got on for as long as a jam may last one of them gives up."""

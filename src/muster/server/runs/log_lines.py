@@ -30,7 +30,7 @@ _HAPPENS = {
     "waits_in_traffic": "{robot} waits in traffic for {waits_for}",
     "goes_on": "{robot} goes on",
     "traffic_jam": "jam: {robots} hold each other up",
-    "robot_goes_round": "{robot} goes round {broken}, which is out",
+    "robot_goes_round": "{robot} goes round {round}, which stands in its way",
     "robot_stands_aside": "{robot} stands aside for {waits_for}",
     "robot_sent_again": "{robot} is sent again",
     "window_missed": "task {task} is not begun in time",
