@@ -6,7 +6,7 @@ import pytest
 
 from muster import Robot
 from muster.motion.port import Telemetry, Waypoint
-from muster.traffic.reserved import BROKEN_AFTER_S, MOST_TRIES, TRIED_AFTER_S, ReservedTraffic
+from muster.traffic.reserved import BROKEN_AFTER_S, TRIED_AFTER_S, ReservedTraffic
 from muster.traffic.travellers import Move
 
 GOAL = (9.0, 0.0, 0.0)
@@ -35,7 +35,7 @@ class Drive:
 class Traffic:
     """Traffic of one robot that is sent to a goal; its plans, and who was fixed in each."""
 
-    stepwise, cut_off, way = False, (), None
+    stepwise, way = False, None
 
     def __init__(self) -> None:
         self.fixed: list[bool] = []
@@ -100,16 +100,6 @@ def test_who_drops_the_order_to_work_at_its_goal_is_told_anew(traffic):
         GOAL,
         GOAL,
     ]  # to be at work there, and anew
-
-
-def test_who_cuts_others_off_is_told_anew_as_often_as_who_has_a_goal(traffic):
-    traffic.traffic._parts[0].tried = MOST_TRIES
-    traffic.traffic._break(traffic.traffic._parts[0], traffic.drive.now)
-    traffic.go_on(TRIED_AFTER_S + 1.0, speed=0.0)
-    assert traffic.traffic._parts[0].broken
-    traffic.cut_off = (1,)
-    traffic.go_on(1.0, speed=0.0)
-    assert not traffic.traffic._parts[0].broken
 
 
 def test_moves_that_were_planned_step_by_step_give_way_to_whole_ways_alone(traffic):

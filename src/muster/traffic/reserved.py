@@ -42,7 +42,7 @@ BROKEN_AFTER_S = 5.0
 TRIED_AFTER_S = 6.0
 """So long after that it is told anew where to go: it may have dropped its order."""
 MOST_TRIES = 4
-"""So often that time is doubled for one that has no goal, but where it cuts others off."""
+"""So often that time is doubled for one that has no goal."""
 STAYS_AFTER = 2
 """One that has nothing to do, and was told anew so often, does not move at all."""
 _MOVED_M = 0.05
@@ -147,8 +147,7 @@ class ReservedTraffic:
                 if part.broken:
                     self._mend(part, now)
             if part.broken:
-                patient = 0 if self.plan.cut_off else part.tried
-                if now - part.broken_s >= TRIED_AFTER_S * 2**patient:
+                if now - part.broken_s >= TRIED_AFTER_S * 2**part.tried:
                     part.tried = min(part.tried + 1, MOST_TRIES) if part.port.goal is None else 0
                     self._mend(part, now)
             elif moved or not part.to_go or part.port.at_work:
