@@ -185,7 +185,7 @@ def test_nobody_waits_for_ever_for_one_that_is_out():
 
 def test_one_that_has_nothing_to_do_and_makes_no_room_is_out_until_it_moves():
     class Leader(NoLeader):
-        def stays(self, robot):
+        def makes_no_room(self, robot):
             return robot == "r_1" and 5 <= world.now < 20
 
     mission = line(40.0, robots=2)

@@ -33,7 +33,7 @@ class Leader(Protocol):
         """To which places a robot, by its name, can get past those that stand for good, for all that is known."""
         ...
 
-    def stays(self, robot: str) -> bool:
+    def makes_no_room(self, robot: str) -> bool:
         """Whether a robot that has nothing to do was told several times to make room, and has not moved."""
         ...
 
@@ -45,7 +45,7 @@ class NoLeader:
         """See `Leader`."""
         return [True for _ in places]
 
-    def stays(self, robot: str) -> bool:
+    def makes_no_room(self, robot: str) -> bool:
         """See `Leader`."""
         return False
 
@@ -102,7 +102,7 @@ class Supervisor:
                 yield from self._give_up(state, state.refused, now)
             elif (broken := self._broken_before(state)) is not None:
                 yield from self._give_way_to_broken(state, broken, now)
-            elif state.activity is Activity.IDLE and self.leader.stays(state.robot.id):
+            elif state.activity is Activity.IDLE and self.leader.makes_no_room(state.robot.id):
                 yield from self.changes.exclude(state, STUCK, now, "makes no room for others")
             elif is_stuck(state, now, self.limits):
                 yield from self._free_or_put_out(state, now)
@@ -140,8 +140,7 @@ class Supervisor:
 
     def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> Iterator[Change]:
         """Where there is no way round it a robot ends here or gives up its task; traffic leads those that it steers."""
-        if not state.steered and self.dispatch.go_round(state, broken, now):
-            self.traffic.progress[state.robot.id].goes_round(state.way_left_m)
+        if self._goes_round(state, broken, now):
             return
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
@@ -161,9 +160,10 @@ class Supervisor:
                 for one in members:
                     one.jammed_s = self.limits.jam_after_s
                 yield from self._give_up_in_jam(self._first_to_yield(members), jam, now)
-            elif not self._is_ring(jam) and lasted_s >= self.limits.jam_after_s:
-                self._lead_round(jam, now)
-            elif self._is_ring(jam) and held_s >= self._turn(jam, members) * self.limits.aside_after_s:
+            elif not self._is_ring(jam):
+                if lasted_s >= self.limits.jam_after_s:
+                    self._lead_round(jam, now)
+            elif held_s >= self._turn(jam, members) * self.limits.aside_after_s:
                 for one in members:
                     one.held_s = 0.0
                 self._let_stand_aside(self._first_to_yield(members), now)
@@ -172,8 +172,15 @@ class Supervisor:
         """Those who wait for one that has nothing to do, and makes no room for so long, go round it where they can."""
         for robot in sorted(jam & self.traffic.waits.keys()):
             state, other = self.crew[robot], self.crew.get(self.traffic.waits_for(robot))
-            if other is not None and other.activity is Activity.IDLE and self.dispatch.go_round(state, other, now):
-                self.traffic.progress[robot].goes_round(state.way_left_m)
+            if other is not None and other.activity is Activity.IDLE:
+                self._goes_round(state, other, now)
+
+    def _goes_round(self, state: RobotState, standing: RobotState, now: float) -> bool:
+        """Send a robot that nobody steers round one that stands; returns whether it has a way that it has not tried."""
+        if state.steered or not self.dispatch.go_round(state, standing, now):
+            return False
+        self.traffic.progress[state.robot.id].goes_round(state.way_left_m)
+        return True
 
     def _break_standstill(self, now: float) -> Iterator[Change]:
         """Where robots that traffic leads have not got on for as long as a jam may last one of them gives up."""

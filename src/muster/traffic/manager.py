@@ -32,7 +32,7 @@ class TrafficManager(Protocol):
         """To which places a robot, by its name, can get past those that stand for good, for all that is known."""
         ...
 
-    def stays(self, robot: str) -> bool:
+    def makes_no_room(self, robot: str) -> bool:
         """Whether a robot that has nothing to do was told several times to make room, and has not moved."""
         ...
 

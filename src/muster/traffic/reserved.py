@@ -43,7 +43,7 @@ TRIED_AFTER_S = 6.0
 """So long after that it is told anew where to go: it may have dropped its order."""
 MOST_TRIES = 4
 """So often that time is doubled for one that has no goal."""
-STAYS_AFTER = 2
+NO_ROOM_AFTER = 2
 """One that has nothing to do, and was told anew so often, does not move at all."""
 _MOVED_M = 0.05
 _AT_GOAL_M = 1e-3
@@ -103,9 +103,9 @@ class ReservedTraffic:
                 return self.plan.reaches(self._travellers, part.number, [planar(place) for place in places])
         return [True for _ in places]
 
-    def stays(self, robot: str) -> bool:
+    def makes_no_room(self, robot: str) -> bool:
         """See `TrafficManager`."""
-        return any(part.robot.id == robot and part.tried >= STAYS_AFTER for part in self._parts)
+        return any(part.robot.id == robot and part.tried >= NO_ROOM_AFTER for part in self._parts)
 
     def look(self, now: float) -> None:
         """See how far robots are, plan anew where that is due, and send robots on."""
