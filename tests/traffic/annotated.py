@@ -25,6 +25,7 @@ def annotated(points, pairs, reach_m):
         reach_start=np.array(start),
         reach_point=np.array(near, dtype=np.int64),
         reach_m=np.array(metres),
+        speed_mps=np.full(len(edges), np.inf),
     )
 
 

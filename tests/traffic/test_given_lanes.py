@@ -10,6 +10,7 @@ from muster.motion.free_space import PolygonSpace
 from muster.motion.paths import PathFinder
 from muster.traffic.given_lanes import closed_lanes
 from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmap_plan import with_places
 
 RADIUS = 0.3
 NODES = {"a": (0, 0), "b": (5, 0), "c": (5, 3)}
@@ -103,3 +104,38 @@ def test_lanes_of_any_length_have_points_that_can_be_counted():
     roadmap = Roadmap.of_lanes(far, RADIUS)
     assert len(roadmap.points) < 50_000
     np.testing.assert_allclose(roadmap.lengths_m, 1e16 / (len(roadmap.edges) / 2))
+
+
+def ways(roadmap):
+    return {(tuple(roadmap.points[u]), tuple(roadmap.points[v])) for u, v in roadmap.edges.tolist()}
+
+
+def test_places_on_a_lane_are_points_of_it():
+    """Nobody goes to a stop beside its place first, and no more robots stop there than on a lane without places."""
+    graph = lanes({"start": "a", "end": "b", "capacity": 3, "speed_mps": 0.5})
+    roadmap = Roadmap.of_lanes(graph, RADIUS, [(4.0, 0.0), (2.0, 0.0)])
+    a, far, near, b = (0.0, 0.0), (4.0, 0.0), (2.0, 0.0), (5.0, 0.0)
+    assert ways(roadmap) == {(a, near), (near, far), (far, b)}
+    assert [tuple(roadmap.points[k]) for k in roadmap.places] == [far, near]
+    assert set(roadmap.speed_mps.tolist()) == {0.5}
+
+
+def test_a_place_on_a_lane_each_way_is_one_point_of_both():
+    graph = lanes({"start": "a", "end": "b", "capacity": 1}, {"start": "b", "end": "a", "capacity": 1})
+    roadmap = Roadmap.of_lanes(graph, RADIUS, [(2.0, 0.0)])
+    a, at, b = (0.0, 0.0), (2.0, 0.0), (5.0, 0.0)
+    assert ways(roadmap) == {(a, at), (at, b), (b, at), (at, a)}
+
+
+def test_who_stands_on_a_lane_keeps_its_speed():
+    graph = lanes(
+        {"start": "a", "end": "b", "capacity": 1, "speed_mps": 0.5, "both_ways": True},
+        {"start": "b", "end": "c", "capacity": 1, "both_ways": True},
+    )
+    roadmap = with_places(Roadmap.of_lanes(graph, RADIUS), lambda piece: True, [(2.0, 0.03), (2.0, 0.5)])
+    speeds = {
+        (tuple(roadmap.points[u]), tuple(roadmap.points[v])): speed
+        for (u, v), speed in zip(roadmap.edges.tolist(), roadmap.speed_mps.tolist(), strict=True)
+    }
+    assert speeds[(2.0, 0.03), (5.0, 0.0)] == speeds[(0.0, 0.0), (2.0, 0.03)] == 0.5
+    assert speeds[(2.0, 0.5), (5.0, 0.0)] == speeds[(2.0, 0.03), (5.0, 3.0)] == np.inf

@@ -107,3 +107,11 @@ def test_a_robot_that_stands_elsewhere_than_was_thought_is_there():
     order.append(robot, (1.0, 0.0))
     order.stands(robot, (0.3, 0.3))
     assert order.end(robot) == (1.0, 0.0)
+
+
+def test_moves_have_their_speeds():
+    order = PassingOrder(margin=0.0, ahead=2.0)
+    robot = order.add((0.0, 0.0), 0.3)
+    order.append(robot, (1.0, 0.0), speed=0.5)
+    order.append(robot, (2.0, 0.0))
+    assert order.grant(robot).speeds == [0.5, float("inf")]

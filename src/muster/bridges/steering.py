@@ -73,6 +73,11 @@ class SteeredRobot:
     def goes(self) -> bool:
         return self.aim is not None and not self.arrived
 
+    @property
+    def top_speed_mps(self) -> float:
+        """The greatest on its way to the aim."""
+        return self.robot.speed_mps if self.aim is None else min(self.robot.speed_mps, self.aim.speed_mps)
+
 
 class Steering:
     """Keeps the last inputs of each robot, which limit the next ones.
@@ -126,7 +131,7 @@ class Steering:
             ),
             preferred=preferred,
             radii=np.array([self._radius(steered.robot) for steered in crowd]),
-            max_speeds=np.array([steered.robot.speed_mps for steered in crowd]),
+            max_speeds=np.array([steered.top_speed_mps for steered in crowd]),
             priorities=np.array([steered.robot.avoidance_priority if steered.goes else _STANDS for steered in crowd]),
         )
         chosen = np.zeros((len(crowd), 3))
@@ -150,7 +155,7 @@ class Steering:
         if far == 0:
             return np.zeros(size)
         brakes = math.sqrt(2 * limits.acceleration_mps2 * far)
-        wanted = approach(offset[None], min(limits.speed_mps, brakes), SETTLES_S)[0]
+        wanted = approach(offset[None], min(limits.speed_mps, steered.aim.speed_mps, brakes), SETTLES_S)[0]
         c, s = math.cos(_TO_THE_RIGHT), math.sin(_TO_THE_RIGHT)
         wanted[:2] = (c * wanted[0] + s * wanted[1], c * wanted[1] - s * wanted[0])
         return np.asarray(wanted)

@@ -12,9 +12,9 @@ class AnnotatedRoadmap:
     A roadmap that says for each edge which points a robot on it comes near to.
     """
 
-    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], first: Sequence[int], heads: Sequence[int], costs: Sequence[float], near_first: Sequence[int], near_points: Sequence[int], near_metres: Sequence[float]) -> None:
+    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], first: Sequence[int], heads: Sequence[int], costs: Sequence[float], speeds: Sequence[float], near_first: Sequence[int], near_points: Sequence[int], near_metres: Sequence[float]) -> None:
         """
-        `points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not fit.
+        `points` is (n, 2), `speeds` the greatest on each edge; edges and what is near them are in compressed rows. Raises ValueError where they do not fit.
         """
 
 class Problem:
@@ -728,9 +728,9 @@ class CrowdWorld:
     def set_walls(self, robot: int, walls: int) -> None:
         """From now on another set of walls stops a robot."""
 
-    def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 5), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
+    def send(self, robot: int, stops: Annotated[NDArray[numpy.float64], dict(shape=(None, 6), order='C', device='cpu', writable=False)], labelled: Sequence[bool], order: int) -> None:
         """
-        Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.
+        Way points (k, 6): x, y, z, heading or NaN, hold, greatest speed on the way there; none to stop. One out of order does not take them.
         """
 
     def follow(self, robot: int, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], step: float, times: Sequence[float]) -> None:
@@ -829,6 +829,10 @@ class Grant:
         """Ends of moves, in metres; the last may lie within a move."""
 
     @property
+    def speeds(self) -> list[float]:
+        """The greatest on the way to each of these, in m/s; inf: any."""
+
+    @property
     def ended(self) -> int:
         """How many of these are ends of moves."""
 
@@ -864,9 +868,9 @@ class PassingOrder:
         A robot stands elsewhere than was thought; nothing changes where it has moves.
         """
 
-    def append(self, robot: int, to: tuple[float, float], stop: int = 0) -> bool:
+    def append(self, robot: int, to: tuple[float, float], stop: int = 0, speed: float = float('inf')) -> bool:
         """
-        A move from where the robot's moves end; False where another would stand in the way. `stop`: the number of the stop to which it leads.
+        A move from where the robot's moves end; False where another would stand in the way. `stop`: the number of the stop to which it leads; `speed`: the greatest on it.
         """
 
     def lead(self, robot: int, stop: int) -> None:

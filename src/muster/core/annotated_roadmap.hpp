@@ -23,12 +23,14 @@ class AnnotatedRoadmap {
   };
 
   // Throws std::invalid_argument where the arrays do not fit.
-  AnnotatedRoadmap(std::vector<Point> points, DirectedGraph graph, std::vector<int> near_first, std::vector<Near> near)
+  AnnotatedRoadmap(std::vector<Point> points, DirectedGraph graph, std::vector<double> speeds,
+                   std::vector<int> near_first, std::vector<Near> near)
       : points_(std::move(points)),
         graph_(std::move(graph)),
+        speeds_(std::move(speeds)),
         near_first_(std::move(near_first)),
         near_(std::move(near)) {
-    if (static_cast<int>(points_.size()) != graph_.size() ||
+    if (static_cast<int>(points_.size()) != graph_.size() || static_cast<int>(speeds_.size()) != graph_.edges() ||
         near_first_.size() != static_cast<std::size_t>(graph_.edges()) + 1 || near_first_.front() != 0 ||
         !std::is_sorted(near_first_.begin(), near_first_.end()) ||
         near_first_.back() != static_cast<int>(near_.size())) {
@@ -58,6 +60,8 @@ class AnnotatedRoadmap {
   }
   Point place(int point) const { return points_[point]; }
   double length(int edge) const { return lengths_[edge]; }
+  // The greatest on it.
+  double speed(int edge) const { return speeds_[edge]; }
   // Radians from one edge to the next, without sign.
   double turn(int edge, int next) const { return turn_from(directions_[edge], next); }
   // Radians from a heading, from east and anticlockwise, to that of an edge, without sign; 0 from NaN.
@@ -74,6 +78,7 @@ class AnnotatedRoadmap {
 
   std::vector<Point> points_;
   DirectedGraph graph_;
+  std::vector<double> speeds_;  // of edges
   std::vector<int> near_first_;
   std::vector<Near> near_;
   std::vector<double> lengths_, directions_;  // of edges

@@ -34,14 +34,15 @@ void bind_annotated_roadmap(nb::module_& m) {
       .def(
           "__init__",
           [](AnnotatedRoadmap* self, const PointArray& points, std::vector<int> first, std::vector<int> heads,
-             std::vector<double> costs, std::vector<int> near_first, const std::vector<int>& near_points,
-             const std::vector<double>& near_metres) {
+             std::vector<double> costs, std::vector<double> speeds, std::vector<int> near_first,
+             const std::vector<int>& near_points, const std::vector<double>& near_metres) {
             DirectedGraph graph(std::move(first), std::move(heads), std::move(costs));
-            new (self) AnnotatedRoadmap(points_of(points), std::move(graph), std::move(near_first),
+            new (self) AnnotatedRoadmap(points_of(points), std::move(graph), std::move(speeds), std::move(near_first),
                                         reach(near_points, near_metres));
           },
-          "points"_a, "first"_a, "heads"_a, "costs"_a, "near_first"_a, "near_points"_a, "near_metres"_a,
-          "`points` is (n, 2); edges and what is near them are in compressed rows. Raises ValueError where they do not "
+          "points"_a, "first"_a, "heads"_a, "costs"_a, "speeds"_a, "near_first"_a, "near_points"_a, "near_metres"_a,
+          "`points` is (n, 2), `speeds` the greatest on each edge; edges and what is near them are in compressed rows. "
+          "Raises ValueError where they do not "
           "fit.");
 }
 

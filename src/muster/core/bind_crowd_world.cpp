@@ -22,7 +22,7 @@ namespace {
 
 using Place = std::array<double, 3>;
 using Faces = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
-using Stops = nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
+using Stops = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
 using Table = nb::ndarray<nb::numpy, double>;
 using Event = std::tuple<double, int, int, int, bool>;
 using Poses = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
@@ -62,8 +62,8 @@ std::vector<Waypoint> way_of(const Stops& stops, const std::vector<bool>& labell
   if (stops.shape(0) != labelled.size()) throw std::invalid_argument("the arrays are of different lengths");
   std::vector<Waypoint> way;
   for (std::size_t k = 0; k < labelled.size(); ++k) {
-    const double* s = stops.data() + 5 * k;
-    way.push_back({Vec<3>{{s[0], s[1], s[2]}}, s[3], s[4], labelled[k]});
+    const double* s = stops.data() + 6 * k;
+    way.push_back({Vec<3>{{s[0], s[1], s[2]}}, s[3], s[4], labelled[k], s[5]});
   }
   return way;
 }
@@ -140,7 +140,8 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
             w.send(robot, way_of(stops, labelled), order);
           },
           "robot"_a, "stops"_a, "labelled"_a, "order"_a,
-          "Way points (k, 5): x, y, z, heading or NaN, hold; none to stop. One out of order does not take them.")
+          "Way points (k, 6): x, y, z, heading or NaN, hold, greatest speed on the way there; none to stop. One out of "
+          "order does not take them.")
       .def(
           "follow",
           [](CrowdWorld& w, int robot, const Poses& poses, double step, std::vector<double> times) {

@@ -2,6 +2,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
+#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -34,7 +35,9 @@ class CheckedOrder {
 
   int add(Pair place, double radius) { return robots_ = order_.add(point_of(place), radius) + 1, robots_ - 1; }
   void stands(int robot, Pair place) { checked(robot).stands(robot, point_of(place)); }
-  bool append(int robot, Pair to, int stop) { return checked(robot).append(robot, point_of(to), stop); }
+  bool append(int robot, Pair to, int stop, double speed) {
+    return checked(robot).append(robot, point_of(to), stop, speed);
+  }
   void lead(int robot, int stop) { checked(robot).lead(robot, stop); }
   void drop_ahead() { order_.drop_ahead(); }
   void cut() { order_.cut(); }
@@ -63,6 +66,7 @@ void bind_passing_order(nb::module_& m) {
       .def_prop_ro(
           "points", [](const PassingOrder::Grant& grant) { return pairs_of(grant.points); },
           "Ends of moves, in metres; the last may lie within a move.")
+      .def_ro("speeds", &PassingOrder::Grant::speeds, "The greatest on the way to each of these, in m/s; inf: any.")
       .def_ro("ended", &PassingOrder::Grant::ended, "How many of these are ends of moves.")
       .def_ro("metres", &PassingOrder::Grant::metres, "From where the robot is.")
       .def_ro("waits_for", &PassingOrder::Grant::waits_for, "The robot that passes first; -1: none.")
@@ -78,8 +82,9 @@ void bind_passing_order(nb::module_& m) {
       .def("stands", &CheckedOrder::stands, "robot"_a, "place"_a,
            "A robot stands elsewhere than was thought; nothing changes where it has moves.")
       .def("append", &CheckedOrder::append, "robot"_a, "to"_a, "stop"_a = 0,
+           "speed"_a = std::numeric_limits<double>::infinity(),
            "A move from where the robot's moves end; False where another would stand in the way. `stop`: the number of "
-           "the stop to which it leads.")
+           "the stop to which it leads; `speed`: the greatest on it.")
       .def("lead", &CheckedOrder::lead, "robot"_a, "stop"_a,
            "Let a robot go as far as this stop of its moves, 0 at first; others are planned after the rest, too.")
       .def("drop_ahead", &CheckedOrder::drop_ahead, "Drop all moves that have not begun.")

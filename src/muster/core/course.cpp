@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tracking.hpp"
 
@@ -12,7 +13,8 @@ namespace {
 constexpr double kRounding = 1e-9;  // metres
 constexpr double kSure = 3.0;       // standard deviations within which a robot is of where it takes itself to be
 constexpr double kHeldUp = 1.0;     // seconds
-constexpr double kClimbs = 0.5;     // seconds: the constant interval of (4.12)
+constexpr double kAnySpeed = std::numeric_limits<double>::infinity();
+constexpr double kClimbs = 0.5;  // seconds: the constant interval of (4.12)
 
 // The way between two places; over ground alone where the robot climbs by a law of its own.
 Vec<3> leg(const CrowdRobot& robot, const Vec<3>& from, const Vec<3>& to) {
@@ -22,10 +24,10 @@ Vec<3> leg(const CrowdRobot& robot, const Vec<3>& from, const Vec<3>& to) {
 }
 
 // The speed along a straight piece that keeps the limits of speed and of climb.
-double speed_on(const CrowdRobot& robot, const Vec<3>& piece) {
+double speed_on(const CrowdRobot& robot, const Vec<3>& piece, double allowed = kAnySpeed) {
   const double rise = std::abs(piece[2]);
   const double climbing = rise > 0.0 ? robot.body.climb_rate * robot.slowed * norm(piece) / rise : robot.top_speed();
-  return std::min(robot.top_speed(), climbing);
+  return std::min({robot.top_speed(), climbing, allowed});
 }
 
 // (4.12): the climb towards the height of the next way point.
@@ -49,7 +51,8 @@ double corner_speed(const CrowdRobot& robot, const Vec<3>& from, std::size_t k, 
                                [&](const Waypoint& point) { return !(point.at == way[k].at); });
   if (way[k].stops() || on == way.end() || waits_for_height(robot, k)) return 0.0;
   const Vec<3> in = leg(robot, from, way[k].at), out = leg(robot, way[k].at, on->at);
-  const double lengths = norm(in) * norm(out), top = std::min(speed_on(robot, in), speed_on(robot, out));
+  const double top = std::min(speed_on(robot, in, way[k].speed), speed_on(robot, out, on->speed));
+  const double lengths = norm(in) * norm(out);
   if (lengths == 0.0) return top;
   const double turn = std::acos(std::clamp(dot(in, out) / lengths, -1.0, 1.0));
   if (robot.body.faces_its_way && turn > 0.5 * robot.body.yaw_rate * dt) return 0.0;
@@ -65,7 +68,7 @@ double speed_along(const CrowdRobot& robot, const Tolerances& tolerances, double
   double most = robot.top_speed(), ahead = 0.0;
   Vec<3> from = robot.position;
   for (std::size_t k = robot.next; k < robot.way.size() && ahead < longest; ++k) {
-    if (k == robot.next) most = speed_on(robot, leg(robot, from, robot.way[k].at));
+    if (k == robot.next) most = speed_on(robot, leg(robot, from, robot.way[k].at), robot.way[k].speed);
     ahead += norm(leg(robot, from, robot.way[k].at));
     most = std::min(most, braking.speed(ahead + braking.distance(corner_speed(robot, from, k, tolerances, dt))));
     from = robot.way[k].at;

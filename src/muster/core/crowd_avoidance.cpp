@@ -98,7 +98,8 @@ void CrowdWorld::avoid_among(const std::vector<int>& group) {
     agents.velocities.push_back(in_dimensions<D>(robot.velocity));
     agents.preferred.push_back(in_dimensions<D>(wanted_[group[k]]));
     agents.radii.push_back(body.radius * (body.faces_its_way ? 1.0 + settings_.margin : 1.0));
-    agents.max_speeds.push_back(D == 3 ? std::hypot(robot.top_speed(), robot.slowed * body.climb) : robot.top_speed());
+    const double most = robot.top_speed_here();
+    agents.max_speeds.push_back(D == 3 ? std::hypot(most, robot.slowed * body.climb) : most);
     accelerations.push_back(body.acceleration);
     agents.priorities.push_back(chooses ? body.priority : kFirm);
     if constexpr (D == 2)

@@ -1,6 +1,7 @@
 // A robot of a simulated crowd: its body, where it is, what it was told, and what was measured.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -36,6 +37,7 @@ struct Waypoint {
   double heading;  // NaN: as it arrives
   double hold;
   bool labelled;
+  double speed = std::numeric_limits<double>::infinity();  // the greatest on the way to it
 
   bool stops() const { return hold > 0.0 || !std::isnan(heading); }
 };
@@ -157,6 +159,8 @@ struct CrowdRobot {
   Vec<3> place() const { return position - lag; }
   double facing() const;  // its body's heading
   double top_speed() const { return body.speed * slowed; }
+  // The greatest speed on its way to the next way point.
+  double top_speed_here() const { return next < way.size() ? std::min(top_speed(), way[next].speed) : top_speed(); }
   double half_track() const { return 0.5 * kTrack * (body.radius > 0.0 ? body.radius : kNominalRadius); }
   bool under_way() const { return velocity != Vec<3>{}; }
   // It has nothing to do that could not be done elsewhere as well.
@@ -185,7 +189,7 @@ inline Waypoint Belief::true_of(const Waypoint& told) const {
   const Vec<3> off = told.at - believed;
   const double c = std::cos(turn), s = std::sin(turn);
   const Vec<3> at = place + Vec<3>{{c * off[0] - s * off[1], s * off[0] + c * off[1], off[2]}};
-  return {at, told.heading + turn, told.hold, told.labelled};
+  return {at, told.heading + turn, told.hold, told.labelled, told.speed};
 }
 
 inline Vec<3> Belief::told_of(const Vec<3>& at) const {

@@ -41,7 +41,7 @@ void PassingOrder::stands(int robot, Point place) {
   if (bots_[robot].moves.empty()) bots_[robot].end = place;
 }
 
-bool PassingOrder::append(int robot, Point to, int stop) {
+bool PassingOrder::append(int robot, Point to, int stop, double speed) {
   Bot& bot = bots_[robot];
   const Point from = bot.end;
   for (int other = 0; other < static_cast<int>(bots_.size()); ++other) {
@@ -49,7 +49,7 @@ bool PassingOrder::append(int robot, Point to, int stop) {
     const double gap = other == robot ? std::numeric_limits<double>::infinity() : segment_gap(stands, from, to);
     if (gap < apart(robot, other) - kRounding && gap < distance(stands, from) - kRounding) return false;
   }
-  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, stop, {}};
+  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, stop, speed, {}};
   for (std::size_t number = first_; number < first_ + moves_.size(); ++number) {
     const Move& before = move(number);
     if (before.robot < 0 || before.robot == robot) continue;
@@ -157,7 +157,7 @@ Point PassingOrder::stand(int robot) const {
 
 PassingOrder::Grant PassingOrder::grant(int robot) {
   Bot& bot = bots_[robot];
-  Grant found{{}, 0, 0.0, -1, true};
+  Grant found{{}, {}, 0, 0.0, -1, true};
   for (const std::size_t number : bot.moves) {
     Move& m = move(number);
     if (m.stop > bot.stop) break;
@@ -178,6 +178,7 @@ PassingOrder::Grant PassingOrder::grant(int robot) {
     m.granted = std::max(m.granted, most);
     found.metres += m.granted - m.at;
     found.points.push_back(place(m, m.granted));
+    found.speeds.push_back(m.speed);
     if (m.granted < m.length) {
       found.waits_for = waits_for;
       found.last = false;

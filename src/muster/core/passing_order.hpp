@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,8 +38,8 @@ class PassingOrder {
 
   // Appends a move of a robot from where its moves end. False, and nothing is appended, where another robot would stand
   // in the way; one that is too near at the beginning may be left. `stop`: the number, from 0, of the stop to which it
-  // leads.
-  bool append(int robot, Point to, int stop = 0);
+  // leads; `speed`: the greatest on it.
+  bool append(int robot, Point to, int stop = 0, double speed = std::numeric_limits<double>::infinity());
 
   // A robot may go as far as this stop of its moves.
   void lead(int robot, int stop) { bots_[robot].stop = stop; }
@@ -57,11 +58,12 @@ class PassingOrder {
 
   // How far a robot may go now.
   struct Grant {
-    std::vector<Point> points;  // ends of moves, the last maybe within one
-    int ended;                  // how many of these points are ends of moves
-    double metres;              // from where it is
-    int waits_for;              // the robot that comes first; -1: none
-    bool last;                  // whether all its moves to its stop are granted
+    std::vector<Point> points;   // ends of moves, the last maybe within one
+    std::vector<double> speeds;  // the greatest on the way to each
+    int ended;                   // how many of these points are ends of moves
+    double metres;               // from where it is
+    int waits_for;               // the robot that comes first; -1: none
+    bool last;                   // whether all its moves to its stop are granted
   };
   Grant grant(int robot);
 
@@ -83,6 +85,7 @@ class PassingOrder {
     double granted = 0.0;  // metres to which it has been let go
     bool begun = false;
     int stop = 0;
+    double speed;
     std::vector<std::size_t> earlier;  // moves of others that come near it, in order
   };
   struct Bot {

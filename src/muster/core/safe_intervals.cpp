@@ -82,6 +82,10 @@ double SafeIntervals::apart(const Traveller& who, double radius) const {
 // Half the time that a robot takes to get clear of a point: one that comes is as far away still.
 double SafeIntervals::tail(const Traveller& who) const { return (who.radius + margin_) / who.speed; }
 
+double SafeIntervals::seconds(const Traveller& who, int edge) const {
+  return roadmap_->length(edge) / std::min(who.speed, roadmap_->speed(edge));
+}
+
 const std::vector<double>& SafeIntervals::metres_to(int goal) {
   return to_goals_.to(goal, [&](int to) { return roadmap_->graph().costs_to(to); });
 }
@@ -237,7 +241,7 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
         const double set_out = from <= until ? earliest(who, edge, from, until) : kNever;
         if (set_out == kNever) continue;
         const double waited = set_out - label.ready - turning;
-        const double arrives = set_out + roadmap_->length(edge) / who.speed + std::min(waited, 0.5 * stop_s);
+        const double arrives = set_out + seconds(who, edge) + std::min(waited, 0.5 * stop_s);
         if (arrives > there[k].until) continue;
         offer({0.0, arrives, label.leg, edge, k, item.label, set_out}, graph.head(edge));
       }

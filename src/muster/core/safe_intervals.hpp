@@ -85,6 +85,7 @@ class SafeIntervals {
 
   double apart(const Traveller& who, double radius) const;
   double tail(const Traveller& who) const;
+  double seconds(const Traveller& who, int edge) const;  // along an edge at its speed
   std::optional<Way> path(const Traveller& who);
   void erase_stays(int robot, int point);
   // The intervals in which a robot may be at a point.

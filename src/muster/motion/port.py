@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -26,6 +27,8 @@ class Waypoint:
         returned by telemetry when the way point is passed; it has a meaning for the sender only.
     via
         whether it only marks the way to the next one, so that who steers the robot may choose another way.
+    speed_mps
+        the greatest speed on the way to it; inf: that of the robot.
     """
 
     position: Place
@@ -33,6 +36,7 @@ class Waypoint:
     hold_s: float = 0.0
     label: str = ""
     via: bool = False
+    speed_mps: float = math.inf
 
 
 @dataclass(frozen=True)

@@ -63,16 +63,16 @@ class SimulatedPort:
         Raises
         ------
         ParameterError
-            if a number of a way point is not finite, or it holds for less than 0 s.
+            if a number of a way point is not finite, it holds for less than 0 s, or is reached at no speed.
         """
         for point in waypoints:
             _check(point)
-        stops = [(*p.position, math.nan if p.heading is None else p.heading, p.hold_s) for p in waypoints]
+        stops = list(map(_stop, waypoints))
         self._held_before_s = self.held_s
         self._orders += 1
         self._sent = {self._orders: tuple(waypoints)}
         labelled = [bool(p.label) for p in waypoints]
-        self._crowd.send(self._number, np.array(stops, dtype=np.float64).reshape(-1, 5), labelled, self._orders)
+        self._crowd.send(self._number, np.array(stops, dtype=np.float64).reshape(-1, 6), labelled, self._orders)
         if self._trajectories is not None and waypoints:
             made = self._trajectories.trajectory(self._crowd.told_pose(self._number), waypoints)
             self._crowd.follow(self._number, made.poses, STEP_S, made.times.tolist())
@@ -143,9 +143,16 @@ class SimulatedPort:
         return replace(said, position=(float(x), float(y), float(z)), heading=heading, inertial=felt)
 
 
+def _stop(point: Waypoint) -> tuple[float, ...]:
+    """A way point as the core has it."""
+    return (*point.position, math.nan if point.heading is None else point.heading, point.hold_s, point.speed_mps)
+
+
 def _check(point: Waypoint) -> None:
     heading = 0.0 if point.heading is None else point.heading
     if len(point.position) != 3 or not all(map(math.isfinite, (*point.position, heading))):
         raise ParameterError(f"way point: {point.position}, heading {point.heading}; expected three finite numbers")
     if not 0 <= point.hold_s < math.inf:
         raise ParameterError(f"hold_s: {point.hold_s}; expected a number of at least 0")
+    if not point.speed_mps > 0:
+        raise ParameterError(f"speed_mps: {point.speed_mps}; expected a number above 0")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -19,6 +19,10 @@ Floats = npt.NDArray[np.float64]
 
 _WHOLE = 1e-9
 """Of a lane's length: as many robots fit as do, whatever float64 says."""
+_ON_LANE_M = 0.05
+"""Who stands no farther from the middle of a lane drives on it."""
+_JUST_ON_M = 1e-3
+"""A place that is no farther from it is a point of the lane: all who drive there come by it."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,7 @@ def lane_network(
     """The directed network of the lanes that robots of a radius can drive, and the greatest speed (m,) on its edges.
 
     A lane for several robots has points at which they may stop one behind the other: as many less one as may be on it.
+    Places on it are such points.
 
     Parameters
     ----------
@@ -61,7 +66,7 @@ def lane_network(
     most_points
         on all lanes together, about: longer lanes have points further apart.
     places
-        (k, 2) metres: each is joined to the nearest point that it can be driven to straight.
+        (k, 2) metres: each that is on no lane is joined to the nearest point that it can be driven to straight.
     space
         what is free for these robots; None where there is no map.
     """
@@ -75,12 +80,21 @@ def lane_network(
     clearance: list[float] = []
     speeds: list[float] = []
     apart_m = max(apart_m, sum(_length_m(lanes, lane) for lane in lanes.edges) / most_points)
+    own: dict[int, int] = {}  # of places on lanes, their points
     for number, lane in enumerate(lanes.edges):
         if number in closed:
             continue
-        inner = list(_between(points[numbers[lane.start]], points[numbers[lane.end]], lane.capacity, apart_m))
-        stops = [numbers[lane.start], *range(len(points), len(points) + len(inner)), numbers[lane.end]]
-        points += inner
+        start, end = points[numbers[lane.start]], points[numbers[lane.end]]
+        inner: list[tuple[float, int]] = []
+        for place, share in _places_on(start, end, places):
+            if place not in own:
+                own[place] = len(points)
+                points.append(places[place])
+            inner.append((share, own[place]))
+        for share in _shares_between(start, end, lane.capacity, apart_m, [share for share, _ in inner]):
+            inner.append((share, len(points)))
+            points.append(start + share * (end - start))
+        stops = [numbers[lane.start], *(point for _, point in sorted(inner)), numbers[lane.end]]
         ways = list(pairwise(stops)) + (list(pairwise(stops[::-1])) if lane.both_ways else [])
         edges += ways
         clearance += [_clearance(lane, radius_m, known=space is None)] * len(ways)
@@ -90,21 +104,54 @@ def lane_network(
     made = Network(np.array(points), np.ones(len(points), dtype=np.bool_), pairs, np.array(clearance), none)
     nodes = cKDTree(made.points)
     for place, at in enumerate(places):
+        if place in own:
+            made = made.with_place(place, own[place])
+            continue
         made = with_place(made, place, at, finder, nodes, both_ways=True)
-    speeds += [math.inf] * (len(made.edges) - len(speeds))
-    return made, np.array(speeds)
+    on_lanes, joined = np.split(made.points[made.edges], [len(edges)])
+    return made, np.append(speeds, speeds_along(joined, on_lanes, np.array(speeds)))
+
+
+def speeds_along(pieces: Floats, lanes: Floats, speeds_mps: Floats) -> Floats:
+    """The greatest speed (k,) on straight pieces (k, 2, 2): the least of the lanes (m, 2, 2) on which they lie."""
+    import shapely
+
+    if not len(pieces) or not len(lanes):
+        return np.full(len(pieces), np.inf)
+    lines = shapely.linestrings(lanes)
+    ends = np.array(shapely.points(pieces))[:, :, np.newaxis]
+    away_m: Floats = shapely.distance(ends, lines).max(axis=1)
+    return np.asarray(np.where(away_m <= _ON_LANE_M, speeds_mps, np.inf).min(axis=1))
 
 
 def _length_m(lanes: Lanes, lane: Lane) -> float:
     return math.dist(lanes.nodes[lane.start][:2], lanes.nodes[lane.end][:2])
 
 
-def _between(start: Floats, end: Floats, capacity: int | None, apart_m: float) -> Iterator[Floats]:
-    """The points between the ends of a lane, evenly apart."""
+def _places_on(start: Floats, end: Floats, places: Floats) -> list[tuple[int, float]]:
+    """The places (k, 2) between the ends of a lane, by number, and at which share of its length they are."""
+    along = end - start
+    squared = float(along @ along)
+    shares = (places - start) @ along / squared
+    off_m = np.linalg.norm(places - start - shares[:, np.newaxis] * along, axis=1)
+    between = np.flatnonzero((off_m <= _JUST_ON_M) & (shares > _WHOLE) & (shares < 1 - _WHOLE))
+    return [(int(place), float(shares[place])) for place in between]
+
+
+def _shares_between(
+    start: Floats, end: Floats, capacity: int | None, apart_m: float, taken: Sequence[float]
+) -> list[float]:
+    """Where, as shares of its length, robots may stop on a lane: evenly apart, without the next to each that is taken.
+
+    So no more robots stop on a lane with places than on one without.
+    """
     fitting = max(1, math.floor(float(np.linalg.norm(end - start)) / apart_m * (1 + _WHOLE)))
     pieces = fitting if capacity is None else min(capacity, fitting)
-    for k in range(1, pieces):
-        yield start + k / pieces * (end - start)
+    shares = [k / pieces for k in range(1, pieces)]
+    for at in taken:
+        if shares:
+            shares.remove(min(shares, key=lambda share: abs(share - at)))
+    return shares
 
 
 def _clearance(lane: Lane, radius_m: float, *, known: bool) -> float:

@@ -119,18 +119,18 @@ class ManagedPort:
         """How many of the places are passed to which it was last sent, its goal not counted."""
         return min(self._marks, self._sent_passed)
 
-    def go(self, places: Sequence[Place], *, to_goal: bool = False) -> bool:
-        """Send the robot along places, and let it do at the last of them what is to be done at its goal.
+    def go(self, way: Sequence[Waypoint], *, to_goal: bool = False) -> bool:
+        """Send the robot along a way, and let it do at its end what is to be done at its goal.
 
-        Without places it does that where its goal is. Returns whether that is another order than the last.
+        Without a way it does that where its goal is. Returns whether that is another order than the last.
         """
         numbers = self._next() if to_goal else ()
-        at = [replace(self._waypoints[k], position=places[-1]) if places else self._waypoints[k] for k in numbers]
-        sent = (*map(Waypoint, places), *at)
+        at = [replace(self._waypoints[k], position=way[-1].position) if way else self._waypoints[k] for k in numbers]
+        sent = (*way, *at)
         if self._sent is not None and sent == self._sent[self._sent_passed :]:
             return False
         self._passed = self.passed
-        self._sent, self._marks, self._numbers = sent, len(places), numbers
+        self._sent, self._marks, self._numbers = sent, len(way), numbers
         self._sent_order = self._port.send(sent)
         return True
 

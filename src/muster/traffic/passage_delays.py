@@ -31,7 +31,7 @@ class PassageDelays:
 
     def __init__(self, roadmap: Roadmap, speed_mps: float) -> None:
         self._roadmap = roadmap
-        self._own_s = roadmap.lengths_m / speed_mps  # of each edge
+        self._own_s = roadmap.lengths_m / np.minimum(speed_mps, roadmap.speed_mps)  # of each edge
         self._passage = np.full(len(roadmap.points), -1)
         found = passages(roadmap)
         for k, passage in enumerate(found):

@@ -17,7 +17,7 @@ import numpy as np
 from muster import core
 from muster.mission.model import Robot
 from muster.motion.outlook import Outlook
-from muster.motion.port import Place, RobotPort
+from muster.motion.port import Place, RobotPort, Waypoint
 from muster.traffic.managed_port import ManagedPort
 from muster.traffic.names import drives
 from muster.traffic.part import Part, planar
@@ -245,9 +245,9 @@ class ReservedTraffic:
             return
         self._planned_s, self.plans, self._travellers = now, self.plans + 1, travellers
         stopped = set[int]()
-        for traveller, to, stop in moves:
+        for traveller, to, stop, speed_mps in moves:
             part = self._parts[traveller]
-            if traveller not in stopped and not self._order.append(part.number, to, part.stop + stop):
+            if traveller not in stopped and not self._order.append(part.number, to, part.stop + stop, speed_mps):
                 stopped.add(traveller)
 
     def _find_again(self, part: Part) -> None:
@@ -302,7 +302,11 @@ class ReservedTraffic:
         if grant.points or to_goal:
             said = part.port.heard
             height = said.position[2] if said is not None else 0.0
-            if part.port.go([(x, y, height) for x, y in grant.points], to_goal=to_goal):
+            way = [
+                Waypoint((x, y, height), speed_mps=speed)
+                for (x, y), speed in zip(grant.points, grant.speeds, strict=True)
+            ]
+            if part.port.go(way, to_goal=to_goal):
                 part.moves_passed = self._order.passed(part.number)
             part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
 

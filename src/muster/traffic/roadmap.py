@@ -20,7 +20,7 @@ from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
 from muster.traffic.edge_conflicts import conflicts
 from muster.traffic.exact_ways import Network
-from muster.traffic.given_lanes import lane_network
+from muster.traffic.given_lanes import lane_network, speeds_along
 from muster.traffic.lane_network import network
 
 Bools = npt.NDArray[np.bool_]
@@ -98,6 +98,11 @@ class Roadmap:
     def lengths_m(self) -> Floats:
         """(m,)."""
         return np.asarray(np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1))
+
+    def speeds_along(self, pieces: Floats) -> Floats:
+        """The greatest speed (k,) on straight pieces (k, 2, 2), metres: that of the edges on which they lie."""
+        slow = np.isfinite(self.speed_mps)
+        return speeds_along(pieces, self.points[self.edges[slow]], self.speed_mps[slow])
 
     @cached_property
     def one_way(self) -> Bools:

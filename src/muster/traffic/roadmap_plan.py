@@ -222,7 +222,7 @@ class _Network:
     def move(self, traveller: int, edge: int, stop: int) -> Move:
         """A move along an edge."""
         x, y = self.roadmap.points[self.roadmap.edges[edge, 1]]
-        return Move(traveller, (float(x), float(y)), stop)
+        return Move(traveller, (float(x), float(y)), stop, float(self.roadmap.speed_mps[edge]))
 
     def metres(self, who: Traveller) -> float:
         """The length of the shortest way to a robot's first stop; below 0 without one."""
@@ -243,6 +243,7 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
         seen = _seen(clear, points, k)
         edges.append(np.array([pair for j in seen for pair in ((k, j), (j, k))], dtype=np.int64).reshape(-1, 2))
     joined = np.concatenate(edges)
+    speeds = np.append(roadmap.speed_mps, roadmap.speeds_along(points[joined[len(roadmap.edges) :]]))
     order = np.lexsort(joined.T[::-1])
     joined, more = joined[order], len(joined) - len(roadmap.edges)
     start, point, metres = conflicts(points, joined, roadmap.reach)
@@ -254,7 +255,7 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
         reach_start=start,
         reach_point=point,
         reach_m=metres,
-        speed_mps=np.append(roadmap.speed_mps, np.full(more, np.inf))[order],
+        speed_mps=speeds[order],
     )
 
 

@@ -32,14 +32,17 @@ NO_GOAL = -1
 class AnnotatedRoadmap(Protocol):
     """What is asked of a roadmap; `muster.traffic.roadmap.Roadmap` is one.
 
-    `points` (n, 2) metres; `edges` (m, 2) from and to, in the order of from; `reach_start` (m + 1,), `reach_point` (l,)
-    and `reach_m` (l,): the points near edge k, and how near it comes, are at `reach_start[k]:reach_start[k + 1]`.
+    `points` (n, 2) metres; `edges` (m, 2) from and to, in the order of from; `speed_mps` (m,) the greatest on each;
+    `reach_start` (m + 1,), `reach_point` (l,) and `reach_m` (l,): the points near edge k, and how near it comes, are at
+    `reach_start[k]:reach_start[k + 1]`.
     """
 
     @property
     def points(self) -> Floats: ...
     @property
     def edges(self) -> Indices: ...
+    @property
+    def speed_mps(self) -> Floats: ...
     @property
     def reach_start(self) -> Indices: ...
     @property
@@ -121,6 +124,7 @@ def annotated(roadmap: AnnotatedRoadmap, costs: npt.ArrayLike | None = None) -> 
             np.searchsorted(edges[:, 0], np.arange(len(points) + 1)).tolist(),
             edges[:, 1].tolist(),
             np.asarray(lengths, dtype=np.float64).tolist(),
+            np.asarray(roadmap.speed_mps, dtype=np.float64).tolist(),
             np.asarray(roadmap.reach_start).tolist(),
             np.asarray(roadmap.reach_point).tolist(),
             np.asarray(roadmap.reach_m).tolist(),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -54,11 +55,13 @@ class Move(NamedTuple):
     """A straight move of a traveller, by its number among all, to a place in metres.
 
     `stop` is the number of the stop to which the move leads; that of all its stops for moves after the last.
+    `speed_mps` is the greatest on it.
     """
 
     traveller: int
     to: Point
     stop: int = 0
+    speed_mps: float = math.inf
 
 
 class Planner(Protocol):

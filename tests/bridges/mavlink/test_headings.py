@@ -38,6 +38,13 @@ def test_px4_has_both_in_the_way_point():
     assert route.items[2].params == (0.4, 1.0, 0.0, pytest.approx(0.0))
 
 
+@KINDS
+def test_a_drone_is_told_where_it_may_not_fly_so_fast(kind):
+    ways = [Waypoint((5.0, 0.0, 8.0)), Waypoint((9.0, 0.0, 8.0), speed_mps=1.5), Waypoint((12.0, 0.0, 8.0))]
+    told = [item for item in items(kind, *ways).items if item.command in (16, 178)][-6:]
+    assert [item.params[1] if item.command == 178 else item.command for item in told] == [4.0, 16, 1.5, 16, 4.0, 16]
+
+
 def test_one_by_one_a_way_point_is_passed_when_the_drone_is_turned():
     follower = Follower(arrival_m=1.0, turned_rad=TURNED_RAD, flat=False)
     follower.take([Waypoint((0.0, 0.0, 10.0), heading=math.pi - 0.05, hold_s=2.0)])

@@ -143,6 +143,16 @@ def drive(robots, goals, steps, avoidance="orca"):
         yield states.copy(), told
 
 
+def test_nobody_is_steered_faster_than_its_way_allows():
+    robot = Robot(id="r", position=(0.0, 0.0), kind="ground", kinematics="holonomic", speed_mps=1.0)
+    steering = Steering(interval_s=DT, space=False)
+    for speed_mps, most_mps in ((0.3, 0.3), (2.0, 1.0)):
+        aim = Waypoint((9.0, 0.0, 0.0), speed_mps=speed_mps)
+        one = SteeredRobot(robot, (0.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0), aim, False)
+        told = [steering.velocities([one])["r"] for _ in range(30)]
+        assert math.hypot(*told[-1][:2]) == pytest.approx(most_mps)
+
+
 @settings(max_examples=30)
 @given(
     kinematics=st.sampled_from(sorted(KINEMATICS)),

@@ -81,9 +81,12 @@ def route_of(
     if take_off:
         above = frame.to_drone((here[0], here[1], waypoints[0].position[2]))
         items.append(Item(mavlink.MAV_CMD_NAV_TAKEOFF, (0, 0, 0, math.nan), *above))
-    items.append(Item(mavlink.MAV_CMD_DO_CHANGE_SPEED, (1, speed_mps, -1, 0), frame=mavlink.MAV_FRAME_MISSION))
     passed_with = {}
+    told_mps = math.nan
     for count, waypoint in enumerate(waypoints, 1):
+        if (most_mps := min(speed_mps, waypoint.speed_mps)) != told_mps:
+            told_mps = most_mps
+            items.append(Item(mavlink.MAV_CMD_DO_CHANGE_SPEED, (1, told_mps, -1, 0), frame=mavlink.MAV_FRAME_MISSION))
         yaw = math.nan if waypoint.heading is None else math.degrees(float(yaw_enu_to_ned(waypoint.heading)))
         hold_s = waypoint.hold_s
         if autopilot.home_first:

@@ -1,0 +1,55 @@
+"""Robots keep the greatest speed of a lane, and slow down before it begins."""
+
+import numpy as np
+import pytest
+from tests.disturbances.traffic.verdicts import Poses
+
+from muster import Simulation, load, simulate, solve
+
+SLOW_MPS, FROM_M, TO_M = 0.25, 3.0, 8.0
+SITE = """
+schema: muster/1
+name: a slow lane
+rules: {objective: makespan, usage: time, return_to_start: false}
+robots:
+  - {id: a, position: [0, 0], radius_m: 0.3, kinematics: KINEMATICS}
+  - {id: b, position: [-1, 0], radius_m: 0.3, kinematics: KINEMATICS}
+tasks:
+  - {id: far, position: [12, 0], duration_s: 1}
+  - {id: amid, position: [6.3, 0], duration_s: 1}
+lanes:
+  nodes: {w: [-1, 0], m: [3, 0], n: [8, 0], e: [12, 0]}
+  edges: [{from: w, to: m, both_ways: true}, {from: m, to: n, both_ways: true, speed_mps: 0.25},
+    {from: n, to: e, both_ways: true}]
+"""
+
+
+@pytest.mark.parametrize("kinematics", ["holonomic", "differential-drive"])
+@pytest.mark.parametrize("world", ["kinematic", "physics"])
+def test_nobody_is_faster_on_a_lane_than_it_allows(world, kinematics, tmp_path):
+    if world == "physics":
+        pytest.importorskip("mujoco")
+    path = tmp_path / "lane.yaml"
+    path.write_text(SITE.replace("KINEMATICS", kinematics))
+    mission, poses = load(path), Poses()
+    simulation = Simulation(mission, solve(mission, "greedy"), traffic="reserve", world=world, recorder=poses)
+    while not simulation.done:
+        simulation.advance(simulation.time_s + 5.0)
+        assert simulation.time_s < 100.0
+    report = simulation.result()
+    assert (len(report.tasks_done), report.contacts) == (2, 0)
+    times, x = np.array([now for now, _ in poses.steps]), np.array([places[:, 0] for _, places in poses.steps])
+    speeds_mps = np.abs(np.diff(x, axis=0)) / np.diff(times)[:, None]
+    margin_m = 0.05
+    inside = (x[:-1] > FROM_M + margin_m) & (x[:-1] < TO_M - margin_m)
+    assert speeds_mps[inside].max() == pytest.approx(SLOW_MPS, rel=0.05)
+    assert speeds_mps[~inside].max() > 0.9
+
+
+def test_the_time_with_traffic_counts_slow_lanes(tmp_path):
+    path = tmp_path / "lane.yaml"
+    path.write_text(SITE.replace("KINEMATICS", "holonomic"))
+    mission = load(path)
+    plan = solve(mission, "search", time_limit=0.2)
+    report = simulate(mission, plan, traffic="reserve")
+    assert plan.time_with_traffic_s == pytest.approx(report.mission_time_s, rel=0.1)
