@@ -1,6 +1,7 @@
 #include "manners.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "course.hpp"
 
@@ -92,15 +93,17 @@ Vec<3> Manners::course_without_order(int i) const {
 
 Vec<3> Manners::wanted(int i, const Vec<3>& course) const {
   CrowdRobot& robot = robots_[i];
-  robot.arrives = false;
-  if (!robot.turned_aside) {
-    robot.waits = false;
-    return course;
-  }
+  // Turned aside by others in every other step, one that faces its way would turn to and fro.
+  const bool arrived_before = std::exchange(robot.arrives, false) && robot.body.faces_its_way;
   const double radius = robot.body.radius;
   const double stop = Braking{dt_, robot.body.acceleration}.distance(robot.top_speed());
   std::vector<int> near;
-  tree_.near(i, {8, radius + largest_radius_ + std::max(radius, stop)}, near);
+  if (robot.turned_aside || arrived_before)
+    tree_.near(i, {8, radius + largest_radius_ + std::max(radius, stop)}, near);
+  if (!robot.turned_aside && near.empty()) {
+    robot.waits = false;
+    return course;
+  }
   if (robot.phase == Phase::idle) return wanted_aside(i, course, near);
   if (robot.waits && robot.asked_until >= time_) return wanted_aside(i, course_aside(robot), near);
   robot.aside.clear();

@@ -22,6 +22,8 @@ AGAIN_AFTER_S = 5.0
 """For so long a robot waits for one that is out, where another has given up their task for it."""
 MOST_SENT_AGAIN = 4
 """So often a robot is sent again that does not take its orders."""
+HOLDING_UP_SENT_AGAIN = 2
+"""So often where others wait for it."""
 LONGEST_ASIDE = 3
 """Times the first time that a robot stands aside at most."""
 
@@ -123,11 +125,15 @@ class Supervisor:
         blocking = next((one for one in broken if stands_in_the_way(one, state.robot, state.points_left)), None)
         if blocking is not None and takes:
             yield from self._give_way_to_broken(state, blocking, now)
-        elif state.sent_again >= (1 if takes else MOST_SENT_AGAIN):
+        elif state.sent_again >= (1 if takes else self._most_sent_again(state)):
             yield from self.changes.exclude(state, STUCK, now, "no progress with nobody in its way")
         else:
             self.emit("robot_sent_again", {"robot": state.robot.id, "reason": "no progress"})
             self.dispatch.again(state, now)
+
+    def _most_sent_again(self, state: RobotState) -> int:
+        waited_for = any(self.traffic.waits_for(robot) == state.robot.id for robot in self.traffic.waits)
+        return HOLDING_UP_SENT_AGAIN if waited_for else MOST_SENT_AGAIN
 
     def _broken_before(self, state: RobotState) -> RobotState | None:
         """The robot that is out for which another has waited too long."""
