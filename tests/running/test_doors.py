@@ -83,6 +83,16 @@ def test_what_lies_behind_a_door_that_stays_closed_is_lost_with_its_reason(traff
 
 
 @pytest.mark.parametrize("traffic", ["reserve", "free"])
+@pytest.mark.parametrize("closes_s", [9.5, 10.5, 11.5])
+def test_who_works_when_a_door_closes_goes_another_way_afterwards(closes_s, traffic, tmp_path):
+    events = f"[{{at_s: {closes_s}, door_closes: south}}]"
+    report, poses = carried_out(site(tmp_path, events, returns="true"), traffic=traffic)
+    assert (len(report.tasks_done), report.contacts) == (2, 0)
+    assert entered(poses, SOUTH, after_s=closes_s + 1.5) == np.inf
+    assert np.hypot(*(poses.steps[-1][1] - [(2, 2), (2, 4)]).T).max() < 0.1
+
+
+@pytest.mark.parametrize("traffic", ["reserve", "free"])
 def test_who_is_shut_out_of_its_end_goes_there_when_the_door_opens(traffic, tmp_path):
     events = "[{at_s: 13, door_closes: south}, {at_s: 60, door_opens: south}]"
     report, poses = carried_out(site(tmp_path, events, north="false", returns="true"), traffic=traffic)

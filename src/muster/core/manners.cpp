@@ -98,8 +98,7 @@ Vec<3> Manners::wanted(int i, const Vec<3>& course) const {
   const double radius = robot.body.radius;
   const double stop = Braking{dt_, robot.body.acceleration}.distance(robot.top_speed());
   std::vector<int> near;
-  if (robot.turned_aside || arrived_before)
-    tree_.near(i, {8, radius + largest_radius_ + std::max(radius, stop)}, near);
+  if (robot.turned_aside || arrived_before) tree_.near(i, {8, radius + largest_radius_ + std::max(radius, stop)}, near);
   if (!robot.turned_aside && near.empty()) {
     robot.waits = false;
     return course;

@@ -46,6 +46,7 @@ MOST_TRIES = 4
 NO_ROOM_AFTER = 2
 """One that has nothing to do, and was told anew so often, does not move at all."""
 _MOVED_M = 0.05
+_NEVER_S = -math.inf
 _AT_GOAL_M = 1e-3
 
 
@@ -67,7 +68,7 @@ class ReservedTraffic:
     _order: core.PassingOrder = field(init=False)
     _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
     _parts: list[Part] = field(default_factory=list)
-    _planned_s: float = -math.inf
+    _planned_s: float = _NEVER_S  # what was planned does not hold any more
     _sought_s: float = -math.inf  # when a plan was last sought
     _travellers: list[Traveller] = field(default_factory=list)  # of the last plan
     _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
@@ -90,7 +91,7 @@ class ReservedTraffic:
     def close(self, doors: Collection[str]) -> None:
         """See `TrafficManager`. Robots that were let go through one that closes are stopped."""
         self.plan.close(doors)
-        self._planned_s = -math.inf
+        self._planned_s = _NEVER_S
         for part in self._parts:
             if not all(self.plan.is_open(np.array(piece)) for piece in part.pieces_ahead()):
                 part.port.halt()
@@ -133,7 +134,7 @@ class ReservedTraffic:
             place = planar(said.position)
             number = self._order.add(place, robot.radius_m)
             self._parts.append(Part(robot, port, number, stood=place, moved_s=now))
-            self._planned_s = -math.inf
+            self._planned_s = _NEVER_S
         self._waiting = silent
 
     def _watch(self, now: float) -> None:
@@ -177,7 +178,7 @@ class ReservedTraffic:
         """The robot stands where it is, as far as the order goes, and a new plan is due."""
         self._order.cut()
         self._order.stop(part.number, part.near)
-        self._planned_s = -math.inf
+        self._planned_s = _NEVER_S
 
     def _lead_on(self, part: Part, now: float) -> None:
         """A robot that goes where it was planned to go next, or has done all, goes on along the moves that it has."""
@@ -192,7 +193,7 @@ class ReservedTraffic:
         part.done_s = min(part.done_s, now) if done else math.inf
 
     def _plan_is_due(self, now: float) -> bool:
-        if any(self._goes_elsewhere(part, now) for part in self._parts):
+        if self._planned_s == _NEVER_S or any(self._goes_elsewhere(part, now) for part in self._parts):
             return True
         if now - self._planned_s < PLAN_EVERY_S or self._on_steps(now):
             return False
