@@ -49,6 +49,7 @@ class SimulatedPort:
         self._orders = 0
         self._sent: dict[int, tuple[Waypoint, ...]] = {}
         self._last_word: Telemetry | None = None
+        self._said: tuple[tuple[int, int], Telemetry] | None = None  # at which step and order
         # A key of its own: what is drawn at each step does not begin with the same numbers.
         random = np.random.default_rng(np.random.SeedSequence(self._seed, spawn_key=(1,)))
         self._bias_radps = float(random.normal(0.0, noise.gyro_bias_radps)) if noise.gyro_bias_radps > 0 else 0.0
@@ -115,6 +116,13 @@ class SimulatedPort:
         return points[passed - 1].label if 0 < passed <= len(points) else ""
 
     def _now(self) -> Telemetry:
+        """What it reports now; asked for again within a step it is the same."""
+        when = (self._crowd.steps, self._orders)
+        if self._said is None or self._said[0] != when:
+            self._said = when, self._report()
+        return self._said[1]
+
+    def _report(self) -> Telemetry:
         charge = None if self.battery is None else self.battery.charge
         said = Telemetry(*self._crowd.report(self._number), self._felt(), charge, waits_for=self._held_up_by)
         return self._disturbed(said) if self._noise.of_telemetry else said
