@@ -16,7 +16,7 @@ from muster.execution.robot_state import Activity, RobotState
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, Work, along, path_length, travel_s, work_of
 from muster.execution.team_work import break_off
-from muster.execution.way_round import way_round
+from muster.execution.way_round import way_aside, way_round
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 
@@ -71,9 +71,11 @@ class Dispatch:
         if state.activity is Activity.WORKING and state.arrived:
             self._end_work(state, now)
         if state.activity is Activity.RETURNING and state.arrived:
-            state.at_home, state.sent_again = True, 0
+            state.sent_again = 0
             state.begin_activity(now, Activity.IDLE)
-            self._emit("robot_at_end", {"robot": state.robot.id})
+            if not state.makes_room:
+                state.at_home = True
+                self._emit("robot_at_end", {"robot": state.robot.id})
 
     def send_on(self, state: RobotState, now: float) -> Iterator[Change]:
         """Send a robot on that is available, or may begin; yields a change that requires a new plan if it cannot."""
@@ -155,6 +157,18 @@ class Dispatch:
             way = [begin, *way]
         state.turn_off(now, way, standing.robot.id)
         self._emit("robot_goes_round", {"robot": state.robot.id, "round": standing.robot.id})
+        return True
+
+    def make_room(self, state: RobotState, asker: RobotState, now: float) -> bool:
+        """Send a robot that has nothing to do off the way of another; returns whether there is a place for it."""
+        others = [(one.position, one.robot.radius_m) for one in self._crew.values() if one is not state]
+        needed = [asker.position, *asker.points_left]
+        way = way_aside(self._way, state.robot, state.position, needed, asker.robot.radius_m, others)
+        if way is None:
+            return False
+        state.send(now, Activity.RETURNING, along(way))
+        state.at_home, state.makes_room = False, True
+        self._emit("robot_makes_room", {"robot": state.robot.id, "makes_room_for": asker.robot.id})
         return True
 
     def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:

@@ -66,7 +66,8 @@ def is_stuck(state: RobotState, now: float, limits: Limits) -> bool:
     left = state.way_left_m
     if left < state.nearest_m - _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s:
         state.nearest_m, state.nearest_s = left, now
-    arrives = left < _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s and not state.steered
+    near = left < _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s
+    arrives = near and not (state.steered or state.makes_room)
     return now - state.nearest_s > limits.stuck_after_s * (2 if arrives else 1)
 
 

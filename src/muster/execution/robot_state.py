@@ -83,7 +83,8 @@ class RobotState:
     since_s: float = 0.0  # up to when `busy_s` counts
     nearest_m: float = math.inf  # least way left of this order, and when it was reached, or it last waited in traffic
     nearest_s: float = 0.0
-    went_round: frozenset[str] = frozenset()  # robots that are out, on this way
+    went_round: frozenset[str] = frozenset()  # robots that stand, on this way
+    makes_room: bool = False  # whether it was last sent off the way of another
     sent_again: int = 0  # so often for want of progress, to the current goal
     warned_of: str = ""  # the task on the way to which its capacity was found too small
     left: Place | None = None  # the last place known to be free: a way point passed
@@ -158,7 +159,7 @@ class RobotState:
         """Order it to pass way points."""
         self._waypoints = tuple(waypoints)
         self._order = self.port.send(self._waypoints)
-        self.went_round = frozenset()
+        self.went_round, self.makes_room = frozenset(), False
         self.begin_activity(now, activity)
 
     def send_again(self, now: float) -> None:

@@ -175,11 +175,13 @@ class Supervisor:
                 self._let_stand_aside(self._first_to_yield(members), now)
 
     def _lead_round(self, jam: Collection[str], now: float) -> None:
-        """Those who wait for one that has nothing to do, and makes no room for so long, go round it where they can."""
+        """Those who wait for one that has nothing to do go round it where they can; else it is sent off their way."""
         for robot in sorted(jam & self.traffic.waits.keys()):
             state, other = self.crew[robot], self.crew.get(self.traffic.waits_for(robot))
-            if other is not None and other.activity is Activity.IDLE:
-                self._goes_round(state, other, now)
+            if other is None or other.activity is not Activity.IDLE or self._goes_round(state, other, now):
+                continue
+            if not (state.steered or other.steered):
+                self.dispatch.make_room(other, state, now)
 
     def _goes_round(self, state: RobotState, standing: RobotState, now: float) -> bool:
         """Send a robot that nobody steers round one that stands; returns whether it has a way that it has not tried."""

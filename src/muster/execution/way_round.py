@@ -1,4 +1,4 @@
-"""A way round robots that are out, for one that nobody steers."""
+"""Ways round robots that stand, and out of the way of others, for robots that nobody steers."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from muster.motion.port import Place
 
 _TIMES_APART = (1.2, 1.5, 2.0)
 """How far from the middle of the one to get round the way may turn, in distances at which the two touch."""
+_TIMES_ASIDE = (0.5, 1.0, 1.5, 2.0, 3.0)
+"""The same of how far from where it is a robot may make room."""
 _TURNS = 12
 _SPARE_M = 0.05
 
@@ -45,13 +47,29 @@ def way_round(
     return found or None
 
 
+def way_aside(
+    way: Way, robot: Robot, start: Place, needed: Sequence[Place], radius_m: float, others: Collection[Standing]
+) -> Sequence[Place] | None:
+    """The way to a near place beside a way that another, of a radius, needs; clear of others who stand; or None."""
+    for times, direction in product(_TIMES_ASIDE, range(_TURNS)):
+        place = _beside(start, times * (robot.radius_m + radius_m + _SPARE_M), direction)
+        aside_m = min(distance_to_piece(place, *piece) for piece in pairwise(needed))
+        found = way(robot, start, place) if aside_m >= robot.radius_m + radius_m + _SPARE_M else None
+        if found is not None and _is_clear(robot, start, [start, *found], others):
+            return found
+    return None
+
+
 def _turn(robot: Robot, start: Place, about: Standing, number: tuple[int, int]) -> Place:
     """A place beside the one to get round."""
     (x, y, _), radius_m = about
     ring, direction = number
-    away_m = _TIMES_APART[ring] * (radius_m + robot.radius_m + _SPARE_M)
+    return _beside((x, y, start[2]), _TIMES_APART[ring] * (radius_m + robot.radius_m + _SPARE_M), direction)
+
+
+def _beside(place: Place, away_m: float, direction: int) -> Place:
     angle = 2 * math.pi * direction / _TURNS
-    return (x + away_m * math.cos(angle), y + away_m * math.sin(angle), start[2])
+    return (place[0] + away_m * math.cos(angle), place[1] + away_m * math.sin(angle), place[2])
 
 
 def _joined(turns: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:

@@ -31,6 +31,7 @@ class Part:
     more: bool = False  # whether it has more than were planned
     stays: bool = False  # whether it stays at the last of them for good
     done_s: float = math.inf  # when it was first seen to have nothing more to do at its goal
+    no_way_s: float = math.inf  # since when it has no way to its goal
     to_go: bool = False  # whether it has been let go further than where it is
     stood: Point = (0.0, 0.0)
     moved_s: float = -math.inf  # when it last moved, or had no reason to

@@ -45,6 +45,8 @@ MOST_TRIES = 4
 """So often that time is doubled for one that has no goal."""
 NO_ROOM_AFTER = 2
 """One that has nothing to do, and was told anew so often, does not move at all."""
+NO_WAY_AFTER_S = 10.0
+"""After so long without a way a robot is told where no way leads at all, whoever stands in it."""
 _MOVED_M = 0.05
 _NEVER_S = -math.inf
 _AT_GOAL_M = 1e-3
@@ -71,6 +73,7 @@ class ReservedTraffic:
     _planned_s: float = _NEVER_S  # what was planned does not hold any more
     _sought_s: float = -math.inf  # when a plan was last sought
     _travellers: list[Traveller] = field(default_factory=list)  # of the last plan
+    _closed: frozenset[str] = frozenset()  # doors
     _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
 
     def __post_init__(self) -> None:
@@ -91,6 +94,7 @@ class ReservedTraffic:
     def close(self, doors: Collection[str]) -> None:
         """See `TrafficManager`. Robots that were let go through one that closes are stopped."""
         self.plan.close(doors)
+        self._closed = frozenset(doors)
         self._planned_s = _NEVER_S
         for part in self._parts:
             if not all(self.plan.is_open(np.array(piece)) for piece in part.pieces_ahead()):
@@ -122,6 +126,7 @@ class ReservedTraffic:
             self._plan_anew(now, self.plan.whole)
         for part in self._parts:
             self._let_go(part)
+            self._refuse_what_no_way_leads_to(part, now)
 
     def _take_in(self, now: float) -> None:
         """Robots that have said where they are take part."""
@@ -310,6 +315,19 @@ class ReservedTraffic:
             if part.port.go(way, to_goal=to_goal):
                 part.moves_passed = self._order.passed(part.number)
             part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
+
+    def _refuse_what_no_way_leads_to(self, part: Part, now: float) -> None:
+        """Lanes may lead to no goal, or never back from one; what lies behind a closed door is not given up here."""
+        goal = part.goal
+        if goal is None or self._closed or not self._falls_short(part) or self._order.metres_left(part.number) > 0.0:
+            part.no_way_s = math.inf
+            return
+        part.no_way_s = min(part.no_way_s, now)
+        if now - part.no_way_s >= NO_WAY_AFTER_S:
+            part.no_way_s = math.inf
+            alone = Traveller(part.robot, self._order.end(part.number), (Stop(goal),))
+            if not self.plan.reaches([alone], 0, [goal])[0]:
+                part.port.refused = "unreachable: no way leads there"
 
     def _away_m(self, part: Part) -> float:
         """Metres from where the moves of a robot end to its goal; 0 without one."""

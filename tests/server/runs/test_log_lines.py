@@ -70,5 +70,14 @@ def test_whatever_was_asked_for_has_words(kind, data):
 def test_words_name_only_what_there_is():
     for words in (*_HAPPENS.values(), *_DOES.values()):
         assert "?" not in words.format(
-            robot="r", task="t", position="p", by_s="1", words="w", waits_for="o", robots="q", door="d", round="b"
+            robot="r",
+            task="t",
+            position="p",
+            by_s="1",
+            words="w",
+            waits_for="o",
+            robots="q",
+            door="d",
+            round="b",
+            makes_room_for="o",
         )

@@ -46,6 +46,7 @@ _ITS_OWN = {
     "robot_stuck",
     "robot_stands_aside",
     "robot_goes_round",
+    "robot_makes_room",
     "waits_in_traffic",
     "goes_on",
     "traffic_jam",

@@ -31,6 +31,7 @@ _HAPPENS = {
     "goes_on": "{robot} goes on",
     "traffic_jam": "jam: {robots} hold each other up",
     "robot_goes_round": "{robot} goes round {round}, which stands in its way",
+    "robot_makes_room": "{robot} makes room for {makes_room_for}",
     "robot_stands_aside": "{robot} stands aside for {waits_for}",
     "robot_sent_again": "{robot} is sent again",
     "window_missed": "task {task} is not begun in time",
