@@ -83,6 +83,7 @@ class RobotState:
     since_s: float = 0.0  # up to when `busy_s` counts
     nearest_m: float = math.inf  # least way left of this order, and when it was reached, or it last waited in traffic
     nearest_s: float = 0.0
+    nearest_at: Place = (math.inf, math.inf, math.inf)  # where it was then
     went_round: frozenset[str] = frozenset()  # robots that stand, on this way
     makes_room: bool = False  # whether it was last sent off the way of another
     sent_again: int = 0  # so often for want of progress, to the current goal

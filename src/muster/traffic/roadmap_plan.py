@@ -80,6 +80,7 @@ class RoadmapPlan:
     stepwise: bool = False
     _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
+    _goals: dict[str, tuple[Point | None, int]] = field(default_factory=dict)  # and in how many plans by steps
     _known: _Network | None = None
 
     def __post_init__(self) -> None:
@@ -191,16 +192,30 @@ class RoadmapPlan:
         first = {on.number[who.start]: k for k, who in reversed(list(enumerate(travellers)))}
         numbers = sorted(first.values())  # without those who are only thought to be where another is
         there = [travellers[k] for k in numbers]
+        goals = [on.number[who.stops[0].at] if who.stops else None for who in there]
         found = on.planner.planned(
             [on.number[who.start] for who in there],
-            [on.number[who.stops[0].at] if who.stops else None for who in there],
+            goals,
             [who.robot.radius_m for who in there],
             margin_m=on.roadmap.margin_m,
+            priorities=[self._waited(who) for who in there],
             pinned=[who.fixed or who.ready_s > 0 or _is_there(who) for who in there],
             seed=self.seed,
             params=Parameters(horizon=_HORIZON * len(there)),
         )
-        return [on.move(numbers[k], edge, 0) for k, edge in found.moves]
+        done, moves = set[int](), list[Move]()
+        for k, edge in found.moves:
+            moves.append(on.move(numbers[k], edge, int(k in done)))
+            if on.roadmap.edges[edge, 1] == goals[k] and not _rests(there[k]):
+                done.add(k)  # it stops there to do what it has to; where it goes then it makes way
+        return moves
+
+    def _waited(self, who: Traveller) -> float:
+        """Rounds for which a robot has had its goal, about: who came first goes on to come first."""
+        goal = who.stops[0].at if who.stops else None
+        before, plans = self._goals.get(who.robot.id, (None, 0))
+        self._goals[who.robot.id] = goal, plans + 1 if goal == before else 0
+        return float(_HORIZON * self._goals[who.robot.id][1])
 
 
 @dataclass(frozen=True)
@@ -274,8 +289,12 @@ def _seen(clear: Callable[[Floats], bool], points: Floats, k: int) -> list[int]:
 
 def _is_there(who: Traveller) -> bool:
     """Whether a robot stands where it is to do something next: it does that first."""
-    rests = who.stays and len(who.stops) == 1 and who.stops[0].hold_s == 0.0
-    return bool(who.stops) and not rests and math.dist(who.start, who.stops[0].at) <= _THERE_M
+    return bool(who.stops) and not _rests(who) and math.dist(who.start, who.stops[0].at) <= _THERE_M
+
+
+def _rests(who: Traveller) -> bool:
+    """Whether a robot has nothing more to do than to stay somewhere."""
+    return who.stays and len(who.stops) == 1 and who.stops[0].hold_s == 0.0
 
 
 def _to_first_stop(who: Traveller) -> Traveller:

@@ -1,0 +1,31 @@
+"""Moves planned step by step: a robot stops at its goal to do its work there, also where it makes way afterwards."""
+
+import numpy as np
+
+from muster.mission.model import Robot
+from muster.motion.free_space import GridSpace
+from muster.motion.grid import Grid
+from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmap_plan import RoadmapPlan
+from muster.traffic.travellers import Stop, Traveller
+
+LANE = Roadmap.of(
+    GridSpace(Grid(np.zeros((8, 80), dtype=bool), 0.1, (0.0, 0.0, 0.0))), 0.3, [(1, 0.4), (2, 0.4), (4, 0.4), (7, 0.4)]
+)
+
+
+def test_moves_after_a_goal_lead_on_from_it():
+    """One works half way along a lane for one, and the other goes to its end past that place."""
+    plan = RoadmapPlan(LANE, lambda piece: True)
+    first = Traveller(
+        Robot(id="a", position=(2.0, 0.4), radius_m=0.3), (2.0, 0.4), (Stop((4.0, 0.4), 2.0),), stays=False
+    )
+    behind = Traveller(
+        Robot(id="b", position=(1.0, 0.4), radius_m=0.3), (1.0, 0.4), (Stop((7.0, 0.4), 2.0),), stays=False
+    )
+    moves = plan._by_inheritance([first, behind])
+    of_first = [(move.to, move.stop) for move in moves if move.traveller == 0]
+    at = [to for to, _ in of_first].index((4.0, 0.4))
+    assert [stop for _, stop in of_first] == [0] * (at + 1) + [1] * (len(of_first) - at - 1)
+    assert len(of_first) > at + 1
+    assert {move.stop for move in moves if move.traveller == 1} == {0}
