@@ -43,6 +43,14 @@ bool waits_for_height(const CrowdRobot& robot, std::size_t k) {
   return std::abs(robot.way[k].at[2] - from) > robot.exact;
 }
 
+// The speed along a bend of short pieces, as ways round corners have them, at which a robot that faces its way keeps to
+// it: within its acceleration, and as fast as it turns.
+double bend_speed(const CrowdRobot& robot, double turn, double in, double out) {
+  if (!robot.body.faces_its_way) return kAnySpeed;
+  const double radius = std::min(in, out) / turn;
+  return std::min(std::sqrt(robot.body.acceleration * radius), robot.body.yaw_rate * radius);
+}
+
 // The speed with which a robot that comes from a place may go past way point k.
 double corner_speed(const CrowdRobot& robot, const Vec<3>& from, std::size_t k, const Tolerances& tolerances,
                     double dt) {
@@ -59,7 +67,7 @@ double corner_speed(const CrowdRobot& robot, const Vec<3>& from, std::size_t k, 
   const double half = std::sin(turn / 2.0), sine = dot(in, out) > 0.0 ? std::sin(turn) : 1.0;
   if (half == 0.0) return top;
   const double cut = tolerances.corner / (dt * sine), swerve = robot.body.acceleration * dt / (2.0 * half);
-  return std::min({top, cut, swerve});
+  return std::min({top, cut, swerve, bend_speed(robot, turn, norm(in), norm(out))});
 }
 
 double speed_along(const CrowdRobot& robot, const Tolerances& tolerances, double dt) {

@@ -225,9 +225,9 @@ void CrowdWorld::steer() {
     const bool free = norm(chosen_[i] - course_[i]) < 1e-6;
     steerings_[i] = steered(robot, chosen_[i], free, settings_.dt);
     const Steering& steering = steerings_[i];
-    choices_[i] = {steering.braked,      steering.wanted,   steering.straight,
-                   steering.after,       robot.body.radius, robot.body.acceleration,
-                   robot.stands(time()), &robot.near_faces, &walls_[robot.body.walls]};
+    choices_[i] = {steering.braked,   steering.wanted,          steering.straight,       steering.after,
+                   steering.chord,    robot.body.radius,        robot.body.acceleration, robot.stands(time()),
+                   &robot.near_faces, &walls_[robot.body.walls]};
   }
 }
 

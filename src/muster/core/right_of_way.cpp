@@ -87,7 +87,8 @@ bool RightOfWay::allowed(int i, double share) const {
 
 double RightOfWay::stopping(int i, const Vec<3>& velocity, const Vec<3>& after, const Vec<3>& towards) const {
   const Braking braking{dt_, choices_[i].acceleration};
-  const double closing = dot(velocity, towards), speed = norm(velocity);
+  const double closing = dot(velocity, towards);
+  const double speed = norm(velocity) / (after == Vec<3>{} ? 1.0 : choices_[i].chord);
   const double rest = braking.distance(braking.slower(speed));
   const double share = after == Vec<3>{} ? (speed > 0.0 ? closing / speed : 0.0) : dot(after, towards);
   return std::max(0.0, closing * dt_) + rest * std::max(0.0, share);

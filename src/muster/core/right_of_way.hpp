@@ -17,6 +17,7 @@ struct Choice {
   Vec<3> braked, wanted;
   Vec<3> straight;  // braked too, and without turning: what is always left
   Vec<3> after;     // the direction in which it brakes after the step; 0: in that of the step
+  double chord;     // of the way of the step, which may be an arc, its share that leads on
   double radius;    // 0: it is not looked at
   double acceleration;
   bool stands;

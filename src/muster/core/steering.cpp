@@ -56,7 +56,7 @@ Steering on_an_arc(const CrowdRobot& robot, double ahead, double yaw_rate, const
   const Vec<3> nose{{std::cos(robot.heading), std::sin(robot.heading), 0.0}};
   const Vec<3> after{{std::cos(robot.heading + 2.0 * half), std::sin(robot.heading + 2.0 * half), 0.0}};
   const double sign = ahead < 0.0 || braked < 0.0 ? -1.0 : 1.0;
-  return {velocity(braked), wanted, braked, ahead, yaw_rate, braked * nose, sign * after};
+  return {velocity(braked), wanted, braked, ahead, yaw_rate, braked * nose, sign * after, chord};
 }
 
 Steering where_it_looks(const CrowdRobot& robot, const Vec<3>& chosen, bool free, double dt) {

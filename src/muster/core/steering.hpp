@@ -12,6 +12,7 @@ struct Steering {
   double ahead_braked, ahead_wanted;  // the same, of the speed ahead of one that faces its way
   double yaw_rate;
   Vec<3> straight, after;  // as in Choice
+  double chord = 1.0;
 };
 
 // `chosen` is the velocity to get near to; `free`, whether nobody is in the way, so that corners are turned on the
