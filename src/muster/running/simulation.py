@@ -64,7 +64,7 @@ class Simulation:
     dt_s
         step of the world in seconds.
     avoidance
-        how robots pass each other: auto (the method that jams least), orca, rvo, hrvo, avo or none.
+        how robots pass each other: auto (the method that gets all done soonest), orca, rvo, hrvo, avo or none.
     traffic
         free: robots pass each other as they meet; reserve: robots that drive pass in the order of one plan for all,
         and go round nothing; auto: reserve where the mission gives lanes, its map has passages for one robot, or robots

@@ -79,8 +79,8 @@ class WorldBase(SimulatedWorld, ABC):
     noise
         see `Noise`.
     avoidance
-        `auto`, the method that jams least; `orca`, in the plane `rvo`, `hrvo` or `avo` too; or `none`: robots drive
-        through each other and through walls.
+        `auto`, the method that gets all done soonest; `orca`, in the plane `rvo`, `hrvo` or `avo` too; or `none`:
+        robots drive through each other and through walls.
     law
         how robots come to the velocity that they want: `profile`, speeds and turns on the spot as fast as the limits
         allow; `thesis`, quadcopters and differential drives by (4.9)-(4.16) and (4.21)-(4.25) of [tcf-thesis];

@@ -22,7 +22,7 @@ _SPEEDS = {
     "": "as fast as it goes",
 }
 _SIMULATED = {"kinematic": "simulated", "physics": "simulated with physics"}  # others by their names
-_AVOIDANCE = {"auto": "as jams least", "orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "avo": "AVO", "none": "not at all"}
+_AVOIDANCE = {"auto": "default", "orca": "ORCA", "rvo": "RVO", "hrvo": "HRVO", "avo": "AVO", "none": "not at all"}
 _TRAFFIC = {
     "auto": "in planned order where there is room for one",
     "reserve": "in planned order",
