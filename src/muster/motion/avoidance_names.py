@@ -6,7 +6,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 
 AUTO, NONE = "auto", "none"
-"""The method that gets all done soonest in simulated worlds (docs/avoidance.md): `hrvo` in the plane, `orca` in space."""
+"""The method that gets all done soonest in simulated worlds (docs/avoidance.md): `hrvo` in the plane, else `orca`."""
 METHODS = ("orca", "rvo", "hrvo", "avo", NONE)
 AVOIDANCE = (AUTO, *METHODS)
 _IN_THE_PLANE = ("rvo", "hrvo", "avo")
