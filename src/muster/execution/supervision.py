@@ -89,12 +89,7 @@ class Supervisor:
         if now < self.look_s:
             return
         self.look_s = now + self.limits.look_every_s
-        for kind, data in self.traffic.look(now):
-            self.emit(kind, data)
-        for robot in self.traffic.waits:
-            self.crew[robot].nearest_s = now
-        for robot in self.traffic.sent_round:
-            self.crew[robot].nearest_m, self.crew[robot].nearest_s = self.crew[robot].way_left_m, now
+        self._look_at_traffic(now)
         yield from self._break_jams(now)
         yield from self._break_standstill(now)
         for state in self._present:
@@ -110,6 +105,19 @@ class Supervisor:
                 yield from self._free_or_put_out(state, now)
             elif state.activity is Activity.DRIVING and self.capacity(state) is not None:
                 yield from self._notice_capacity(state, now)
+
+    def _look_at_traffic(self, now: float) -> None:
+        """Who waits for another, or was sent another way, is not stuck for coming no nearer.
+
+        Work that takes far too long is told whatever traffic plans.
+        """
+        for kind, data in self.traffic.look(now):
+            self.emit(kind, data)
+        for robot in self.traffic.waits:
+            self.crew[robot].nearest_s = now
+        for state in (self.crew[robot] for robot in self.traffic.sent_round):
+            if state.activity is not Activity.WORKING:
+                state.nearest_m, state.nearest_s = state.way_left_m, now
 
     @property
     def _present(self) -> list[RobotState]:
