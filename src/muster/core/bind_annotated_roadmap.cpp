@@ -42,8 +42,7 @@ void bind_annotated_roadmap(nb::module_& m) {
           },
           "points"_a, "first"_a, "heads"_a, "costs"_a, "speeds"_a, "near_first"_a, "near_points"_a, "near_metres"_a,
           "`points` is (n, 2), `speeds` the greatest on each edge; edges and what is near them are in compressed rows. "
-          "Raises ValueError where they do not "
-          "fit.");
+          "Raises ValueError where they do not fit.");
 }
 
 }  // namespace muster

@@ -159,17 +159,16 @@ class Dispatch:
         self._emit("robot_goes_round", {"robot": state.robot.id, "round": standing.robot.id})
         return True
 
-    def make_room(self, state: RobotState, asker: RobotState, now: float) -> bool:
-        """Send a robot that has nothing to do off the way of another; returns whether there is a place for it."""
+    def make_room(self, state: RobotState, asker: RobotState, now: float) -> None:
+        """Send a robot that has nothing to do off the way of another, where there is a place for it."""
         others = [(one.position, one.robot.radius_m) for one in self._crew.values() if one is not state]
         needed = [asker.position, *asker.points_left]
         way = way_aside(self._way, state.robot, state.position, needed, asker.robot.radius_m, others)
         if way is None:
-            return False
+            return
         state.send(now, Activity.RETURNING, along(way))
         state.at_home, state.makes_room = False, True
         self._emit("robot_makes_room", {"robot": state.robot.id, "makes_room_for": asker.robot.id})
-        return True
 
     def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:
         """The way from where a robot is; by way of the last place known to be free, if it stands where it cannot."""

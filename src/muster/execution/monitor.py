@@ -64,11 +64,10 @@ def is_stuck(state: RobotState, now: float, limits: Limits) -> bool:
     if state.activity not in (Activity.DRIVING, Activity.RETURNING):
         return False
     left = state.way_left_m
-    nearer = left < state.nearest_m - _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s
-    if nearer or _led_about(state):
+    least_m = _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s
+    if left < state.nearest_m - least_m or _led_about(state):
         state.nearest_m, state.nearest_s, state.nearest_at = left, now, state.position
-    near = left < _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s
-    arrives = near and not (state.steered or state.makes_room)
+    arrives = left < least_m and not (state.steered or state.makes_room)
     return now - state.nearest_s > limits.stuck_after_s * (2 if arrives else 1)
 
 

@@ -51,10 +51,11 @@ def way_aside(
     way: Way, robot: Robot, start: Place, needed: Sequence[Place], radius_m: float, others: Collection[Standing]
 ) -> Sequence[Place] | None:
     """The way to a near place beside a way that another, of a radius, needs; clear of others who stand; or None."""
+    apart_m = robot.radius_m + radius_m + _SPARE_M
     for times, direction in product(_TIMES_ASIDE, range(_TURNS)):
-        place = _beside(start, times * (robot.radius_m + radius_m + _SPARE_M), direction)
+        place = _beside(start, times * apart_m, direction)
         aside_m = min(distance_to_piece(place, *piece) for piece in pairwise(needed))
-        found = way(robot, start, place) if aside_m >= robot.radius_m + radius_m + _SPARE_M else None
+        found = way(robot, start, place) if aside_m >= apart_m else None
         if found is not None and _is_clear(robot, start, [start, *found], others):
             return found
     return None

@@ -214,8 +214,9 @@ class RoadmapPlan:
         """Rounds for which a robot has had its goal, about: who came first goes on to come first."""
         goal = who.stops[0].at if who.stops else None
         before, plans = self._goals.get(who.robot.id, (None, 0))
-        self._goals[who.robot.id] = goal, plans + 1 if goal == before else 0
-        return float(_HORIZON * self._goals[who.robot.id][1])
+        plans = plans + 1 if goal == before else 0
+        self._goals[who.robot.id] = goal, plans
+        return float(_HORIZON * plans)
 
 
 @dataclass(frozen=True)
