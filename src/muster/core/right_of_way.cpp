@@ -58,8 +58,11 @@ void RightOfWay::look_at_robots(int i) {
     const double braked = stopping(i, own.straight, {}, towards);
     const double gap = distance - own.radius - other.radius - clearance_;
     const double left = gap - braked - stopping(k, other.straight, {}, -1.0 * towards);
-    limits_.push_back(
-        {towards, braked + (other.stands ? 1.0 : 0.5) * std::max(0.0, left), left > -kCreep ? kRounding : 0.0});
+    if (left < -kCreep) {  // too near to brake: another direction must not come nearer at all, `straight` brakes
+      limits_.push_back({towards, 0.0, 0.0});
+    } else {
+      limits_.push_back({towards, braked + (other.stands ? 1.0 : 0.5) * std::max(0.0, left), kRounding});
+    }
   }
 }
 

@@ -52,17 +52,27 @@ class Part:
 
         The places are no farther from each other than its radius.
         """
-        said, limits = self.port.heard, limits_of(self.robot)
-        unheard_s = 0.0 if said is None else now - said.time_s
-        left_m = limits.speed_mps * unheard_s + limits.braking_m(limits.speed_mps)
+        left_m = self._unheard_m(now)
         for (x, y), (u, v) in self.pieces_ahead():
+            if left_m <= 0:
+                return
             long_m = math.dist((x, y), (u, v))
-            pieces = math.ceil(long_m / self.robot.radius_m)
+            end = min(1.0, left_m / long_m) if long_m else 1.0
+            pieces = math.ceil(end * long_m / self.robot.radius_m)
             for k in range(1, pieces + 1):
-                if long_m * (k - 1) / pieces >= left_m:
-                    return
-                yield x + (u - x) * k / pieces, y + (v - y) * k / pieces
+                yield x + (u - x) * end * k / pieces, y + (v - y) * end * k / pieces
             left_m -= long_m
+
+    def _unheard_m(self, now: float) -> float:
+        """How far it can have come since it was last heard, and until it stands."""
+        said, limits = self.port.heard, limits_of(self.robot)
+        if said is None:
+            return limits.braking_m(limits.speed_mps)
+        unheard_s = now - said.time_s
+        speed_mps = math.hypot(*said.velocity)
+        if unheard_s > 0:
+            speed_mps = min(limits.speed_mps, speed_mps + limits.acceleration_mps2 * unheard_s)
+        return speed_mps * unheard_s + limits.braking_m(speed_mps)
 
     def pieces_ahead(self) -> Iterator[tuple[Point, Point]]:
         """The straight pieces of the way that it was last sent, from where it is; after a stop of that before."""

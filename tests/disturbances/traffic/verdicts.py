@@ -17,8 +17,9 @@ STOPS_S = 1.5
 """Within this time of its being told to a robot has come to a stand."""
 MOVED_M = 0.05
 ROUNDING_M = 1e-6
-SILENT_M = 2.5
-"""So far from where it fell silent a robot may be: it goes on by the order that it has, and brakes."""
+UNHEARD_M = {"silent": 2.5, "fails": 0.6}
+"""So far from where a robot was last heard it may be: it brakes (0.5 m at 1 m/s), at once if it fails, 0.1 s after it
+was heard; a silent one goes on by the order that it has before that."""
 PASSES_M = 0.1
 """Where a broken robot leaves so much more room than a body needs, there is a way past it."""
 
@@ -149,8 +150,8 @@ def check_lost(report, simulation, script, space):
 def _may_stand(kind, places):
     """Where a robot that is down may be for all that is known."""
     yield from places
-    if kind == "silent":
-        for away_m in np.linspace(SILENT_M / 4, SILENT_M, 4):
+    if kind in UNHEARD_M:
+        for away_m in np.linspace(UNHEARD_M[kind] / 4, UNHEARD_M[kind], 4):
             for angle in np.linspace(0, 2 * np.pi, 16, endpoint=False):
                 yield places[0] + away_m * np.array([np.cos(angle), np.sin(angle)])
 
