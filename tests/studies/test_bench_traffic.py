@@ -12,6 +12,7 @@ from muster_studies.benches.joint_paths import (
     lattice,
     prefixes_bench,
     random_ends,
+    roadmap_bench,
     shelves,
     solve,
     warehouse,
@@ -45,6 +46,11 @@ def test_files_of_a_folder_are_read(tmp_path, monkeypatch):
 def test_500_robots_of_one_seed():
     (row,) = warehouse_bench(1)
     assert row.note.startswith("1 of 1 solved")
+
+
+def test_200_robots_on_a_roadmap():
+    (row,) = roadmap_bench(1)
+    assert row.note.startswith("1 of 1 to all goals")
 
 
 def test_the_roadmap_has_the_conflicts_of_the_slow_way():

@@ -194,6 +194,7 @@ def lattice(free: Bools, spacing_m: float, reach_m: float) -> SimpleNamespace:
     return SimpleNamespace(
         points=points,
         edges=np.array(edges, dtype=np.int64),
+        speed_mps=np.full(len(edges), np.inf),
         reach_start=np.array(start, dtype=np.int64),
         reach_point=np.array(near, dtype=np.int64),
         reach_m=np.array(metres, dtype=np.float64),
