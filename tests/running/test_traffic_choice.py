@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from muster import Negotiation, ParameterError, simulate
+from muster import Negotiation, ParameterError, simulate, solve
 from muster.mission.lanes import Lane, Lanes
+from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
 from muster.running.traffic_choice import LOOSE_MARGIN_M, manager_for
 from muster.traffic.roadmap import MARGIN_M
 from muster_studies.jams import scenes
@@ -35,6 +36,41 @@ def test_open_space_is_free_unless_lanes_are_given(hall):
     assert manager_for("reserve", hall) is not None
     lanes = Lanes(nodes={"a": (-5.0, 0.0), "b": (5.0, 0.0)}, edges=(Lane(start="a", end="b", both_ways=True),))
     assert manager_for("auto", replace(hall, lanes=lanes)) is not None
+
+
+def test_given_lanes_lead_a_single_robot_too(hall):
+    """One way along the x axis: the robot gets to the east, and not back to the west."""
+    nodes = {"a": (-5.0, 0.0), "b": (0.0, 0.0), "c": (5.0, 0.0)}
+    lanes = Lanes(nodes=nodes, edges=(Lane(start="a", end="b"), Lane(start="b", end="c")))
+    robot = replace(hall.robots[0], position=(0.0, 0.0))
+    tasks = tuple(replace(hall.tasks[0], id=name, position=nodes[name], only_robots=None) for name in "ac")
+    rules = Rules(return_to_start=False)
+    mission = replace(hall, robots=(robot,), tasks=tasks, lanes=lanes, rules=rules)
+    report = simulate(mission, solve(mission, "greedy"))
+    assert list(report.tasks_done) == ["c"]
+    assert "no way leads there" in dict(report.tasks_lost)["a"]
+
+
+def test_a_roadmap_that_cuts_off_a_small_robot_leaves_traffic_free():
+    """The wide robot has a door for one; the other door is for the small ones alone."""
+    walls = [(x, y) for x, gap in ((-2.0, 0.75), (3.0, 0.45)) for y in ((-6.0, -gap), (gap, 6.0))]
+    zones = tuple(Zone(polygon=((x - 0.2, a), (x + 0.2, a), (x + 0.2, b), (x - 0.2, b))) for x, (a, b) in walls)
+    mission = Mission(
+        robots=(
+            Robot(id="wide", position=(-6.0, 0.0), radius_m=0.6),
+            Robot(id="small", position=(-5.0, 3.0), radius_m=0.3),
+        ),
+        tasks=(
+            Task(id="behind the first", position=(0.0, 0.0), only_robots=("wide",)),
+            Task(id="behind both", position=(6.0, 2.0), only_robots=("small",)),
+        ),
+        map=Map(boundary=((-8.0, -6.0), (8.0, -6.0), (8.0, 6.0), (-8.0, 6.0)), zones=zones),
+        rules=Rules(travel="map"),
+    )
+    assert manager_for("auto", mission) is None
+    assert simulate(mission, solve(mission, "greedy")).tasks_lost == ()
+    near = replace(mission.tasks[1], position=(0.0, 4.0))
+    assert manager_for("auto", replace(mission, tasks=(mission.tasks[0], near))) is not None
 
 
 def test_what_else_is_asked_for_leaves_traffic_free(door):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from muster.mission.model import Mission
 from muster.motion.map_world import World
 from muster.traffic.closed_rings import can_close_out
+from muster.traffic.cut_off import cuts_off
 from muster.traffic.manager import TrafficManager
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.names import AUTO, RESERVE, may_reserve
@@ -20,9 +21,8 @@ def manager_named(
     Parameters and errors are those of `shared_roadmap`. With `auto` traffic is by reservation also where robots at rest
     can close others out of their ends.
     """
-    if name == AUTO and can_close_out(mission):
-        name = RESERVE
-    shared = shared_roadmap(name, mission, world=world, margin_m=margin_m)
+    closes_out = name == AUTO and can_close_out(mission)
+    shared = _shared_roadmap(name, mission, world, margin_m, even_if_wide=closes_out)
     if shared is None:
         return None
     return ReservedTraffic(shared.plan(seed), margin_m=margin_m)
@@ -33,7 +33,8 @@ def shared_roadmap(
 ) -> MissionRoadmap | None:
     """The roadmap on which a mission's robots pass in turn; None where they pass each other as they meet.
 
-    With `auto` traffic is by reservation where the mission gives lanes, or its map has passages for one robot.
+    With `auto` traffic is by reservation where the mission gives lanes, or its map has passages for one robot. It is
+    free where the roadmap, which is for the widest robot, would cut off a smaller one.
 
     Parameters
     ----------
@@ -49,12 +50,21 @@ def shared_roadmap(
     MissionError, MissingExtraError
         as `World.of`.
     """
-    if not may_reserve(name, mission):
+    return _shared_roadmap(name, mission, world, margin_m)
+
+
+def _shared_roadmap(
+    name: str, mission: Mission, world: World | None, margin_m: float, *, even_if_wide: bool = False
+) -> MissionRoadmap | None:
+    if not may_reserve(RESERVE if even_if_wide else name, mission):
         return None
     mapped = mission.travel_rule == "map"
     if mapped and world is None:
         world = World.of(mission)
     shared = MissionRoadmap.of(mission, world if mapped else None, margin_m=margin_m)
-    if name == AUTO and mission.lanes is None and not shared.roadmap.narrow.any():
+    if name != AUTO or mission.lanes is not None:
+        return shared
+    passes_in_turn = even_if_wide or shared.roadmap.narrow.any()
+    if not passes_in_turn or (mapped and world is not None and cuts_off(shared, mission, world)):
         return None
     return shared

@@ -31,17 +31,20 @@ def drives(robot: Robot) -> bool:
 def may_reserve(traffic: str, mission: Mission) -> bool:
     """Whether robots of a mission can pass by reservation; with `auto` its roadmap tells the rest.
 
+    Given lanes lead a single robot too.
+
     Raises
     ------
     ParameterError
-        if there is no traffic of that name, or `reserve` is asked for where no two robots drive on one roadmap.
+        if there is no traffic of that name, or `reserve` is asked for where no two robots drive.
     """
     if traffic not in TRAFFIC:
         expected = f"{', '.join(TRAFFIC)}{did_you_mean(str(traffic), TRAFFIC)}"
         raise ParameterError(f"traffic: {shown(traffic)}; expected {expected}")
-    two_drive = sum(map(drives, mission.all_robots)) >= 2
-    if traffic == RESERVE and not two_drive:
+    driving = sum(map(drives, mission.all_robots))
+    enough = driving >= 2 or (driving == 1 and mission.lanes is not None)
+    if traffic == RESERVE and not enough:
         reason = "fewer than two robots of kind ground have a radius above 0"
         raise ParameterError(f"traffic: {traffic}; expected free: {reason}")
     has_roadmap = traffic == RESERVE or mission.lanes is not None or mission.travel_rule == "map"
-    return traffic != FREE and two_drive and has_roadmap
+    return traffic != FREE and enough and has_roadmap
