@@ -32,8 +32,10 @@ if TYPE_CHECKING:
 Allocate = Callable[["Problem", Stop, Routes | None], Outcome]
 OnProgress = Callable[[Progress], None]
 
-PLANS = 8
-"""Plans that are made, of which one is kept."""
+FIRST_SHARE = 4
+"""The first plan has one part of so many of the time or iterations."""
+PLANS, PLANS_BY_ITERATIONS = 40, 8
+"""Plans that are made at most, of which one is kept; where iterations are limited fewer, as forecasts take time too."""
 _MOST = 3_000_000
 """Robots and tasks times edges of the roadmap up to which traffic is forecast: for more that takes some seconds."""
 
@@ -100,8 +102,9 @@ def spread(
 ) -> Plan:
     """The best of several plans, whose routes spread over the passages that robots share.
 
-    The first has half of the time or iterations. Where its robots are not in each other's way a second one goes on from
-    it; else the others share what is left.
+    The first has a quarter of the time or iterations. Where its robots are not in each other's way a second one goes on
+    from it with the rest; else the others share what is left, and each is searched for at least as long as a forecast
+    takes. Each goes on from the best so far, or begins anew after one that brought nothing new.
 
     Parameters
     ----------
@@ -113,8 +116,8 @@ def spread(
         of the plan.
     """
     spreading = _Spreading(problem, shared, allocate, stop, on_progress)
-    spreading.make(2)
-    left = PLANS - 1
+    spreading.make(FIRST_SHARE)
+    left = (PLANS if stop.iterations_left is None else PLANS_BY_ITERATIONS) - 1
     while left > 0 and spreading.has_time:
         left = left if spreading.delays else 1
         spreading.make(left)
@@ -162,6 +165,8 @@ class _Spreading:
         self.delays = PassageDelays(shared.made.roadmap, float(np.median(speeds)))
         self.best: _Candidate | None = None
         self._made, self._forecast_s = 0, 0.0
+        self._seen: set[tuple[tuple[int, ...], ...]] = set()  # the routes of which the traffic has been forecast
+        self._begins_anew = False
 
     @property
     def has_time(self) -> bool:
@@ -173,9 +178,14 @@ class _Spreading:
         """Make a plan with one part of so many of what is left of time or iterations."""
         expected = self._shared.expected(self._problem, self.delays)
         part = self._part(left)
-        outcome = self._allocate(expected, part, None if self.best is None else self.best.routes)
+        outcome = self._allocate(expected, part, None if self._begins_anew or self.best is None else self.best.routes)
         self._stop.iterations_done += part.iterations_done
         self._made += 1
+        routes = tuple(map(tuple, outcome.routes))
+        self._begins_anew = routes in self._seen  # the next one, as this one was known
+        if self._begins_anew:
+            return
+        self._seen.add(routes)
         candidate = self._candidate(outcome)
         if self.best is None or candidate.rank < self.best.rank:
             self.best = candidate
@@ -183,7 +193,7 @@ class _Spreading:
     def _part(self, left: int) -> Stop:
         time_left_s, iterations_left = self._stop.time_left_s, self._stop.iterations_left
         return self._stop.part(
-            time_limit=None if time_left_s is None else time_left_s / left,
+            time_limit=None if time_left_s is None else min(time_left_s, max(time_left_s / left, self._forecast_s)),
             iterations=None if iterations_left is None else iterations_left // left,
             on_progress=self._report,
         )
