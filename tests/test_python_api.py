@@ -69,6 +69,19 @@ def test_a_wrong_name_is_answered_in_one_line_with_the_near_match(mission, plan)
         muster.Robot()
 
 
+@pytest.mark.parametrize(
+    ("lags", "told"),
+    [
+        ({"b": {"after_s": 3}}, 'lags.b: {"after_s": 3}; expected a muster.Lag'),
+        ({"c": muster.Lag(after_s=3)}, 'lags.c: "c"; expected one of its prerequisites'),
+        (3, "lags: 3; expected a mapping from prerequisites to lags"),
+    ],
+)
+def test_lags_are_checked_when_a_task_is_made(lags, told):
+    with pytest.raises(muster.MissionError, match=re.escape(told)):
+        muster.Task(id="a", position=(2, 0), prerequisites=("b",), lags=lags)
+
+
 def test_texts_are_one_line_each(mission, plan, report):
     assert repr(mission) == "<Mission 31T-6R50: 6 robots, 31 tasks, total+max>"
     assert repr(plan) == "<Plan of 31T-6R50 by greedy: 27 tasks done, total+max 248.78>"

@@ -1,7 +1,7 @@
 """The search where nothing is late, and where the same robots must do tasks or tasks begin together."""
 
 import muster
-from muster import Mission, Robot, Rules, Task
+from muster import Mission, Robot, Rules, Task, TeamPart
 
 
 def best(mission):
@@ -29,6 +29,20 @@ def test_a_task_that_begins_with_another_is_for_the_robot_of_its_relation():
     robots = (Robot(id="r_0", position=(0, 0)), Robot(id="r_1", position=(9, 0)))
     plan = best(Mission(rules=Rules(objective="max"), robots=robots, tasks=tasks))
     assert {route.robot: route.tasks for route in plan.routes} == {"r_0": ("a", "c"), "r_1": ("b",)}
+
+
+def test_the_near_robot_leaves_the_first_task_for_the_one_that_only_it_can_do():
+    """Only r_0 may do b, after a, and has not the range for both."""
+    tasks = (
+        Task(id="a", position=(3, 0), team=(TeamPart(type="rover"),)),
+        Task(id="b", position=(-8, 0), only_robots=("r_0",), prerequisites=("a",)),
+    )
+    robots = (
+        Robot(id="r_0", type="rover", position=(0, 0), work_capacity=16),
+        Robot(id="r_1", type="rover", position=(9, 0)),
+    )
+    plan = best(Mission(rules=Rules(objective="total", return_to_start=True), robots=robots, tasks=tasks))
+    assert {route.robot: route.tasks for route in plan.routes} == {"r_0": ("b",), "r_1": ("a",)}
 
 
 def test_a_task_before_one_of_the_same_robot_is_not_for_two():

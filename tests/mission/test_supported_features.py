@@ -4,6 +4,7 @@ import pytest
 
 from muster.allocation.problem import Problem
 from muster.mission.errors import NotSupportedError
+from muster.mission.lanes import Lane, Lanes
 from muster.mission.model import Action, Mission, Robot, Rules, Task, TravelTable
 from muster.mission.plan import Plan
 from muster.mission.source import Source
@@ -69,3 +70,8 @@ def test_numbers_whose_sums_may_overflow(robot, tasks):
     assert str(refused(mission)).endswith(
         "numbers too large or too small; expected numbers whose sums are below 1.8e308"
     )
+
+
+def test_nodes_of_lanes_too_far_away_are_refused():
+    lanes = Lanes(nodes={"a": (0, 0), "b": (1, -1e300)}, edges=(Lane(start="a", end="b"),))
+    assert refused(mission_of((Task(id="a", position=(0, 0)),), lanes=lanes)).value == "numbers too large or too small"

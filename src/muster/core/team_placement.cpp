@@ -21,6 +21,9 @@ void Placement::try_cuts(int unit) {
     for (std::size_t k = 0; k < tasks.size(); ++k) any |= usable(robot, tasks[k], static_cast<int>(k));
     if (any) candidates_.push_back(robot);
   }
+  if (candidates_.size() > 1 && overlooked()) {  // a robot, as a place of a task for one is
+    candidates_.erase(candidates_.begin() + trial_->random->below(static_cast<int>(candidates_.size())));
+  }
   offers_.assign(tasks.size() * candidates_.size(), Offer{});
   gather_cuts(unit);
   everyone_.assign(candidates_.size(), 1);

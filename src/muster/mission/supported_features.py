@@ -47,6 +47,7 @@ def _bound(mission: Mission) -> float:
     robots, tasks = mission.robots, mission.tasks
     points = [*(p for r in robots for p in (r.position, r.end_position)), *(p for t in tasks for p in _portals(t))]
     points += [robot.camera.mount for robot in robots if robot.camera is not None]
+    points += [] if mission.lanes is None else mission.lanes.nodes.values()
     sizes = [(t.action.side_m, t.action.spacing_m, t.action.height_m, t.action.width_m) for t in tasks if t.action]
     points += [tuple(size for size in row if size is not None) for row in sizes]
     points += [point for t in tasks if t.action is not None for point in t.action.places.values()]

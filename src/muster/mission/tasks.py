@@ -176,6 +176,8 @@ class Work(Checked):
     @classmethod
     def settled(cls, values: Mapping[str, Any]) -> Mapping[str, Any]:
         given = values.get("prerequisites", ())
+        if not isinstance(values.get("lags", {}), Mapping):
+            return {}
         lags = dict(values.get("lags", {}))
         for one in given:
             if isinstance(one, Prerequisite):
@@ -193,15 +195,24 @@ class Work(Checked):
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         yield from _team_faults(values)
-        for name in values.get("lags", {}):
-            if name not in values.get("prerequisites", ()):
-                yield Fault(("lags", name), shown(name), "one of its prerequisites")
+        yield from _lag_faults(values.get("lags", {}), values.get("prerequisites", ()))
         action = values.get("action")
         if action is not None and action.has_geometry and values.get("actuation_cost"):
             cost = shown(values["actuation_cost"])
             yield Fault(("actuation_cost",), cost, f"no typed cost beside {action.name}, whose cost is computed")
         if action is not None and action.duration_s is not None and values.get("duration_s") is not None:
             yield Fault(("duration_s",), shown(values["duration_s"]), f"no second duration beside {action.name}")
+
+
+def _lag_faults(lags: object, prerequisites: tuple[str, ...]) -> Iterator[Fault]:
+    if not isinstance(lags, Mapping):
+        yield Fault(("lags",), shown(lags), "a mapping from prerequisites to lags")
+        return
+    for name, lag in lags.items():
+        if name not in prerequisites:
+            yield Fault(("lags", name), shown(name), "one of its prerequisites")
+        elif not isinstance(lag, Lag):
+            yield Fault(("lags", name), shown(lag), "a muster.Lag")
 
 
 def _team_faults(values: Mapping[str, Any]) -> Iterable[Fault]:
