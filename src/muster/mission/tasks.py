@@ -204,7 +204,7 @@ class Work(Checked):
             yield Fault(("duration_s",), shown(values["duration_s"]), f"no second duration beside {action.name}")
 
 
-def _lag_faults(lags: object, prerequisites: tuple[str, ...]) -> Iterator[Fault]:
+def _lag_faults(lags: object, prerequisites: tuple[str, ...]) -> Iterable[Fault]:
     if not isinstance(lags, Mapping):
         yield Fault(("lags",), shown(lags), "a mapping from prerequisites to lags")
         return
