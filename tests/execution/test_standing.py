@@ -1,5 +1,6 @@
 """Fleets on duty: orders are put in at once, better routes taken over, commitments held, old tasks forgotten."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from muster.execution.reallocation import Reallocation
 from muster.execution.script import Script
 from muster.execution.standing import EventLog
 from muster.mission.errors import ParameterError
+from muster.mission.events import DelayedTask, MovedTask
 from muster.mission.model import Event, Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route
 
@@ -52,7 +54,7 @@ def stream(count=30, every_s=1.5):
     return [order(k * every_s, f"o{k}", 7 * k % 20, 5 * k % 11, duration_s=1) for k in range(count)]
 
 
-def on_duty(mission, orders, *, searches=True, until_s=0.0, keep_s=300.0, step=0.1):
+def on_duty(mission, orders, *, searches=True, until_s=None, keep_s=300.0, step=0.1):
     world = World(mission)
     improver = AtOnce(mission) if searches else None
     standing = Standing(until_s=until_s, orders=orders, improver=improver, keep_s=keep_s)
@@ -101,6 +103,43 @@ def test_it_stays_on_duty_until_the_time_and_ends_when_all_is_done_after_it():
     assert executor.now_s < 60
     waits = on_duty(fleet(), [], until_s=40.0)
     assert waits.now_s == pytest.approx(40.0, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    "first",
+    [
+        Event(at_s=1, cancel_task="nobody"),
+        Event(at_s=1, move_task=MovedTask(task="nobody", position=(1, 1))),
+        Event(at_s=1, delay_task=DelayedTask(task="nobody", by_s=1)),
+    ],
+)
+def test_orders_are_done_to_the_last_whatever_comes_before_it(first):
+    executor = on_duty(fleet(), [first, order(2, "a", 1, 1), replace(first, at_s=20), order(30, "b", 2, 2)])
+    seen = executor.orders.report(executor.now_s)
+    assert (seen.taken, seen.done, seen.refused, seen.not_taken_from_s) == (2, 2, 2, None)
+    assert executor.ended_s > 30
+
+
+def test_endless_orders_are_taken_until_the_time_and_one_after_it_is_read():
+    read = []
+
+    def endless():
+        for k in itertools.count():
+            read.append(5.0 * k)
+            yield order(5.0 * k, f"o{k}", 7 * k % 20, 5 * k % 11)
+
+    executor = on_duty(fleet(), endless(), until_s=60.0)
+    assert [one["task"]["id"] for one in data(executor, "new_task")] == [f"o{k}" for k in range(13)]
+    assert executor.orders.done == 13
+    assert executor.ended_s > 60
+    assert report_of(executor.account).orders.not_taken_from_s == read[-1] == 65.0
+
+
+def test_orders_after_its_time_on_duty_are_known_though_none_was_taken():
+    executor = on_duty(fleet(), [order(2, "a", 1, 1)], until_s=1.0)
+    seen = report_of(executor.account).orders
+    assert (seen.taken, seen.not_taken_from_s) == (0, 2.0)
+    assert executor.now_s == pytest.approx(1.0, abs=0.2)
 
 
 @pytest.mark.parametrize(("priority", "second"), [(1, "near"), (5, "urgent")])

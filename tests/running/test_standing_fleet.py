@@ -80,9 +80,19 @@ def test_the_command_does_orders_from_a_file_and_tells_how_fast(files, capsys):
 def test_the_command_stays_on_duty_until_it_is_told(files, capsys):
     orders = ("--orders", str(files / "orders.csv"), "--format", "json")
     assert asked(files, "--stay", "--until", "20", *orders) == 0
-    assert json.loads(capsys.readouterr().out)["orders"]["taken"] == 3  # those after its end are still done
+    seen = json.loads(capsys.readouterr().out)
+    assert (seen["orders"]["taken"], seen["orders"]["not_taken_from_s"]) == (2, 30.0)
+    assert seen["mission_time_s"] < 30
     assert asked(files, "--stay", "--until", "90", *orders) == 0
-    assert json.loads(capsys.readouterr().out)["orders"]["done_per_hour"] == 120.0
+    seen = json.loads(capsys.readouterr().out)["orders"]
+    assert (seen["done_per_hour"], seen["not_taken_from_s"]) == (120.0, None)
+
+
+def test_the_command_says_which_orders_it_does_not_take(files, capsys):
+    assert asked(files, "--orders", str(files / "orders.csv"), "--stay", "--until", "20") == 0
+    said = capsys.readouterr().out
+    assert "orders            2: 2 done" in said
+    assert "not taken         orders from 30.00 s on, after the end of duty" in said
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 _OPTIONS = (
     click.option("--stay", is_flag=True, help="Stay on duty when all tasks are done, until --until or Ctrl-C."),
     click.option(
-        "--until", type=Finite(0.0, 1e9), metavar="S", help="With --stay: stay so many seconds, then end what is open."
+        "--until",
+        type=Finite(0.0, 1e9),
+        metavar="S",
+        help="With --stay: take orders for so many seconds, then end what is open.",
     ),
     click.option(
         "--orders",
@@ -55,5 +58,5 @@ def standing_of(orders: Path | None, until: float | None, *, stay: bool) -> Stan
         raise ParameterError("--until given; expected it together with --stay")
     if not stay and orders is None:
         return None
-    until_s = math.inf if until is None else until
-    return Standing(until_s=until_s if stay else 0.0, orders=() if orders is None else OrderFile(orders))
+    on_duty_s = math.inf if until is None else until
+    return Standing(until_s=on_duty_s if stay else None, orders=() if orders is None else OrderFile(orders))

@@ -98,13 +98,20 @@ def _print_orders(orders: Report | None) -> None:
     came_to = ", ".join(f"{count} {name}" for name, count in fates.items() if count)
     rows = {
         "orders": f"{orders['taken']}: {came_to or 'none done'}; {orders['done_per_hour']:g} done an hour",
-        "in a route after": _seconds(orders["until_in_route"]),
-        "done after": _seconds(orders["until_done"]),
+        "not taken": _not_taken(orders),
+        "in a route after": _seconds(orders["until_in_route"]) if orders["taken"] else "",
+        "done after": _seconds(orders["until_done"]) if orders["done"] else "",
         "clock behind by": _seconds(orders["clock_lag"]) if orders.get("clock_lag") else "",
     }
     for name, value in rows.items():
         if value:
             click.echo(f"{name:<17} {value}")
+
+
+def _not_taken(orders: Report) -> str:
+    """From when on orders were not taken, if there were any."""
+    from_s = orders.get("not_taken_from_s")
+    return "" if from_s is None else f"orders from {number(from_s)} s on, after the end of duty"
 
 
 def _seconds(figures: Report) -> str:

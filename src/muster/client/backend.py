@@ -130,7 +130,7 @@ class ServerBackend:
             settings["noise"] = amounts
         if standing is not None:
             settings["stay"] = True
-            if standing.until_s < math.inf:
+            if standing.until_s is not None and standing.until_s < math.inf:
                 settings["until_s"] = standing.until_s
         if pose is not None:
             settings["pose"] = pose

@@ -182,7 +182,7 @@ class Executor:
     def due_s(self) -> float:
         """When the clock alone brings something next: an event of the mission, a robot available; inf if nothing."""
         available = [state.robot.available_from_s for state in self._present if state.route]
-        standing = (self._script.next_s, self._improvement_due_s, self._standing.until_s)
+        standing = (self._script.next_s, self._improvement_due_s, self._standing.stays_until_s)
         times = [*standing, *available, *self._punctuality.times(self.now_s)]
         return min((time for time in times if time > self.now_s), default=math.inf)
 
@@ -304,7 +304,13 @@ class Executor:
     def _script_after(self, time_s: float) -> Script:
         """What is to happen after a time: events of the mission file, and orders."""
         standing = self._standing
-        return Script(self.mission.events, standing.orders, batch_s=standing.batch_s, after_s=time_s)
+        return Script(
+            self.mission.events,
+            standing.orders,
+            batch_s=standing.batch_s,
+            after_s=time_s,
+            until_s=standing.takes_orders_until_s,
+        )
 
     @property
     def _objective(self) -> str:
@@ -427,7 +433,7 @@ class Executor:
                 self.emit("lost", {"task": task, "reason": reason})
 
     def _end_if_over(self) -> None:
-        if self.now_s < self._standing.until_s:
+        if self.now_s < self._standing.stays_until_s:
             return
         if self._alone and not self.done and self.idle and not self._may_bring_work:
             last = max((event.time_s for event in self.events), default=self.begun_s)
@@ -453,7 +459,7 @@ class Executor:
             usage_planned=self.usage_planned,
             mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
             reallocations=self._plans,
-            orders=self.orders.report(self.now_s - self.begun_s),
+            orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s),
             charges={name: state.charge for name, state in self.crew.items() if state.charge is not None},
             shifts_exceeded_s=self._shifts_exceeded(),
             traffic=self.traffic.account.with_waits(self.traffic.waits),

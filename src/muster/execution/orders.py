@@ -44,6 +44,9 @@ class OrdersReport:
         how often routes that a search in the background had found were taken over.
     clock_lag
         by how much the mission's clock was behind the wall clock, in a run in real time; None in another.
+    not_taken_from_s
+        when the first order comes that is not taken, as the fleet is on duty no longer then, seconds by the mission's
+        clock; None: no such order is known.
     """
 
     taken: int
@@ -58,6 +61,7 @@ class OrdersReport:
     until_done: Seconds
     improved: int
     clock_lag: Seconds | None = None
+    not_taken_from_s: float | None = None
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -99,9 +103,9 @@ class Orders:
         elif kind in ("ends", "cancel_task", "lost") and data["task"] in self._open:
             self._close(data["task"], kind, now)
 
-    def report(self, over_s: float) -> OrdersReport | None:
+    def report(self, over_s: float, not_taken_from_s: float | None = None) -> OrdersReport | None:
         """Figures after so many seconds of the mission's clock; None if there was no order."""
-        if not self.taken and not self.refused:
+        if not self.taken and not self.refused and not_taken_from_s is None:
             return None
         return OrdersReport(
             taken=self.taken,
@@ -116,6 +120,7 @@ class Orders:
             until_done=Seconds.of(self.until_done),
             improved=self.improved,
             clock_lag=Seconds.of(self.clock_lag) if self.clock_lag.count else None,
+            not_taken_from_s=not_taken_from_s,
         )
 
     def _take_order(self, task: str, now: float) -> None:

@@ -24,6 +24,8 @@ class Script:
         orders are due together, at whole multiples of so many seconds; 0: each when it comes.
     after_s
         what was due by then has happened before.
+    until_s
+        orders after it are not taken, and none is read after the first of them.
     """
 
     def __init__(
@@ -33,11 +35,18 @@ class Script:
         *,
         batch_s: float = 0.0,
         after_s: float = -math.inf,
+        until_s: float = math.inf,
     ) -> None:
-        self._batch_s = batch_s
+        self._batch_s, self._until_s = batch_s, until_s
         self._events = sorted((e for e in events if e.at_s > after_s), key=lambda event: event.at_s)
         self._orders = (order for order in orders if order.at_s > after_s)
-        self._next = next(self._orders, None)
+        self._not_taken_from_s: float | None = None
+        self._next = self._read()
+
+    @property
+    def not_taken_from_s(self) -> float | None:
+        """When the first order comes that is not taken, as far as orders have been read; None: none so far."""
+        return self._not_taken_from_s
 
     @property
     def next_s(self) -> float:
@@ -49,13 +58,25 @@ class Script:
         while self._events and self._events[0].at_s <= now:
             yield self._events.pop(0)
         while self._next is not None and self._order_due_s <= now:
-            order, self._next = self._next, next(self._orders, None)
+            order, self._next = self._next, self._read()
             yield order
 
     def may_bring_work(self, *, open_tasks: bool, cut_off: bool) -> bool:
-        """Whether anything to come can bring work, a robot for what is open, or one that is cut off to its end."""
-        ahead = (*self._events, *([] if self._next is None else [self._next]))
-        return any(may_bring_work(event, open_tasks=open_tasks, cut_off=cut_off) for event in ahead)
+        """Whether anything to come can bring work, a robot for what is open, or one that is cut off to its end.
+
+        An order left can: what comes after it is not known before it is taken.
+        """
+        if self._next is not None:
+            return True
+        return any(may_bring_work(event, open_tasks=open_tasks, cut_off=cut_off) for event in self._events)
+
+    def _read(self) -> Event | None:
+        """The next order that is taken; None: there is none."""
+        order = next(self._orders, None)
+        if order is None or order.at_s <= self._until_s:
+            return order
+        self._not_taken_from_s = order.at_s
+        return None
 
     @property
     def _order_due_s(self) -> float:

@@ -49,11 +49,12 @@ class Standing:
     Parameters
     ----------
     until_s
-        until when it stays on duty, by the mission's clock; then it does what is open, and ends.
+        until when it stays on duty and takes orders, seconds by the mission's clock; then it does what is open, and
+        ends. None: until its last order; without orders until its tasks are done.
     orders
-        events in order of time, read as time goes on: new tasks, and tasks cancelled, moved or delayed. With the
-        objective `lateness` an order that says nothing else is due when it comes, so that what counts is how long
-        each takes.
+        events in order of time, read as time goes on: new tasks, and tasks cancelled, moved or delayed. Those after
+        `until_s` are not taken, so they may be endless. With the objective `lateness` an order that says nothing else
+        is due when it comes, so that what counts is how long each takes.
     improver
         searches in the background; None: what carries the mission out brings its own.
     searches
@@ -69,7 +70,7 @@ class Standing:
         if a time is negative.
     """
 
-    until_s: float = math.inf
+    until_s: float | None = math.inf
     orders: Iterable[Event] = ()
     improver: Improver | None = None
     searches: bool = True
@@ -78,8 +79,19 @@ class Standing:
 
     def __post_init__(self) -> None:
         for name in ("until_s", "keep_s", "batch_s"):
-            if not getattr(self, name) >= 0:
-                raise ParameterError(f"{name}: {getattr(self, name)}; expected seconds, at least 0")
+            value = getattr(self, name)
+            if value is not None and not value >= 0:
+                raise ParameterError(f"{name}: {value}; expected seconds, at least 0")
+
+    @property
+    def stays_until_s(self) -> float:
+        """Until when it stays on duty though all is done; 0: only for orders to come."""
+        return 0.0 if self.until_s is None else self.until_s
+
+    @property
+    def takes_orders_until_s(self) -> float:
+        """Until when it takes orders; inf: to the last."""
+        return math.inf if self.until_s is None else self.until_s
 
     @property
     def forgets(self) -> bool:
@@ -87,7 +99,7 @@ class Standing:
         return self.keep_s < math.inf
 
 
-UNTIL_DONE = Standing(until_s=0.0, keep_s=math.inf)
+UNTIL_DONE = Standing(until_s=None, keep_s=math.inf)
 """No standing fleet: the mission ends when its tasks are done, and all is remembered."""
 
 
