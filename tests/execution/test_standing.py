@@ -158,6 +158,23 @@ def test_a_cancelled_order_is_left_and_one_that_is_too_late_is_lost_with_a_reaso
     assert {one["task"]: one["reason"] for one in data(executor, "lost")}["far"].startswith("deadline: 20 s is over")
 
 
+def test_orders_that_were_lost_and_forgotten_are_listed_with_the_reason_the_last_twenty_of_them():
+    lost = [order(k, f"o{k}", 900, 0, deadline_s=k + 1) for k in range(25)]
+    executor = on_duty(fleet(1), [*lost, order(45, "a", 1, 0)], until_s=100.0)
+    report = report_of(executor.account)
+    assert report.tasks_done == ("a",)
+    assert report.orders.lost == 25
+    assert [task for task, _ in report.tasks_lost] == [f"o{k}" for k in range(5, 25)]
+    assert all(reason.startswith("deadline: ") for _, reason in report.tasks_lost)
+    assert report.tasks_forgotten == {"lost": 5}
+
+
+def test_of_an_id_that_is_used_again_what_was_lost_before_is_only_counted():
+    orders = [order(0, "a", 900, 0, deadline_s=1), order(50, "a", 1, 0)]
+    report = report_of(on_duty(fleet(1), orders, until_s=60.0).account)
+    assert (report.tasks_done, report.tasks_lost, report.tasks_forgotten) == (("a",), (), {"lost": 1})
+
+
 def test_orders_of_a_robot_that_fails_go_to_others_at_once():
     mission = replace(fleet(), events=(Event(at_s=3, robot_fails="r_1"),))
     executor = on_duty(mission, stream(10, every_s=0.1))
@@ -207,7 +224,21 @@ def test_orders_that_do_not_fit_are_refused_and_counted():
     orders = [order(0, "a", 1, 0), order(1, "a", 2, 0), order(1, "b", 2, 0, prerequisites=("nobody",))]
     executor = on_duty(fleet(1), [*orders, Event(at_s=2, cancel_task="c")], until_s=5.0)
     assert (executor.orders.taken, executor.orders.refused) == (1, 3)
-    assert all("expected" in one["reason"] for one in data(executor, "event_refused"))
+    assert [one["event"] for one in data(executor, "event_refused")][1:] == [
+        {"at_s": 1, "new_task": {"id": "b", "position": [2, 0], "prerequisites": ["nobody"]}},
+        {"at_s": 2, "cancel_task": "c"},
+    ]
+    listed = executor.orders.report(executor.now_s).last_refused
+    assert [(one.kind, one.id) for one in listed] == [("new_task", "a"), ("new_task", "b"), ("cancel_task", "c")]
+    assert [one.at_s for one in listed] == pytest.approx([1, 1, 2], abs=0.2)
+    assert all("expected" in one.reason for one in listed)
+
+
+def test_the_last_twenty_refused_orders_are_listed():
+    moves = [Event(at_s=k, delay_task=DelayedTask(task=f"o{k}", by_s=1)) for k in range(25)]
+    seen = on_duty(fleet(1), moves).orders.report(30.0)
+    assert seen.refused == 25
+    assert [one.id for one in seen.last_refused] == [f"o{k}" for k in range(5, 25)]
 
 
 def test_times_on_duty_are_checked():

@@ -1,6 +1,7 @@
 """A standing fleet in the kinematic world: the bench's hour in small, the same each time, and by the command."""
 
 import json
+import re
 from contextlib import closing
 from dataclasses import replace
 
@@ -8,6 +9,7 @@ import pytest
 
 import muster
 from muster.cli.main import run
+from muster.client.handles import report_from
 from muster.execution import Standing
 from muster.running.simulation import Simulation
 from muster_studies.benches.standing import fleet, most_per_hour, on_duty, orders
@@ -93,6 +95,41 @@ def test_the_command_says_which_orders_it_does_not_take(files, capsys):
     said = capsys.readouterr().out
     assert "orders            2: 2 done" in said
     assert "not taken         orders from 30.00 s on, after the end of duty" in said
+
+
+UNFIT = """
+{"at_s": 1, "new_task": {"id": "never", "position": [900, 0], "deadline_s": 2}}
+{"at_s": 2, "cancel_task": "nobody"}
+{"at_s": 50, "new_task": {"id": "a", "position": [1, 2]}}
+"""
+
+
+def test_each_refused_and_each_lost_order_has_a_line_with_the_reason(files, capsys):
+    (files / "unfit.jsonl").write_text(UNFIT, encoding="utf-8")
+    assert asked(files, "--orders", str(files / "unfit.jsonl")) == 0
+    said = capsys.readouterr().out
+    assert re.search(r'cancel_task nobody +2\.00 +task: "nobody"; expected the id of a task that there is', said)
+    assert re.search(r"never +deadline: 2 s is over", said)
+    assert "earlier" not in said
+    assert asked(files, "--orders", str(files / "unfit.jsonl"), "--format", "json") == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [(one["kind"], one["id"]) for one in data["orders"]["last_refused"]] == [("cancel_task", "nobody")]
+    assert [one["task"] for one in data["tasks_lost"]] == ["never"]
+    assert json.loads(json.dumps(report_from(data).as_dict())) == data
+
+
+def test_orders_that_are_not_listed_any_more_are_counted(files, capsys):
+    refused = [json.dumps({"at_s": k, "cancel_task": f"r{k}"}) for k in range(23)]
+    late = {"position": [900, 0], "deadline_s": 30}
+    lost = [json.dumps({"at_s": 23, "new_task": {"id": f"l{k}", **late}}) for k in range(21)]
+    last = json.dumps({"at_s": 95, "new_task": {"id": "a", "position": [1, 2]}})
+    (files / "many.jsonl").write_text("\n".join([*refused, *lost, last]), encoding="utf-8")
+    assert asked(files, "--orders", str(files / "many.jsonl")) == 0
+    said = capsys.readouterr().out
+    assert "refused earlier   3 orders, not listed" in said
+    assert "lost earlier      1 task, not listed" in said
+    assert " r2 " not in said
+    assert "cancel_task r3 " in said
 
 
 @pytest.mark.parametrize(

@@ -55,9 +55,8 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
         click.echo(f"planned           of robots: by the plan that the mission began with{of_tasks}")
     if with_tasks:
         _print_tasks(report, unit)
-    lost = [(row["task"], str(row.get("reason", "-"))) for row in report.get("tasks_lost", ())]
-    if lost:
-        print_table(("task lost", "reason"), lost)
+    _print_refused(report.get("orders"))
+    _print_lost(report)
     for task, robots in report.get("done_twice", {}).items():
         click.echo(f"{'done twice':<17} {task}, by {', '.join(robots)}")
     _print_found(report, mission)
@@ -106,6 +105,29 @@ def _print_orders(orders: Report | None) -> None:
     for name, value in rows.items():
         if value:
             click.echo(f"{name:<17} {value}")
+
+
+def _print_refused(orders: Report | None) -> None:
+    """Print each order that did not fit, and why."""
+    if not orders or not orders.get("refused"):
+        return
+    rows = [
+        (f"{row.get('kind', 'order')} {row['id']}", number(row.get("at_s")), str(row.get("reason", "-")))
+        for row in orders.get("last_refused", ())
+    ]
+    if rows:
+        print_table(("order refused", "at [s]", "reason"), rows, right=("at [s]",))
+    if more := orders["refused"] - len(rows):
+        click.echo(f"{'refused earlier':<17} {counted(more, 'order')}, not listed")
+
+
+def _print_lost(report: Report) -> None:
+    """Print each task that was lost, and why."""
+    rows = [(row["task"], str(row.get("reason", "-"))) for row in report.get("tasks_lost", ())]
+    if rows:
+        print_table(("task lost", "reason"), rows)
+    if more := report.get("tasks_forgotten", {}).get("lost", 0):
+        click.echo(f"{'lost earlier':<17} {counted(more, 'task')}, not listed")
 
 
 def _not_taken(orders: Report) -> str:

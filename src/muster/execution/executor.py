@@ -231,7 +231,7 @@ class Executor:
         try:
             self.report(event, reason)
         except ParameterError as error:
-            self.emit("event_refused", {"reason": str(error)})
+            self.emit("event_refused", {"event": plain(event), "reason": str(error)})
             return False
         return True
 

@@ -2,11 +2,43 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from muster.execution.quantiles import Quantiles
+
+KEPT_REFUSED = 20
+"""How many refused orders are listed: the last ones."""
+
+
+@dataclass(frozen=True)
+class RefusedOrder:
+    """An order that did not fit.
+
+    Parameters
+    ----------
+    at_s
+        when it was refused, seconds by the mission's clock.
+    kind, id
+        what it was, as in a mission file, such as `cancel_task`; and of which task.
+    reason
+        field, value, and what was expected.
+    """
+
+    at_s: float
+    kind: str
+    id: str
+    reason: str
+
+    @classmethod
+    def of(cls, event: Mapping[str, Any], reason: str, now: float) -> RefusedOrder:
+        """From an event as in a mission file."""
+        kind, what = next((key, value) for key, value in event.items() if key != "at_s")
+        if isinstance(what, Mapping):
+            what = what["id"] if "id" in what else what["task"]
+        return cls(now, kind, what, reason)
 
 
 @dataclass(frozen=True)
@@ -47,6 +79,8 @@ class OrdersReport:
     not_taken_from_s
         when the first order comes that is not taken, as the fleet is on duty no longer then, seconds by the mission's
         clock; None: no such order is known.
+    last_refused
+        the last orders that were refused, at most 20, in order of time; why orders were lost is in `Report.tasks_lost`.
     """
 
     taken: int
@@ -62,6 +96,7 @@ class OrdersReport:
     improved: int
     clock_lag: Seconds | None = None
     not_taken_from_s: float | None = None
+    last_refused: tuple[RefusedOrder, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
@@ -81,6 +116,7 @@ class Orders:
     until_in_route: Quantiles = field(default_factory=Quantiles)
     until_done: Quantiles = field(default_factory=Quantiles)
     clock_lag: Quantiles = field(default_factory=Quantiles)
+    last_refused: deque[RefusedOrder] = field(default_factory=lambda: deque(maxlen=KEPT_REFUSED))
     _open: dict[str, float] = field(default_factory=dict)  # by order when it came
     _waiting: dict[str, float] = field(default_factory=dict)  # those that have been in no route yet
     _came_s: dict[str, float] = field(default_factory=dict)  # of orders that are about to be taken
@@ -99,6 +135,7 @@ class Orders:
             self.improved += any(cause["kind"] == IMPROVED for cause in data["causes"])
         elif kind == "event_refused":
             self.refused += 1
+            self.last_refused.append(RefusedOrder.of(data["event"], data["reason"], now))
             self._came_s.clear()
         elif kind in ("ends", "cancel_task", "lost") and data["task"] in self._open:
             self._close(data["task"], kind, now)
@@ -121,6 +158,7 @@ class Orders:
             improved=self.improved,
             clock_lag=Seconds.of(self.clock_lag) if self.clock_lag.count else None,
             not_taken_from_s=not_taken_from_s,
+            last_refused=tuple(self.last_refused),
         )
 
     def _take_order(self, task: str, now: float) -> None:

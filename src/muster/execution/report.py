@@ -163,7 +163,8 @@ class Report:
         from the beginning until the last robot was done, at its end if it has one; `starts_s` and `ends_s` are of
         tasks done, by the mission's clock.
     tasks_done, tasks_lost
-        in order of completion; and every other task, with the reason.
+        in order of completion; and every other task, with the reason. A standing fleet lists the tasks that it
+        remembers, and the last 20 that were lost before.
     contacts, min_distance_m
         how often two robots touched, and the least distance between their centres, None for one robot; both None where
         nobody measured it.
@@ -278,7 +279,7 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
     return Report(
         mission_time_s=account.mission_time_s,
         tasks_done=tuple(done),
-        tasks_lost=tuple(account.lost.items()),
+        tasks_lost=(*ledger.lost_and_forgotten.items(), *account.lost.items()),
         contacts=contacts,
         min_distance_m=min_distance_m,
         waiting_s=ledger.waiting_s + account.traffic.waiting_s,
@@ -342,8 +343,10 @@ def _waiting_by_cause(account: Account) -> dict[str, float]:
 
 
 def _forgotten(ledger: Ledger) -> dict[str, int]:
+    """How many forgotten tasks are in no list."""
     sums = ledger.retired
-    return {name: count for name in ("done", "cancelled", "lost") if (count := getattr(sums, name))}
+    counts = {"done": sums.done, "cancelled": sums.cancelled, "lost": sums.lost - len(ledger.lost_and_forgotten)}
+    return {name: count for name, count in counts.items() if count}
 
 
 def _objective(account: Account) -> ObjectiveReport:

@@ -161,14 +161,15 @@ class Forgetting:
             return
         self._look_s = now + LOOK_S
         in_routes = {name for state in self.crew.values() for name in state.route}
-        gone = self.ledger.settled(now - self.keep_s) - in_routes - self._last_done()
+        settled = self.ledger.settled(now - self.keep_s) - in_routes - self._last_done()
+        gone = [name for name in self.ledger.tasks if name in settled]
         for name in gone:
             if name not in self.ledger.ends_s and name not in self.ledger.cancelled:
                 yield name, self.ledger.expired[name]
         self.ledger.retire(gone)
         self.forecast.forget()
         for state in self.crew.values():
-            state.done = [name for name in state.done if name not in gone]
+            state.done = [name for name in state.done if name not in settled]
 
     def _last_done(self) -> set[str]:
         """The last task of each robot, from which its way to the next is counted."""

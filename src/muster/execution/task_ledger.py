@@ -17,6 +17,8 @@ TIME_ROUNDING_S = 1e-6
 """By which a time may be past a limit: clocks add up steps."""
 MOST_NAMED = 3
 """Robots that a reason names, and one more."""
+KEPT_LOST = 20
+"""How many tasks that were lost and forgotten are still listed with the reason: the last ones."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,8 @@ class Retired:
         the sum over tasks done.
     last_end_s
         when the last of them ended.
+    last_lost
+        the last that were lost, and why; as people ask for these, they are listed still.
     """
 
     done: int = 0
@@ -56,6 +60,15 @@ class Retired:
     lateness: float = 0.0
     arrival_usage: float = 0.0
     last_end_s: float = 0.0
+    last_lost: dict[str, str] = field(default_factory=dict)
+
+    def lose(self, task: str, reason: str) -> None:
+        """A task that was lost is forgotten."""
+        self.lost += 1
+        self.last_lost.pop(task, None)  # an earlier one of that id: the last comes last
+        self.last_lost[task] = reason
+        if len(self.last_lost) > KEPT_LOST:
+            del self.last_lost[next(iter(self.last_lost))]
 
 
 @dataclass
@@ -164,6 +177,11 @@ class Ledger:
         lost = {name: f"cancelled at {round(at_s, 1):g} s" for name, at_s in self.cancelled.items()}
         lost |= {task.id: why(task.id) + _out(task, gone) for task in self.open if task.id not in under_way}
         return {name: lost[name] for name in self.tasks if name in lost}
+
+    @property
+    def lost_and_forgotten(self) -> dict[str, str]:
+        """The last tasks that were lost and forgotten, and why; without those whose id has been used again."""
+        return {task: reason for task, reason in self.retired.last_lost.items() if task not in self.tasks}
 
     @property
     def waiting_s(self) -> float:
@@ -290,7 +308,7 @@ class Ledger:
         elif task in self.cancelled:
             sums.cancelled += 1
         else:
-            sums.lost += 1
+            sums.lose(task, self.expired[task])
 
 
 def _referred_to(task: Task) -> tuple[str, ...]:
