@@ -42,6 +42,41 @@ def test_as_many_robots_fit_on_a_lane_as_its_capacity_and_length_say(capacity, p
     assert len(heads) == pieces
 
 
+def at_corner(degrees, **lane):
+    """A lane of 8 m to a corner and one of 4 m out of it, with so many degrees between the two."""
+    angle = np.radians(degrees)
+    nodes = {"a": (8, 0), "b": (0, 0), "c": (4 * np.cos(angle), 4 * np.sin(angle))}
+    return Lanes(nodes=nodes, edges=(Lane(start="a", end="b", **lane), Lane(start="b", end="c", **lane)))
+
+
+@pytest.mark.parametrize("both_ways", [False, True])
+@pytest.mark.parametrize("degrees", [3, 20, 40, 60, 75, 90, 135])
+def test_who_stops_before_a_sharp_corner_is_out_of_the_way_of_who_leaves_it(degrees, both_ways):
+    graph = at_corner(degrees, both_ways=both_ways)
+    roadmap = Roadmap.of_lanes(graph, RADIUS)
+    inner = shapely.points(roadmap.points[3:])
+    own, other = (shapely.LineString([graph.nodes[lane.start], graph.nodes[lane.end]]) for lane in graph.edges)
+    on_own = shapely.distance(inner, own) < 1e-9
+    assert on_own.any()
+    assert shapely.distance(inner[on_own], other).min() >= roadmap.reach
+    assert shapely.distance(inner[~on_own], own).min(initial=np.inf) >= roadmap.reach
+
+
+def test_stops_go_no_farther_back_from_a_corner_than_they_must():
+    """At a right angle they are as far apart as on a straight lane; a short lane is in the way only where it is."""
+    right = Roadmap.of_lanes(at_corner(90), RADIUS).points[3:]
+    np.testing.assert_allclose(np.sort(right[right[:, 1] == 0.0, 0]), np.arange(1, 12) * 8 / 12)
+    for degrees, clear_m in ((30, 0.62 / np.sin(np.radians(30))), (0, 4.62)):
+        inner = Roadmap.of_lanes(at_corner(degrees), RADIUS).points[3:]
+        first_m = inner[inner[:, 1] == 0.0, 0].min()
+        assert clear_m <= first_m < clear_m + 0.15
+
+
+def test_lanes_between_the_same_nodes_take_no_stops_of_each_other():
+    graph = lanes({"start": "a", "end": "b"}, {"start": "b", "end": "a"})
+    assert len(Roadmap.of_lanes(graph, RADIUS).edges) == 16
+
+
 def test_lanes_have_their_speed_and_the_room_to_spare():
     given = (
         {"start": "a", "end": "b", "capacity": 1, "speed_mps": 0.5, "width_m": 1.0},

@@ -21,6 +21,8 @@ _WHOLE = 1e-9
 """Of a lane's length: as many robots fit as do, whatever float64 says."""
 _ON_LANE_M = 0.05
 """Who stands no farther from the middle of a lane drives on it."""
+_CLEAR = 1 + 1e-6
+"""Who stops beside another lane keeps clear of it whatever float64 says."""
 _JUST_ON_M = 1e-3
 """A place that is no farther from it is a point of the lane: all who drive there come by it."""
 
@@ -57,7 +59,9 @@ def lane_network(
     """The directed network of the lanes that robots of a radius can drive, and the greatest speed (m,) on its edges.
 
     A lane for several robots has points at which they may stop one behind the other: as many less one as may be on it.
-    Places on it are such points.
+    Who stops there is out of the way of all who drive another lane to or from its nodes: one that waits for somebody
+    in a sharp corner would else stand in the way by which that one is to leave, and one-way it cannot go back. Places
+    on a lane are such points wherever they are.
 
     Parameters
     ----------
@@ -79,11 +83,10 @@ def lane_network(
     edges: list[tuple[int, int]] = []
     clearance: list[float] = []
     speeds: list[float] = []
-    apart_m = max(apart_m, sum(_length_m(lanes, lane) for lane in lanes.edges) / most_points)
+    spacing_m = max(apart_m, sum(_length_m(lanes, lane) for lane in lanes.edges) / most_points)
+    drivable = [lane for number, lane in enumerate(lanes.edges) if number not in closed]
     own: dict[int, int] = {}  # of places on lanes, their points
-    for number, lane in enumerate(lanes.edges):
-        if number in closed:
-            continue
+    for lane in drivable:
         start, end = points[numbers[lane.start]], points[numbers[lane.end]]
         inner: list[tuple[float, int]] = []
         for place, share in _places_on(start, end, places):
@@ -91,7 +94,8 @@ def lane_network(
                 own[place] = len(points)
                 points.append(places[place])
             inner.append((share, own[place]))
-        for share in _shares_between(start, end, lane.capacity, apart_m, [share for share, _ in inner]):
+        stretch = _Stretch.of(lanes, lane, drivable, apart_m)
+        for share in stretch.shares(lane.capacity, spacing_m, [share for share, _ in inner]):
             inner.append((share, len(points)))
             points.append(start + share * (end - start))
         stops = [numbers[lane.start], *(point for _, point in sorted(inner)), numbers[lane.end]]
@@ -138,20 +142,63 @@ def _places_on(start: Floats, end: Floats, places: Floats) -> list[tuple[int, fl
     return [(int(place), float(shares[place])) for place in between]
 
 
-def _shares_between(
-    start: Floats, end: Floats, capacity: int | None, apart_m: float, taken: Sequence[float]
-) -> list[float]:
-    """Where, as shares of its length, robots may stop on a lane: evenly apart, without the next to each that is taken.
+@dataclass(frozen=True)
+class _Stretch:
+    """The part of a lane that robots share evenly; metres from where the lane begins."""
 
-    So no more robots stop on a lane with places than on one without.
-    """
-    fitting = max(1, math.floor(float(np.linalg.norm(end - start)) / apart_m * (1 + _WHOLE)))
-    pieces = fitting if capacity is None else min(capacity, fitting)
-    shares = [k / pieces for k in range(1, pieces)]
-    for at in taken:
-        if shares:
-            shares.remove(min(shares, key=lambda share: abs(share - at)))
-    return shares
+    begin_m: float
+    end_m: float
+    lane_m: float
+
+    @classmethod
+    def of(cls, lanes: Lanes, lane: Lane, others: Sequence[Lane], apart_m: float) -> _Stretch:
+        """All of the lane, but for what the other lanes at its nodes take of it."""
+        long_m = _length_m(lanes, lane)
+        taken = [_taken_m(lanes, lane, node, others, apart_m) for node in (lane.start, lane.end)]
+        return cls(taken[0], long_m - taken[1], long_m)
+
+    def shares(self, capacity: int | None, apart_m: float, taken: Sequence[float]) -> list[float]:
+        """Where, as shares of the lane, robots may stop: evenly apart, without the next to each that is taken.
+
+        So no more robots stop on a lane with places than on one without.
+        """
+        long_m = self.end_m - self.begin_m
+        fitting = max(1, math.floor(long_m / apart_m * (1 + _WHOLE)))
+        pieces = fitting if capacity is None else min(capacity, fitting)
+        shares = [(self.begin_m + k / pieces * long_m) / self.lane_m for k in range(1, pieces)]
+        for at in taken:
+            if shares:
+                shares.remove(min(shares, key=lambda share: abs(share - at)))
+        return shares
+
+
+def _taken_m(lanes: Lanes, lane: Lane, node: str, others: Sequence[Lane], apart_m: float) -> float:
+    """How much farther than `apart_m` from one of its nodes a lane is clear of all other lanes there."""
+    at, own = np.array(lanes.nodes[node][:2]), {lane.start, lane.end}
+    (far,) = own - {node}
+    along = (np.array(lanes.nodes[far][:2]) - at) / _length_m(lanes, lane)
+    taken_m = 0.0
+    for other in others:
+        ends = {other.start, other.end}
+        if node in ends and ends != own:
+            (beyond,) = ends - {node}
+            way = np.array(lanes.nodes[beyond][:2]) - at
+            taken_m = max(taken_m, _clear_from_m(along, way, apart_m) - apart_m)
+    return taken_m
+
+
+def _clear_from_m(along: Floats, way: Floats, apart_m: float) -> float:
+    """How far along a direction (2,), from the beginning of a straight way (2,), all is `apart_m` from that way."""
+    way_m = float(np.linalg.norm(way))
+    forward = float(along @ way) / way_m
+    if forward <= _WHOLE:
+        return apart_m
+    aside = abs(float(along[0] * way[1] - along[1] * way[0])) / way_m
+    clear_m = apart_m * _CLEAR
+    if clear_m * forward <= way_m * aside:
+        return clear_m / aside
+    # It is clear only beyond the end of the way.
+    return way_m * forward + math.sqrt(clear_m**2 - (way_m * aside) ** 2)
 
 
 def _clearance(lane: Lane, radius_m: float, *, known: bool) -> float:
