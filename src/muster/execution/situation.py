@@ -48,7 +48,8 @@ def remaining_mission_of(
     present = [state for state in crew.values() if not state.out]
     under_way = {state.route[0] for state in present if state.activity is Activity.WORKING}
     left = [task for task in ledger.open if task.id not in under_way]
-    robots = {name: state.robot for name, state in crew.items()}
+    robots = {robot.id: robot for robot in mission.robots}  # also those that have an executor of their own
+    robots |= {name: state.robot for name, state in crew.items()}
     bindings = {task.id: binding_of(task.id, ledger, under_way, robots) for task in left}
     return RemainingMission(
         mission=mission,

@@ -309,6 +309,16 @@ def test_what_can_never_begin_any_more_is_cancelled_with_its_reason():
     assert team.times("window_missed") + team.times("task_refused") == {"near": 1}
 
 
+def test_a_robot_plans_again_after_another_has_done_what_only_the_same_may_go_on_with():
+    dig, fill = Task(id="dig", position=(5, 0)), Task(id="fill", position=(10, 0), same_robot_as=("dig",), duration_s=9)
+    scan = Task(id="scan", position=(30, 0), duration_s=20.0)
+    robots = tuple(Robot(id=name, position=(x, 0)) for name, x in (("a", 0), ("b", 40)))
+    team = SimulatedTeam(Mission(robots=robots, tasks=(dig, fill, scan)))
+    assert team.run(20.0, lambda: team.times("ends")["dig"] == 1)
+    team.controls["b"].take_event(Event(at_s=0, new_task=Task(id="new", position=(39, 0))))
+    assert ends(team) == {"dig": 1, "fill": 1, "scan": 1, "new": 1}
+
+
 def test_a_robot_that_comes_late_takes_tasks():
     mission = square(tasks=20)
     team = SimulatedTeam(mission, later=["r_3"])
