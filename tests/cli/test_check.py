@@ -202,6 +202,15 @@ def test_a_robot_that_would_have_to_do_more_tasks_than_there_are_is_a_warning(mu
     assert "min_tasks" not in muster("check", "two.yaml", "--ignore", "min-tasks")[2]
 
 
+def test_robots_that_touch_where_they_start_are_a_warning(muster):
+    bodies = "200, radius_m: 0.3}\n  - {id: r_1, position: [2, 0], radius_m: 0.3}\n  - {id: r_2, position: [2, 0.5], radius_m: 0.3}"
+    Path("two.yaml").write_text(TWO.replace("CAPACITY}", bodies), encoding="utf-8")
+    code, _, err = muster("check", "two.yaml")
+    assert (code, err) == (0, "warning: robots r_1 and r_2 start 0.5 m apart, and touch below 0.6 m\n")
+    Path("two.yaml").write_text(TWO.replace("CAPACITY}", bodies.replace("[2, 0.5]", "[2, 0]")), encoding="utf-8")
+    assert "start 0 m apart" in muster("check", "two.yaml")[2]
+
+
 SWAP = """\
 schema: muster/1
 name: swap

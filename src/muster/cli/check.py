@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import click
@@ -95,6 +97,7 @@ def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[st
         _print_checked(mission, lost, len(errors))
         if "min-tasks" not in ignored_rules(ignore):
             _print_never_used(mission)
+        _print_touching(mission)
         _print_unseen(found.unseen, errors)
         _print_blocked(found.blocked)
         if len(lost) < len(mission.tasks):
@@ -143,6 +146,20 @@ def _print_never_used(mission: Mission) -> None:
         if robot.min_tasks > len(mission.tasks):
             least = f"min_tasks {robot.min_tasks}, and the mission has {tasks}"
             click.echo(f"warning: robot {robot.id}: {least}: it does none", err=True)
+
+
+def _print_touching(mission: Mission) -> None:
+    """Print on standard error that robots of one kind touch where they start."""
+    touching = [
+        (a, b)
+        for a, b in combinations(mission.robots, 2)
+        if a.kind == b.kind and math.dist(a.position, b.position) < a.radius_m + b.radius_m
+    ]
+    if touching:
+        (a, b), more = touching[0], len(touching) - 1
+        where = f"start {math.dist(a.position, b.position):g} m apart, and touch below {a.radius_m + b.radius_m:g} m"
+        others = f"; so do {counted(more, 'more pair')}" if more else ""
+        click.echo(f"warning: robots {a.id} and {b.id} {where}{others}", err=True)
 
 
 def _print_together(found: Together, tasks: str) -> None:
