@@ -241,10 +241,30 @@ def test_the_last_twenty_refused_orders_are_listed():
     assert [one.id for one in seen.last_refused] == [f"o{k}" for k in range(5, 25)]
 
 
-def test_times_on_duty_are_checked():
-    for wrong in ({"until_s": -1.0}, {"keep_s": math.nan}, {"batch_s": -0.1}):
-        with pytest.raises(ParameterError, match="expected seconds, at least 0"):
-            Standing(**wrong)
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"until_s": -1.0}, "until_s: -1.0; expected a number of at least 0, or None"),
+        ({"until_s": "x"}, 'until_s: "x"; expected a number of at least 0, or None'),
+        ({"keep_s": math.nan}, "keep_s: nan; expected a number of at least 0"),
+        ({"keep_s": "x"}, 'keep_s: "x"; expected a number of at least 0'),
+        ({"keep_s": None}, "keep_s: null; expected a number of at least 0"),
+        ({"keep_s": True}, "keep_s: true; expected a number of at least 0"),
+        ({"batch_s": -0.1}, "batch_s: -0.1; expected a finite number of at least 0"),
+        ({"batch_s": math.inf}, "batch_s: inf; expected a finite number of at least 0"),
+        ({"orders": 5}, "orders: 5; expected an iterable of events"),
+        ({"orders": [order(1, "a", 1, 1), "x"]}, 'orders: number 2: "x"; expected an Event'),
+    ],
+)
+def test_what_a_fleet_on_duty_is_given_is_checked(wrong, message):
+    with pytest.raises(ParameterError) as refused:
+        Standing(**wrong)
+    assert str(refused.value) == message
+
+
+def test_orders_that_are_no_events_are_refused_when_they_are_read():
+    with pytest.raises(ParameterError, match=r'^orders: number 2: "x"; expected an Event$'):
+        on_duty(fleet(), iter([order(1, "a", 1, 1), "x"]))
 
 
 def test_a_script_reads_orders_one_ahead_and_gives_them_in_batches():

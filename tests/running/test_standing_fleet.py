@@ -2,6 +2,7 @@
 
 import json
 import re
+import threading
 from contextlib import closing
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ import pytest
 
 import muster
 from muster.cli.main import run
+from muster.cli.report_tables import print_report
 from muster.client.handles import report_from
 from muster.execution import Standing
 from muster.running.simulation import Simulation
@@ -116,6 +118,25 @@ def test_each_refused_and_each_lost_order_has_a_line_with_the_reason(files, caps
     assert [(one["kind"], one["id"]) for one in data["orders"]["last_refused"]] == [("cancel_task", "nobody")]
     assert [one["task"] for one in data["tasks_lost"]] == ["never"]
     assert json.loads(json.dumps(report_from(data).as_dict())) == data
+
+
+def test_interrupted_it_counts_the_open_orders_among_the_tasks(files, capsys):
+    mission, halt = muster.load(files / "fleet.yaml"), threading.Event()
+
+    def halt_when_ordered(event):
+        if event.kind == "new_task":
+            halt.set()
+
+    plan, standing = muster.solve(mission, "greedy"), Standing(orders=[event_of("a", 9, 9)])
+    report = muster.simulate(mission, plan, standing=standing, on_event=halt_when_ordered, halt=halt)
+    print_report(report.as_dict(), mission, with_tasks=False)
+    said = capsys.readouterr().out
+    assert "tasks done        0 of 2" in said
+    assert "orders            1: 1 open" in said
+
+
+def event_of(name, *place):
+    return muster.Event(at_s=0.5, new_task=muster.Task(id=name, position=place))
 
 
 def test_orders_that_are_not_listed_any_more_are_counted(files, capsys):

@@ -77,7 +77,8 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
     forgotten = report.get("tasks_forgotten", {})
     done = len(report.get("tasks_done", ())) + forgotten.get("done", 0)
     lost = len(report.get("tasks_lost", ())) + forgotten.get("lost", 0) + forgotten.get("cancelled", 0)
-    known = max(done + lost, len(mission.tasks))  # more than these two if it was interrupted
+    came = (report.get("orders") or {}).get("taken", 0)
+    known = max(done + lost, len(mission.tasks) + came)  # more than these two if it was interrupted
     for name, value in (
         ("mission time", f"{number(report.get('mission_time_s'))} s"),
         ("tasks done", f"{done} of {known}"),

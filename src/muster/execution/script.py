@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 
 from muster.execution.changes import may_bring_work
+from muster.mission.errors import ParameterError
 from muster.mission.model import Event
+from muster.mission.value_types import shown
 
 _ROUNDING = 1e-9  # of a batch, by which an order may be past its end
 
@@ -26,6 +28,11 @@ class Script:
         what was due by then has happened before.
     until_s
         orders after it are not taken, and none is read after the first of them.
+
+    Raises
+    ------
+    ParameterError
+        if an order is no event, when it is read: the first here, the next ones by `due`.
     """
 
     def __init__(
@@ -39,7 +46,7 @@ class Script:
     ) -> None:
         self._batch_s, self._until_s = batch_s, until_s
         self._events = sorted((e for e in events if e.at_s > after_s), key=lambda event: event.at_s)
-        self._orders = (order for order in orders if order.at_s > after_s)
+        self._orders = (order for order in checked_orders(orders) if order.at_s > after_s)
         self._not_taken_from_s: float | None = None
         self._next = self._read()
 
@@ -85,3 +92,17 @@ class Script:
         if self._batch_s == 0:
             return self._next.at_s
         return math.ceil(self._next.at_s / self._batch_s - _ROUNDING) * self._batch_s
+
+
+def checked_orders(orders: Iterable[Event]) -> Iterator[Event]:
+    """The orders, each checked when it is read.
+
+    Raises
+    ------
+    ParameterError
+        if one is no event: which, counted from 1.
+    """
+    for number, order in enumerate(orders, 1):
+        if not isinstance(order, Event):
+            raise ParameterError(f"orders: number {number}: {shown(order)}; expected an Event")
+        yield order

@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol, overload
+from numbers import Real
+from typing import Any, Protocol, overload
 
 from muster.execution.forecast import Forecast
 from muster.execution.record import ExecutionEvent
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.robot_state import RobotState
+from muster.execution.script import checked_orders
 from muster.execution.task_ledger import Ledger
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
+from muster.mission.value_types import shown
 
 KEEP_S, KEPT_EVENTS, KEPT_REVISIONS, LOOK_S = 300.0, 2_000, 10, 30.0
 """How long tasks that are done are remembered; how many events and plans are; seconds between two looks at them."""
@@ -67,7 +70,8 @@ class Standing:
     Raises
     ------
     ParameterError
-        if a time is negative.
+        if a time is no number or negative, `batch_s` is infinite, or `orders` is not iterable. Orders of a list or
+        tuple that are no events are refused here, those of another iterable when they are read.
     """
 
     until_s: float | None = math.inf
@@ -78,10 +82,15 @@ class Standing:
     batch_s: float = BATCH_S
 
     def __post_init__(self) -> None:
-        for name in ("until_s", "keep_s", "batch_s"):
-            value = getattr(self, name)
-            if value is not None and not value >= 0:
-                raise ParameterError(f"{name}: {value}; expected seconds, at least 0")
+        if self.until_s is not None:
+            _require_seconds("until_s", self.until_s, "a number of at least 0, or None")
+        _require_seconds("keep_s", self.keep_s, "a number of at least 0")
+        _require_seconds("batch_s", self.batch_s, "a finite number of at least 0", finite=True)
+        if not isinstance(self.orders, Iterable):
+            raise ParameterError(f"orders: {shown(self.orders)}; expected an iterable of events")
+        if isinstance(self.orders, list | tuple):  # an iterator must not be read ahead
+            for _ in checked_orders(self.orders):
+                pass
 
     @property
     def stays_until_s(self) -> float:
@@ -97,6 +106,12 @@ class Standing:
     def forgets(self) -> bool:
         """Whether anything is ever forgotten."""
         return self.keep_s < math.inf
+
+
+def _require_seconds(name: str, value: Any, expected: str, *, finite: bool = False) -> None:
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
+    if not is_number or not value >= 0 or (finite and value == math.inf):
+        raise ParameterError(f"{name}: {shown(value)}; expected {expected}")
 
 
 UNTIL_DONE = Standing(until_s=None, keep_s=math.inf)
