@@ -7,6 +7,7 @@ from tests.execution.test_executor import carried_out, plan_of
 from tests.execution.world import World, carry_out
 
 from muster import Mission, Robot, Rules, Task
+from muster.execution.completed_work import CompletedTask, CompletedWork
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Revision
 from muster.execution.report import report_of
@@ -120,6 +121,47 @@ def test_tasks_begin_together():
     report = report_of(carried_out(mission, plan_of(r_0=["a"], r_1=["b"]), replan=keeping).account)
     assert report.starts_s["a"] == report.starts_s["b"] == pytest.approx(30, abs=NEAR)
     assert report.ends_s["b"] < report.ends_s["a"]
+
+
+@pytest.mark.parametrize(
+    ("rule", "latest_s"),
+    [({"starts_with": ("c",)}, 0.0), ({"prerequisites": ("c",), "lags": {"c": Lag(within_s=15)}}, 25.0)],
+)
+def test_a_robot_on_the_way_to_a_task_waits_for_what_is_ordered_meanwhile(rule, latest_s):
+    """Its order held the work, as nothing kept the task from beginning at once."""
+    order = Event(at_s=2.0, new_task=task("order", x=100.0, **rule))
+    mission = mission_of(task("c", x=10.0), events=[order])
+    executor = carried_out(mission, plan_of(r_0=["c"], r_1=[]))
+    report = report_of(executor.account)
+    assert not executor.lost()
+    assert 0.0 <= report.starts_s["order"] - report.starts_s["c"] <= latest_s
+    assert report.starts_s["order"] == pytest.approx(102, abs=2.0)
+
+
+@pytest.mark.parametrize(
+    ("at_s", "over"), [(5.0, "which has begun"), (15.0, "which is done"), (17.0, "which is cancelled")]
+)
+def test_an_order_that_comes_too_late_to_begin_with_another_task_is_lost_and_nothing_else(at_s, over):
+    """Neither the team's task, nor one that the order would begin with too."""
+    partner = "gone" if over == "which is cancelled" else "c"
+    events = [
+        Event(at_s=1.0, cancel_task="gone"),
+        Event(at_s=at_s, new_task=task("order", x=3.0, starts_with=(partner, "later"))),
+    ]
+    lift, later = task("lift", x=30.0, robots_needed=2), task("later", x=40.0)
+    mission = mission_of(task("c"), task("gone"), lift, later, events=events)
+    executor = carried_out(mission, plan_of(r_0=["c", "gone", "lift", "later"], r_1=["lift"]))
+    why = f"relation: begins with {partner}, {over}"
+    assert executor.ledger.ends_s.keys() == {"c", "lift", "later"}
+    assert [revision.left_out for revision in executor.revisions] == [{}, {"order": why}]
+
+
+def test_what_was_too_late_to_begin_with_another_task_is_so_when_the_mission_goes_on():
+    mission = mission_of(task("c"), task("order", x=3.0, starts_with=("c",)), task("lift", x=9.0, robots_needed=2))
+    done = CompletedTask(robot="r_0", arrives_s=1, starts_s=1, ends_s=11, arrival_usage=1.0, usage=(1.0, 1.0))
+    past = CompletedWork(done={"c": done})
+    executor = carried_out(mission, plan_of(r_0=["c", "order", "lift"], r_1=["lift"]), past=past)
+    assert executor.lost() == {"order": "relation: begins with c, which is done"}
 
 
 def test_work_begins_a_while_after_the_prerequisite_has_ended():

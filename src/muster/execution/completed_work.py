@@ -62,6 +62,9 @@ class CompletedWork:
                     crew[robot].done.append(task)
                     crew[robot].at_home = False
         ledger.cancelled.update(self.cancelled)
+        for open_task in ledger.open:
+            if late := ledger.too_late_to_begin_with(ledger.unit(open_task.id)):
+                ledger.expired[open_task.id] = late
         ledger.delays_s.update(self.delays_s)
         for task, why in self.barred.items():
             for robot in crew:

@@ -118,15 +118,22 @@ class Dispatch:
         state.aside_until_s = until_s
 
     def take_route(self, state: RobotState, tasks: Sequence[str], now: float) -> None:
-        """Give a robot another route; it goes on with its work, and with its path if that leads to the same task."""
+        """Give a robot another route; it goes on with its work, and with its order if that is for the same task.
+
+        An order that holds work is none for a task that has meanwhile got more to wait for, such as one to begin with.
+        """
         if state.activity is Activity.WORKING:
             state.route = [state.route[0], *tasks]
             return
-        kept = state.route[:1] == list(tasks[:1])
+        kept = state.route[:1] == list(tasks[:1]) and not self._begins_unasked(state)
         if state.activity in (Activity.DRIVING, Activity.WAITING) and not kept:
             self._leave_task(state, state.route[0], now)
         state.route = list(tasks)
         state.warned_of = state.warned_of if kept else ""
+
+    def _begins_unasked(self, state: RobotState) -> bool:
+        """Whether a robot on the way would begin its task at once, and the task must wait for more than it did."""
+        return state.activity is Activity.DRIVING and state.works and self._beginning.must_ask(state.route[0])
 
     def refuse(self, state: RobotState, task: str, reason: str, now: float) -> Iterator[Change]:
         """A robot cannot do a task of its route: it is never given it again."""

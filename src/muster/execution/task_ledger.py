@@ -114,9 +114,24 @@ class Ledger:
         return ledger
 
     def add(self, task: Task) -> None:
-        """A task that there is from now on."""
-        self.tasks[task.id] = task_as_it_holds(task, self.ignored)
+        """A task that there is from now on.
+
+        One that comes too late to begin with another can never begin. It is tied to none: no other waits for it.
+        """
+        task = task_as_it_holds(task, self.ignored)
+        if late := self.too_late_to_begin_with(task.starts_with):
+            self.expired[task.id] = late
+            task = replace(task, starts_with=())
+        self.tasks[task.id] = task
         self._units = {}
+
+    def too_late_to_begin_with(self, tasks: Iterable[str]) -> str:
+        """Why nothing can begin together with these tasks any more; empty if it still can."""
+        for name in tasks:
+            over = "is done" if name in self.ends_s else "is cancelled" if name in self.cancelled else ""
+            if over or name in self.starts_s:
+                return f"relation: begins with {name}, which {over or 'has begun'}"
+        return ""
 
     def unit(self, task: str) -> tuple[str, ...]:
         """The tasks that begin together with a task, itself included."""

@@ -19,7 +19,6 @@ def break_off(crew: Mapping[str, RobotState], ledger: Ledger, task: str, now: fl
             state.stop(now)
     for name in (*broken, task):
         ledger.give_up(name)
-    done = [name for name in ledger.unit(task) if name in ledger.ends_s]
-    for name in broken if done else ():
-        ledger.expired[name] = f"relation: begins with {done[0]}, which is done"
+    if late := ledger.too_late_to_begin_with(ledger.unit(task)):
+        ledger.expired |= dict.fromkeys(broken, late)
     return broken
