@@ -155,6 +155,25 @@ def test_places_on_a_lane_are_points_of_it():
     assert set(roadmap.speed_mps.tolist()) == {0.5}
 
 
+@pytest.mark.parametrize(("capacity", "both_ways"), [(1, False), (2, False), (2, True), (4, False)])
+def test_places_on_a_lane_are_shared_by_as_many_robots_as_may_be_on_it(capacity, both_ways):
+    """An edge that leads into a section of the lane is kept by who is anywhere in it, and one that leads on is not."""
+    places = [(1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (4.0, 0.0)]
+    edge = {"start": "a", "end": "b", "capacity": capacity, "both_ways": both_ways}
+    roadmap = Roadmap.of_lanes(lanes(edge), RADIUS, places)
+    held = {
+        (roadmap.points[u][0], roadmap.points[v][0]): sorted(roadmap.points[roadmap.reached(k), 0].tolist())
+        for k, (u, v) in enumerate(roadmap.edges.tolist())
+    }
+    each = 4 // capacity
+    for x in (0.0, 1.0, 2.0, 3.0):
+        into = x % each == 0.0
+        assert held[x, x + 1.0] == ([x + 1.0 + k for k in range(each)] if into else [x + 1.0])
+    if both_ways:
+        assert held[5.0, 4.0] == [3.0, 4.0]
+        assert held[3.0, 2.0] == [1.0, 2.0]
+
+
 def test_a_place_on_a_lane_each_way_is_one_point_of_both():
     graph = lanes({"start": "a", "end": "b", "capacity": 1}, {"start": "b", "end": "a", "capacity": 1})
     roadmap = Roadmap.of_lanes(graph, RADIUS, [(2.0, 0.0)])

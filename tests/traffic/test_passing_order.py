@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from muster.core import PassingOrder
+from muster.core import LimitedLane, PassingOrder
 
 RADIUS_M, MARGIN_M = 0.3, 0.02
 
@@ -115,3 +115,60 @@ def test_moves_have_their_speeds():
     order.append(robot, (1.0, 0.0), speed=0.5)
     order.append(robot, (2.0, 0.0))
     assert order.grant(robot).speeds == [0.5, float("inf")]
+
+
+def with_lane(most, *, both_ways=False):
+    lane = LimitedLane((0.0, 0.0), (10.0, 0.0), most=most, both_ways=both_ways)
+    return PassingOrder(margin=MARGIN_M, ahead=5.0, lanes=[lane])
+
+
+def test_a_lane_for_one_is_left_before_the_next_enters_it():
+    order = with_lane(1)
+    first, second = order.add((0.0, 0.0), RADIUS_M), order.add((-2.0, 0.0), RADIUS_M)
+    for robot in (first, second):
+        if robot == second:
+            assert order.append(robot, (0.0, 0.0))
+        assert order.append(robot, (10.0, 0.0))
+        assert order.append(robot, (10.0, 4.0 - robot))
+    assert order.grant(first).points == [(10.0, 0.0)]
+    order.progress(first, 0, (8.0, 0.0))
+    assert order.grant(first).ended == 2  # it has begun to go on, but is on the lane still
+    granted = order.grant(second)
+    assert (granted.points, granted.waits_for) == ([(0.0, 0.0)], first)
+    order.progress(first, 1, (10.0, 0.0))
+    assert order.grant(second).points[0] == (0.0, 0.0)
+    assert order.grant(second).ended == 1
+    assert order.grant(second).points[-1][0] > 9.0
+
+
+def test_no_move_is_one_too_many_on_a_lane():
+    order = with_lane(2)
+    robots = [order.add((x, 0.0), RADIUS_M) for x in (7.0, 4.0, -1.0)]
+    assert not order.append(robots[2], (2.0, 0.0))
+    assert order.append(robots[0], (10.0, 0.0))
+    assert order.append(robots[2], (2.0, 0.0))
+    assert order.grant(robots[2]).waits_for == robots[0]
+
+
+def test_who_comes_from_beside_or_against_a_lane_enters_it_too():
+    for both_ways, (place, to), may in (
+        (False, ((6.0, 2.0), (6.0, 0.0)), False),
+        (True, ((11.0, 0.0), (6.0, 0.0)), False),
+        (False, ((11.0, 0.0), (6.0, 0.0)), True),
+        (False, ((8.0, 2.0), (8.0, -2.0)), True),
+    ):
+        order = with_lane(1, both_ways=both_ways)
+        order.add((2.0, 0.0), RADIUS_M)
+        assert order.append(order.add(place, RADIUS_M), to) == may
+
+
+def test_robots_enter_a_lane_in_the_order_of_the_sequence():
+    """The second is nearer, but would take the place of the first."""
+    order = with_lane(1, both_ways=True)
+    first, second = order.add((-4.0, 0.0), RADIUS_M), order.add((10.0, 0.0), RADIUS_M)
+    assert order.append(first, (-2.0, 3.0))
+    assert order.append(first, (0.0, 0.0))
+    assert order.append(first, (3.0, 0.0))
+    assert order.append(first, (3.0, 3.0))
+    assert order.append(second, (7.0, 0.0))
+    assert order.grant(second).waits_for == first

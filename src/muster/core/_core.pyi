@@ -848,14 +848,20 @@ class Grant:
     def last(self) -> bool:
         """Whether all its moves to its stop are granted."""
 
+class LimitedLane:
+    """A lane on which only so many robots may be at once; metres."""
+
+    def __init__(self, start: tuple[float, float], end: tuple[float, float], *, most: int, both_ways: bool = False) -> None:
+        """`most`: how many, between its ends."""
+
 class PassingOrder:
     """
     The order in which robots pass: one sequence of straight moves, by order and not by clock [hoenig2019]. Places are in metres.
     """
 
-    def __init__(self, *, margin: float, ahead: float) -> None:
+    def __init__(self, *, margin: float, ahead: float, lanes: Sequence[LimitedLane] = []) -> None:
         """
-        Metres that are left between robots, and for which a robot may have begun moves.
+        Metres that are left between robots, and for which a robot may have begun moves; the lanes on which only so many may be.
         """
 
     def __copy__(self) -> PassingOrder: ...
@@ -870,7 +876,7 @@ class PassingOrder:
 
     def append(self, robot: int, to: tuple[float, float], stop: int = 0, speed: float = float('inf')) -> bool:
         """
-        A move from where the robot's moves end; False where another would stand in the way. `stop`: the number of the stop to which it leads; `speed`: the greatest on it.
+        A move from where the robot's moves end; False where another would stand in the way, or too many on a lane. `stop`: the number of the stop to which it leads; `speed`: the greatest on it.
         """
 
     def lead(self, robot: int, stop: int) -> None:

@@ -31,7 +31,7 @@ std::vector<Pair> pairs_of(const std::vector<Point>& points) {
 // An order with the numbers of robots checked, where Python passes them.
 class CheckedOrder {
  public:
-  CheckedOrder(double margin, double ahead) : order_(margin, ahead) {}
+  CheckedOrder(double margin, double ahead, std::vector<LimitedLane> lanes) : order_(margin, ahead, std::move(lanes)) {}
 
   int add(Pair place, double radius) { return robots_ = order_.add(point_of(place), radius) + 1, robots_ - 1; }
   void stands(int robot, Pair place) { checked(robot).stands(robot, point_of(place)); }
@@ -72,18 +72,30 @@ void bind_passing_order(nb::module_& m) {
       .def_ro("waits_for", &PassingOrder::Grant::waits_for, "The robot that passes first; -1: none.")
       .def_ro("last", &PassingOrder::Grant::last, "Whether all its moves to its stop are granted.");
 
+  nb::class_<LimitedLane>(m, "LimitedLane", "A lane on which only so many robots may be at once; metres.")
+      .def(
+          "__init__",
+          [](LimitedLane* lane, Pair from, Pair to, int most, bool both_ways) {
+            new (lane) LimitedLane(point_of(from), point_of(to), most, both_ways);
+          },
+          "start"_a, "end"_a, nb::kw_only(), "most"_a, "both_ways"_a = false, "`most`: how many, between its ends.");
+
   nb::class_<CheckedOrder>(m, "PassingOrder",
                            "The order in which robots pass: one sequence of straight moves, by order and not by clock "
                            "[hoenig2019]. Places are in metres.")
-      .def(nb::init<double, double>(), nb::kw_only(), "margin"_a, "ahead"_a,
-           "Metres that are left between robots, and for which a robot may have begun moves.")
+      .def(
+          nb::init<double, double, std::vector<LimitedLane>>(), nb::kw_only(), "margin"_a, "ahead"_a,
+          "lanes"_a = std::vector<LimitedLane>(),
+          "Metres that are left between robots, and for which a robot may have begun moves; the lanes on which only so "
+          "many may be.")
       .def("__copy__", [](const CheckedOrder& order) { return order; })
       .def("add", &CheckedOrder::add, "place"_a, "radius"_a, "A robot that stands; returns its number.")
       .def("stands", &CheckedOrder::stands, "robot"_a, "place"_a,
            "A robot stands elsewhere than was thought; nothing changes where it has moves.")
       .def("append", &CheckedOrder::append, "robot"_a, "to"_a, "stop"_a = 0,
            "speed"_a = std::numeric_limits<double>::infinity(),
-           "A move from where the robot's moves end; False where another would stand in the way. `stop`: the number of "
+           "A move from where the robot's moves end; False where another would stand in the way, or too many on a "
+           "lane. `stop`: the number of "
            "the stop to which it leads; `speed`: the greatest on it.")
       .def("lead", &CheckedOrder::lead, "robot"_a, "stop"_a,
            "Let a robot go as far as this stop of its moves, 0 at first; others are planned after the rest, too.")

@@ -41,19 +41,50 @@ void PassingOrder::stands(int robot, Point place) {
   if (bots_[robot].moves.empty()) bots_[robot].end = place;
 }
 
+bool PassingOrder::in_the_way(int robot, Point from, Point to) const {
+  for (int other = 0; other < static_cast<int>(bots_.size()); ++other) {
+    if (other == robot) continue;
+    const Point stands = bots_[other].end;
+    const double gap = segment_gap(stands, from, to);
+    if (gap < apart(robot, other) - kRounding && gap < distance(stands, from) - kRounding) return true;
+  }
+  return false;
+}
+
+std::vector<int> PassingOrder::entered(Point from, Point to) const {
+  std::vector<int> found;
+  for (int lane = 0; lane < static_cast<int>(lanes_.size()); ++lane)
+    if (lanes_[lane].entered(from, to)) found.push_back(lane);
+  return found;
+}
+
+bool PassingOrder::enters_one_of(const Move& m, const std::vector<int>& lanes) const {
+  return std::ranges::any_of(m.enters, [&](int lane) { return std::ranges::find(lanes, lane) != lanes.end(); });
+}
+
+template <class On>
+int PassingOrder::first_of_full(int lane, int robot, On on) const {
+  int count = 0, first = -1;
+  for (int other = 0; other < static_cast<int>(bots_.size()); ++other) {
+    if (other == robot || !on(lanes_[lane], bots_[other])) continue;
+    if (count++ == 0) first = other;
+  }
+  return count >= lanes_[lane].most() ? first : -1;
+}
+
 bool PassingOrder::append(int robot, Point to, int stop, double speed) {
   Bot& bot = bots_[robot];
   const Point from = bot.end;
-  for (int other = 0; other < static_cast<int>(bots_.size()); ++other) {
-    const Point stands = bots_[other].end;
-    const double gap = other == robot ? std::numeric_limits<double>::infinity() : segment_gap(stands, from, to);
-    if (gap < apart(robot, other) - kRounding && gap < distance(stands, from) - kRounding) return false;
-  }
-  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, stop, speed, {}};
+  if (in_the_way(robot, from, to)) return false;
+  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, stop, speed, entered(from, to), {}};
+  const auto stands_on = [](const LimitedLane& lane, const Bot& other) { return lane.holds(other.end); };
+  const auto full = [&](int lane) { return first_of_full(lane, robot, stands_on) >= 0; };
+  if (std::ranges::any_of(fresh.enters, full)) return false;
   for (std::size_t number = first_; number < first_ + moves_.size(); ++number) {
     const Move& before = move(number);
     if (before.robot < 0 || before.robot == robot) continue;
-    if (segment_gap(before.from, before.to, from, to) < apart(robot, before.robot)) fresh.earlier.push_back(number);
+    const bool near = segment_gap(before.from, before.to, from, to) < apart(robot, before.robot);
+    if (near || enters_one_of(before, fresh.enters)) fresh.earlier.push_back(number);
   }
   bot.moves.push_back(first_ + moves_.size());
   bot.end = to;
@@ -149,6 +180,26 @@ std::pair<double, int> PassingOrder::limit(const Move& m) const {
   return {least, waits_for};
 }
 
+bool PassingOrder::is_on(const LimitedLane& lane, const Bot& bot) const {
+  if (bot.moves.empty()) return lane.holds(bot.end);
+  const Move& first = move(bot.moves.front());
+  if (lane.holds(place(first, first.at))) return true;
+  return std::ranges::any_of(bot.moves, [&](std::size_t number) {
+    const Move& m = move(number);
+    return m.begun && lane.carries(place(m, m.at), m.to);
+  });
+}
+
+int PassingOrder::held_up_by(const Move& m) const {
+  const auto waiting = std::ranges::find_if(m.earlier, [&](auto e) { return !over(e) && !move(e).begun; });
+  if (waiting != m.earlier.end()) return move(*waiting).robot;
+  for (const int lane : m.enters) {
+    const int first = first_of_full(lane, m.robot, [&](const auto& on, const Bot& bot) { return is_on(on, bot); });
+    if (first >= 0) return first;
+  }
+  return -1;
+}
+
 Point PassingOrder::stand(int robot) const {
   const Bot& bot = bots_[robot];
   const auto later = std::ranges::find_if(bot.moves, [&](std::size_t number) { return move(number).stop > bot.stop; });
@@ -167,9 +218,9 @@ PassingOrder::Grant PassingOrder::grant(int robot) {
     }
     const auto [most, waits_for] = limit(m);
     if (!m.begun) {
-      const auto waiting = std::ranges::find_if(m.earlier, [&](auto e) { return !over(e) && !move(e).begun; });
-      if (waiting != m.earlier.end() || most < std::min(m.length, kSample)) {
-        found.waits_for = waiting != m.earlier.end() ? move(*waiting).robot : waits_for;
+      const int before = held_up_by(m);
+      if (before >= 0 || most < std::min(m.length, kSample)) {
+        found.waits_for = before >= 0 ? before : waits_for;
         found.last = false;
         break;
       }

@@ -6,16 +6,21 @@
 //
 // Moves lead to stops, at which robots do what they are to do. A robot is let go as far as the stop that it is told;
 // its later moves stand for what it will do then, so that others can be planned past that stop.
+//
+// Robots enter a lane that only so many may be on in the order of the sequence, too, each when enough of those before
+// it have left. A move that would be one too many in the sequence is not appended: so who waits to enter waits only for
+// earlier moves.
 #pragma once
 
 #include <cstddef>
 #include <deque>
 #include <limits>
 #include <optional>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "lattice.hpp"
+#include "limited_lane.hpp"
 
 namespace muster {
 
@@ -28,7 +33,8 @@ double segment_gap(Point a_from, Point a_to, Point b_from, Point b_to);
 class PassingOrder {
  public:
   // `margin`: metres that are left between two robots; `ahead`: metres for which a robot may have begun moves.
-  PassingOrder(double margin, double ahead) : margin_(margin), ahead_(ahead) {}
+  PassingOrder(double margin, double ahead, std::vector<LimitedLane> lanes = {})
+      : margin_(margin), ahead_(ahead), lanes_(std::move(lanes)) {}
 
   // Adds a robot that stands; returns its number.
   int add(Point place, double radius);
@@ -37,8 +43,8 @@ class PassingOrder {
   void stands(int robot, Point place);
 
   // Appends a move of a robot from where its moves end. False, and nothing is appended, where another robot would stand
-  // in the way; one that is too near at the beginning may be left. `stop`: the number, from 0, of the stop to which it
-  // leads; `speed`: the greatest on it.
+  // in the way, or the move enters a lane on which as many would stand as may be there; one that is too near at the
+  // beginning may be left. `stop`: the number, from 0, of the stop to which it leads; `speed`: the greatest on it.
   bool append(int robot, Point to, int stop = 0, double speed = std::numeric_limits<double>::infinity());
 
   // A robot may go as far as this stop of its moves.
@@ -86,7 +92,8 @@ class PassingOrder {
     bool begun = false;
     int stop = 0;
     double speed;
-    std::vector<std::size_t> earlier;  // moves of others that come near it, in order
+    std::vector<int> enters;           // lanes, by number
+    std::vector<std::size_t> earlier;  // moves of others that come near it or enter a lane that it enters, in order
   };
   struct Bot {
     double radius;
@@ -103,10 +110,21 @@ class PassingOrder {
   Point place(const Move& m, double at) const;
   void finish_first(Bot& bot);
   void drop_done();
+  bool in_the_way(int robot, Point from, Point to) const;
   // To where a robot may go of a move, and who stops it there.
   std::pair<double, int> limit(const Move& m) const;
+  // The robot for which a move waits before it begins; -1: none.
+  int held_up_by(const Move& m) const;
+  std::vector<int> entered(Point from, Point to) const;
+  bool enters_one_of(const Move& m, const std::vector<int>& lanes) const;
+  // Whether a robot is on a lane, or has begun to enter it.
+  bool is_on(const LimitedLane& lane, const Bot& bot) const;
+  // Who is first of those on a lane where no more may be; -1: one more may. `on`: whether a robot is there.
+  template <class On>
+  int first_of_full(int lane, int robot, On on) const;
 
   double margin_, ahead_;
+  std::vector<LimitedLane> lanes_;
   std::vector<Bot> bots_;
   std::deque<Move> moves_;  // finished ones at the front are dropped; a finished one further back has robot -1
   std::size_t first_ = 0;   // the number of the first of them

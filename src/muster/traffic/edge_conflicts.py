@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
+
+from muster.traffic.lane_sections import Section, held_back
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 _NEARER_M = 1e-9
+_ON_LANE_M = 0.05
+"""Who stands no farther from the middle of a lane is on it."""
 
 
-def conflicts(points: Floats, edges: Indices, reach_m: float) -> tuple[Indices, Indices, Floats]:
+def conflicts(
+    points: Floats, edges: Indices, reach_m: float, sections: Sequence[Section] = ()
+) -> tuple[Indices, Indices, Floats]:
     """For each edge u -> v the points w that a robot on it comes near to: start (m + 1,), point (l,), distance (l,).
 
     Those of edge k are at `start[k]` to `start[k + 1]`, by number; distances, in metres, are from w to the segment.
@@ -26,6 +34,8 @@ def conflicts(points: Floats, edges: Indices, reach_m: float) -> tuple[Indices, 
         (m, 2) from, to.
     reach_m
         only points nearer than that count.
+    sections
+        of lanes, each for one robot: an edge into one comes near to all points there, at distance 0.
     """
     edge, point = _candidates(points, edges, reach_m)
     from_u, along = points[point] - points[edges[edge, 0]], points[edges[edge, 1]] - points[edges[edge, 0]]
@@ -35,7 +45,11 @@ def conflicts(points: Floats, edges: Indices, reach_m: float) -> tuple[Indices, 
     metres[point == edges[edge, 1]] = 0.0
     near = (metres < reach_m) & (metres < np.hypot(*from_u.T) - _NEARER_M)
     edge, point, metres = edge[near], point[near], metres[near]
-    order = np.lexsort((point, edge))
+    into, there = held_back(points, edges, sections, _ON_LANE_M).T
+    edge, point = np.append(edge, into), np.append(point, there)
+    metres = np.append(metres, np.zeros(len(into)))
+    order = np.lexsort((metres, point, edge))
+    order = order[np.append(True, (np.diff(edge[order]) != 0) | (np.diff(point[order]) != 0))[: len(order)]]
     return np.searchsorted(edge[order], np.arange(len(edges) + 1)), point[order], metres[order]
 
 

@@ -6,14 +6,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from muster import core
 from muster.mission.lanes import Lane, Lanes
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.paths import PathFinder
 from muster.traffic.exact_ways import Network, with_place
+from muster.traffic.lane_sections import Section, sections
+from muster.traffic.part import planar
 
 Floats = npt.NDArray[np.float64]
 
@@ -35,6 +39,14 @@ class ClosedLane:
     reason: str
 
 
+class LaneNetwork(NamedTuple):
+    """A directed network of lanes, the greatest speed (m,) on its edges, and the sections of lanes with a capacity."""
+
+    made: Network
+    speed_mps: Floats
+    sections: tuple[Section, ...]
+
+
 def closed_lanes(lanes: Lanes, radius_m: float, finder: PathFinder | None) -> list[ClosedLane]:
     """The lanes that robots of a radius cannot drive; without a finder there are no obstacles."""
     found = []
@@ -47,6 +59,17 @@ def closed_lanes(lanes: Lanes, radius_m: float, finder: PathFinder | None) -> li
     return found
 
 
+def limited_lanes(lanes: Lanes) -> list[core.LimitedLane]:
+    """The lanes on which only so many robots may be."""
+    return [
+        core.LimitedLane(
+            planar(lanes.nodes[lane.start]), planar(lanes.nodes[lane.end]), most=lane.capacity, both_ways=lane.both_ways
+        )
+        for lane in lanes.edges
+        if lane.capacity is not None
+    ]
+
+
 def lane_network(
     lanes: Lanes,
     radius_m: float,
@@ -55,8 +78,8 @@ def lane_network(
     space: GridSpace | PolygonSpace | None,
     *,
     most_points: int,
-) -> tuple[Network, Floats]:
-    """The directed network of the lanes that robots of a radius can drive, and the greatest speed (m,) on its edges.
+) -> LaneNetwork:
+    """The directed network of the lanes that robots of a radius can drive.
 
     A lane for several robots has points at which they may stop one behind the other: as many less one as may be on it.
     Who stops there is out of the way of all who drive another lane to or from its nodes: one that waits for somebody
@@ -81,6 +104,7 @@ def lane_network(
     numbers = {name: k for k, name in enumerate(lanes.nodes)}
     points = [np.array(place[:2], dtype=np.float64) for place in lanes.nodes.values()]
     edges: list[tuple[int, int]] = []
+    parts: list[Section] = []
     clearance: list[float] = []
     speeds: list[float] = []
     spacing_m = max(apart_m, sum(_length_m(lanes, lane) for lane in lanes.edges) / most_points)
@@ -99,6 +123,9 @@ def lane_network(
             inner.append((share, len(points)))
             points.append(start + share * (end - start))
         stops = [numbers[lane.start], *(point for _, point in sorted(inner)), numbers[lane.end]]
+        if lane.capacity is not None:
+            shares = [share for share, _ in sorted(inner)]
+            parts += sections(start, end, shares, lane.capacity, both_ways=lane.both_ways)
         ways = list(pairwise(stops)) + (list(pairwise(stops[::-1])) if lane.both_ways else [])
         edges += ways
         clearance += [_clearance(lane, radius_m, known=space is None)] * len(ways)
@@ -113,7 +140,7 @@ def lane_network(
             continue
         made = with_place(made, place, at, finder, nodes, both_ways=True)
     on_lanes, joined = np.split(made.points[made.edges], [len(edges)])
-    return made, np.append(speeds, speeds_along(joined, on_lanes, np.array(speeds)))
+    return LaneNetwork(made, np.append(speeds, speeds_along(joined, on_lanes, np.array(speeds))), tuple(parts))
 
 
 def speeds_along(pieces: Floats, lanes: Floats, speeds_mps: Floats) -> Floats:

@@ -6,6 +6,7 @@ from muster.mission.model import Mission
 from muster.motion.map_world import World
 from muster.traffic.closed_rings import can_close_out
 from muster.traffic.cut_off import cuts_off
+from muster.traffic.given_lanes import limited_lanes
 from muster.traffic.manager import TrafficManager
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.names import AUTO, RESERVE, may_reserve
@@ -25,7 +26,8 @@ def manager_named(
     shared = _shared_roadmap(name, mission, world, margin_m, even_if_wide=closes_out)
     if shared is None:
         return None
-    return ReservedTraffic(shared.plan(seed), margin_m=margin_m)
+    lanes = [] if mission.lanes is None else limited_lanes(mission.lanes)
+    return ReservedTraffic(shared.plan(seed), margin_m=margin_m, lanes=lanes)
 
 
 def shared_roadmap(

@@ -62,11 +62,14 @@ class ReservedTraffic:
         plans moves of all robots.
     margin_m
         what is left between two robots that pass.
+    lanes
+        on which only so many may be at once.
     """
 
     plan: Planner
     plans: int = 0
     margin_m: float = MARGIN_M
+    lanes: Sequence[core.LimitedLane] = ()
     _order: core.PassingOrder = field(init=False)
     _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
     _parts: list[Part] = field(default_factory=list)
@@ -77,7 +80,7 @@ class ReservedTraffic:
     _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
 
     def __post_init__(self) -> None:
-        self._order = core.PassingOrder(margin=self.margin_m, ahead=AHEAD_M)
+        self._order = core.PassingOrder(margin=self.margin_m, ahead=AHEAD_M, lanes=self.lanes)
 
     def managed(self, robot: Robot, port: RobotPort) -> RobotPort:
         """The port by which a robot is ordered; the port itself where no other that drives can run into it."""

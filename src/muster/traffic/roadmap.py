@@ -22,6 +22,7 @@ from muster.traffic.edge_conflicts import conflicts
 from muster.traffic.exact_ways import Network
 from muster.traffic.given_lanes import lane_network, speeds_along
 from muster.traffic.lane_network import network
+from muster.traffic.lane_sections import Section
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -60,6 +61,8 @@ class Roadmap:
         (m,): the greatest speed on an edge; inf where robots alone decide.
     names
         of the first points, the nodes of given lanes; empty where the roadmap was made from free space.
+    sections
+        of lanes with a capacity, each for one robot: edges into one are said to come near to all points there.
     """
 
     points: Floats
@@ -74,6 +77,7 @@ class Roadmap:
     places: Indices
     speed_mps: Floats
     names: tuple[str, ...] = ()
+    sections: tuple[Section, ...] = ()
 
     def keeping(self, edges: Bools) -> Roadmap:
         """The roadmap with some of its edges (m,) only."""
@@ -210,8 +214,8 @@ class Roadmap:
         apart_m, points = _checked(radius_m, margin_m, places)
         if not isinstance(space, GridSpace | PolygonSpace | None):
             raise ParameterError("space: with heights; expected the plane, or None")
-        made, speeds = lane_network(lanes, radius_m, apart_m, points, space, most_points=_MOST_POINTS)
-        return cls.joined(made, radius_m, margin_m, speed_mps=speeds, names=tuple(lanes.nodes))
+        made, speeds, sections = lane_network(lanes, radius_m, apart_m, points, space, most_points=_MOST_POINTS)
+        return cls.joined(made, radius_m, margin_m, speed_mps=speeds, names=tuple(lanes.nodes), sections=sections)
 
     @classmethod
     def joined(
@@ -222,11 +226,12 @@ class Roadmap:
         *,
         speed_mps: Floats | None = None,
         names: tuple[str, ...] = (),
+        sections: tuple[Section, ...] = (),
     ) -> Roadmap:
         """The roadmap of a network of points and directed edges, with its conflicts."""
         order = np.lexsort(made.edges.T[::-1])
         edges = made.edges[order]
-        start, point, metres = conflicts(made.points, edges, 2 * radius_m + margin_m)
+        start, point, metres = conflicts(made.points, edges, 2 * radius_m + margin_m, sections)
         return cls(
             points=made.points,
             narrow=made.narrow,
@@ -240,6 +245,7 @@ class Roadmap:
             places=made.places,
             speed_mps=np.full(len(edges), np.inf) if speed_mps is None else speed_mps[order],
             names=names,
+            sections=sections,
         )
 
 

@@ -262,7 +262,7 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
     speeds = np.append(roadmap.speed_mps, roadmap.speeds_along(points[joined[len(roadmap.edges) :]]))
     order = np.lexsort(joined.T[::-1])
     joined, more = joined[order], len(joined) - len(roadmap.edges)
-    start, point, metres = conflicts(points, joined, roadmap.reach)
+    start, point, metres = conflicts(points, joined, roadmap.reach, roadmap.sections)
     return replace(
         roadmap,
         points=points,
