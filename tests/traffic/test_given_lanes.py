@@ -192,4 +192,14 @@ def test_who_stands_on_a_lane_keeps_its_speed():
         for (u, v), speed in zip(roadmap.edges.tolist(), roadmap.speed_mps.tolist(), strict=True)
     }
     assert speeds[(2.0, 0.03), (5.0, 0.0)] == speeds[(0.0, 0.0), (2.0, 0.03)] == 0.5
-    assert speeds[(2.0, 0.5), (5.0, 0.0)] == speeds[(2.0, 0.03), (5.0, 3.0)] == np.inf
+    assert speeds[(2.0, 0.5), (5.0, 0.0)] == speeds[(2.0, 0.5), (5.0, 3.0)] == np.inf
+
+
+def test_who_stands_on_a_lane_drives_on_along_it():
+    """It is joined to no other lane across ground that has none, and one-way not to what is behind it."""
+    graph = lanes({"start": "a", "end": "b", "capacity": 1}, {"start": "b", "end": "c", "capacity": 1})
+    roadmap = with_places(Roadmap.of_lanes(graph, RADIUS), lambda piece: True, [(2.0, 0.03), (3.0, 0.0), (4.9, 0.0)])
+    a, first, second, b, c = (0.0, 0.0), (2.0, 0.03), (3.0, 0.0), (5.0, 0.0), (5.0, 3.0)
+    on_lanes = {way for way in ways(roadmap) if (4.9, 0.0) not in way}
+    assert on_lanes == {(a, b), (b, c), (a, first), (first, b), (a, second), (second, b), (first, second)}
+    assert (b, (4.9, 0.0)) in ways(roadmap)  # as good as at the node: it may get back there

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.lanes import Lanes
 from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.motion.map_world import Body, World
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 Bools = npt.NDArray[np.bool_]
 Pieces = Floats
 """(n, 2 ends, 2) metres."""
-_ON_LANE_M = 1e-6
+_ON_LANE_M = 0.05
+"""Who is no farther from the middle of a lane drives along it, and who is no farther from its end is at its node."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,13 +33,13 @@ class RoadmapDoors:
     zones
         by id the closed polygon, and how far from it the centre of the widest robot has to be.
     lanes
-        by id the ends of a lane, (2, 2) metres.
+        by id the ends of a lane, (2, 2) metres, and how far from its middle the centre of a robot is that is on it.
     closed
         the ids of those that are closed at first.
     """
 
     zones: Mapping[str, tuple[shapely.Polygon, float]]
-    lanes: Mapping[str, Floats]
+    lanes: Mapping[str, tuple[Floats, float]]
     closed: frozenset[str]
 
     @classmethod
@@ -46,19 +48,24 @@ class RoadmapDoors:
         areas = () if world is None else world.areas
         stopping = [(area.zone.id, area.polygon) for area in areas if body.kind in area.zone.forbidden_to]
         zones = {name: (polygon, body.radius_m) for name, polygon in stopping if name is not None}
-        given = ((), {}) if mission.lanes is None else (mission.lanes.edges, mission.lanes.nodes)
-        lanes = {lane.id: np.array([given[1][lane.start], given[1][lane.end]]) for lane in given[0] if lane.id}
+        lanes = {} if mission.lanes is None else _lane_doors(mission.lanes, max(_ON_LANE_M, body.radius_m))
         return cls(zones, lanes, frozenset() if world is None else world.closed & zones.keys())
 
     def open_ways(self, pieces: Pieces, closed: Collection[str]) -> Bools:
-        """Which straight pieces lead into no closed zone, and along no closed lane."""
+        """Which straight pieces lead into no closed zone or lane; who is in one gets out again."""
         found = np.ones(len(pieces), dtype=np.bool_)
         for door in sorted(closed):
             if door in self.zones:
                 found &= ~_into(pieces, *self.zones[door])
             elif door in self.lanes:
-                found &= ~_along(pieces, self.lanes[door])
+                found &= ~_along(pieces, *self.lanes[door])
         return found
+
+
+def _lane_doors(given: Lanes, beside_m: float) -> dict[str, tuple[Floats, float]]:
+    """The lanes with an id."""
+    ends = {lane.id: (given.nodes[lane.start], given.nodes[lane.end]) for lane in given.edges if lane.id}
+    return {name: (np.array(places)[:, :2], beside_m) for name, places in ends.items()}
 
 
 def _into(pieces: Pieces, polygon: shapely.Polygon, away_m: float) -> Bools:
@@ -69,15 +76,19 @@ def _into(pieces: Pieces, polygon: shapely.Polygon, away_m: float) -> Bools:
     return np.asarray(near & (shapely.distance(shapely.points(pieces[:, 0]), polygon) >= away_m))
 
 
-def _along(pieces: Pieces, lane: Floats) -> Bools:
-    """Which pieces lie on a lane, its two ends included."""
+def _along(pieces: Pieces, lane: Floats, beside_m: float) -> Bools:
+    """Which pieces lead onto a lane between its ends or all along it, but for those that begin there."""
     begin, along = lane[0], lane[1] - lane[0]
     long_m = float(np.hypot(*along))
     unit = along / long_m
     off = pieces - begin
-    forward, aside = off @ unit, off @ np.array([-unit[1], unit[0]])
-    within = (forward >= -_ON_LANE_M) & (forward <= long_m + _ON_LANE_M) & (np.abs(aside) <= _ON_LANE_M)
-    return np.asarray(within.all(axis=1))
+    forward, aside = off @ unit, np.abs(off @ np.array([-unit[1], unit[0]]))
+    between = (forward > _ON_LANE_M) & (forward < long_m - _ON_LANE_M)
+    begins_there = between[:, 0] & (aside[:, 0] <= beside_m)
+    ends_there = between[:, 1] & (aside[:, 1] <= _ON_LANE_M)
+    overlaps = (forward.min(axis=1) < long_m - _ON_LANE_M) & (forward.max(axis=1) > _ON_LANE_M)
+    all_along = overlaps & (aside <= _ON_LANE_M).all(axis=1)
+    return np.asarray((ends_there | all_along) & ~begins_there)
 
 
 NO_DOORS = RoadmapDoors({}, {}, frozenset())

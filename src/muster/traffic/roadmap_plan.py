@@ -14,12 +14,14 @@ from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.traffic.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.edge_conflicts import conflicts
-from muster.traffic.roadmap import Bools, Roadmap
+from muster.traffic.roadmap import Bools, Indices, Roadmap
 from muster.traffic.single_moves import MovePlanner, Parameters
 from muster.traffic.travellers import Move, Point, Traveller
 
 _SAME_M = 1e-6
 _THERE_M = 1e-3
+_ON_LANE_M = 0.05
+"""A place that is no farther from the middle of a lane is on it."""
 _WAYS = 160
 """Ways that are sought to improve a plan, but one for each robot at least."""
 _MOST_BY_INTERVALS = 5_000_000
@@ -248,16 +250,26 @@ class _Network:
 
 
 def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Sequence[Point]) -> Roadmap:
-    """The roadmap with a point for each place that is none yet, joined to the nearest points from which it is seen."""
+    """The roadmap with a point for each place that is none yet.
+
+    One on a given lane, but for its ends, divides it. Any other is joined to the nearest points from which it is seen.
+    """
     known = {tuple(point) for point in roadmap.points.tolist()}
     fresh = np.array([place for place in dict.fromkeys(places) if place not in known], dtype=np.float64).reshape(-1, 2)
     if not len(fresh):
         return roadmap
     points = np.concatenate([roadmap.points, fresh])
-    edges = [roadmap.edges]
+    nodes = roadmap.points[: len(roadmap.names)]
+    lanes, edges = (roadmap.edges if roadmap.names else roadmap.edges[:0]), [roadmap.edges]
     for k in range(len(roadmap.points), len(points)):
-        seen = _seen(clear, points, k)
-        edges.append(np.array([pair for j in seen for pair in ((k, j), (j, k))], dtype=np.int64).reshape(-1, 2))
+        at_node = len(nodes) > 0 and np.hypot(*(nodes - points[k]).T).min() <= roadmap.radius_m
+        pieces = lanes[:0] if at_node else _dividing(points, lanes, k)
+        if len(pieces):
+            lanes = np.concatenate([lanes, pieces])
+        else:
+            seen = _seen(clear, points, k)
+            pieces = np.array([pair for j in seen for pair in ((k, j), (j, k))], dtype=np.int64).reshape(-1, 2)
+        edges.append(pieces)
     joined = np.concatenate(edges)
     speeds = np.append(roadmap.speed_mps, roadmap.speeds_along(points[joined[len(roadmap.edges) :]]))
     order = np.lexsort(joined.T[::-1])
@@ -273,6 +285,19 @@ def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Seque
         reach_m=metres,
         speed_mps=speeds[order],
     )
+
+
+def _dividing(points: Floats, lanes: Indices, k: int) -> Indices:
+    """The pieces (n, 2) into which a point divides the edges (m, 2) on which it is."""
+    at, (start, end) = points[k], lanes.T
+    along, off = points[end] - points[start], at - points[start]
+    squared = np.einsum("ij,ij->i", along, along)
+    share = np.einsum("ij,ij->i", off, along) / squared
+    away_m = np.hypot(*(off - share[:, np.newaxis] * along).T)
+    on = (away_m <= _ON_LANE_M) & (share > 0) & (share < 1)
+    here = np.full(np.count_nonzero(on), k)
+    pieces = np.concatenate([np.stack([start[on], here], axis=1), np.stack([here, end[on]], axis=1)])
+    return np.unique(pieces, axis=0)
 
 
 def _seen(clear: Callable[[Floats], bool], points: Floats, k: int) -> list[int]:
