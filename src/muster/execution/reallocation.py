@@ -253,7 +253,9 @@ def revision_of(rest: RemainingMission, what: RemainingProblem, routes: Routes, 
     problem = what.problem
     planned = _named(problem, rest, routes)
     now = _teams(planned)
-    left_out = {item.task: _why(item, rest) for item in unassigned(problem, routes)} | dict(what.hopeless)
+    missing = unassigned(problem, routes)
+    left_out = {item.task: why_left_out(item, rest.refusals.get(item.task, {})) for item in missing}
+    left_out |= what.hopeless
     moved = {task: (rest.former[task], robot) for task, robot in now.items() if rest.former.get(task, robot) != robot}
     dropped = tuple(task for task in left_out if task in rest.former)
     had_to_go = {problem.tasks[j].id for j in forced} | what.hopeless.keys()
@@ -282,9 +284,8 @@ def nobody(rest: RemainingMission) -> Revision:
     )
 
 
-def _why(item: Unassigned, rest: RemainingMission) -> str:
-    """Why a task is left out; robots that refused it are locked out of the problem, and have a reason of their own."""
-    refused = rest.refusals.get(item.task, {})
+def why_left_out(item: Unassigned, refused: Mapping[str, str]) -> str:
+    """Why a task is left out; robots that refused it have a reason of their own, which the plan does not know."""
     others = reasons_in_one_line(reason for reason in item.reasons if reason.robot not in refused)
     return "; ".join(part for part in (in_one_line(refused.items()), others) if part)
 

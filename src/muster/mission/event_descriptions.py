@@ -30,7 +30,9 @@ def found_line(data: Mapping[str, Any]) -> str:
 
 def _replanned(data: Mapping[str, Any]) -> str:
     """`replanned after robot_fails a: t from a to b, n to c; given up: x; nobody can do: y`."""
-    causes = ", ".join(" ".join(_short(of) for of in cause.values()) for cause in data.get("causes", ()))
+    causes = ", ".join(
+        " ".join(_short(of) for of in cause.values() if of is not None) for cause in data.get("causes", ())
+    )
     moved = [f"{task} from {robots[0]} to {robots[1]}" for task, robots in data.get("moved", {}).items()]
     added = [f"{task} to {robot}" for task, robot in data.get("added", {}).items()]
     line = f"replanned after {causes}: {', '.join([*moved, *added]) or 'no task changes robot'}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -12,6 +12,8 @@ from muster.allocation.auction import AUCTION
 from muster.allocation.auction_terms import Terms
 from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
 from muster.allocation.consensus_bundle import Parameters as BundleParameters
+from muster.allocation.explanations import unassigned
+from muster.allocation.fixed import with_past
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.auction_book import Book
@@ -95,10 +97,23 @@ def plan_of_bundles(problem: Problem, params: BundleParameters, view: View, elap
 
 
 def _plan(problem: Problem, view: View, book: Book, allocator: str, elapsed_s: float | None) -> Plan:
-    stop, problem = Stop(), with_tasks(problem, view.added)
+    past = view.auctions[-1].opening.past if view.auctions else {}
+    stop, problem = Stop(), _as_agreed_on(with_tasks(problem, view.added), past)
     routes = [[problem.task_index[task] for task in view.routes.get(robot.id, ())] for robot in problem.robots]
     stop.improved(*problem.value(routes))
     plan = finished_plan(problem, stop, Outcome(routes, book), allocator=allocator, seed=0)
+    if any(past.values()):  # what robots have done and begun is no choice of the plan: it keeps them from other tasks
+        plan = replace(plan, unassigned=unassigned(problem, routes))
     if elapsed_s is None:
         return plan
     return replace(plan, elapsed_s=elapsed_s, history=tuple((elapsed_s, value) for _, value in plan.history))
+
+
+def _as_agreed_on(problem: Problem, past: Mapping[str, Sequence[str]]) -> Problem:
+    """The problem for which robots bid last: after what each had done and begun by then.
+
+    What is left out of their plan is so for its reasons. Without the past a task might fit before what is done.
+    """
+    if not any(past.values()):
+        return problem
+    return with_past(problem, [[problem.task_index[task] for task in past.get(r.id, ())] for r in problem.robots])

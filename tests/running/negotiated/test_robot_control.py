@@ -9,6 +9,7 @@ from muster import Event, Mission, Robot, Task
 from muster.mission.model import Lag, MovedTask
 from muster.negotiation.messages import Fact, Message, Stage
 from muster.negotiation.new_tasks import content_of
+from muster.negotiation.participation import plan_of
 
 LONG_S = 600.0
 
@@ -119,6 +120,10 @@ def test_a_new_task_that_is_said_once_more_is_not_refused_though_it_has_moved():
     assert ends(team)["new"] == 1
 
 
+def refusals(team):
+    return [(robot, d["task"], d["reason"]) for _, robot, kind, d in team.told if kind == "task_refused"]
+
+
 def hear(team, robot, *facts):
     """One robot hears facts of another; only they got through."""
     node, stage = team.net.nodes[robot], team.net.nodes[robot].stage
@@ -201,6 +206,7 @@ def test_a_robot_that_uses_more_than_planned_gives_back_what_it_cannot_do():
     team.restart("a")
     assert ends(team) == {"near": 1, "far": 1}
     assert ("b", "far") in {(robot, data["task"]) for _, robot, kind, data in team.told if kind == "ends"}
+    assert refusals(team) == [("a", "far", "capacity: 50.00 used with it, of 41.00")]
 
 
 def test_who_has_lost_the_majority_does_what_may_be_done_twice_and_rests():
@@ -307,6 +313,33 @@ def test_what_can_never_begin_any_more_is_cancelled_with_its_reason():
     team.controls["a"].take_event(Event(at_s=0, new_task=Task(id="near", position=(0, 0), window_s=((0.0, 12.0),))))
     assert ends(team) == {"far": 1}
     assert team.times("window_missed") + team.times("task_refused") == {"near": 1}
+
+
+def test_an_order_that_comes_too_late_to_begin_with_another_task_is_given_up_with_the_reason():
+    """It is sold after the team's task, which the robot at the other one has yet to do: no schedule has all of them."""
+    robots = tuple(Robot(id=name, position=(x, 0)) for name, x in (("a", 0), ("b", 20)))
+    under_way = Task(id="c", position=(18, 0), duration_s=30.0, only_robots=("b",))
+    lift = Task(id="lift", position=(0, 20), robots_needed=2, duration_s=10.0)
+    team = SimulatedTeam(Mission(robots=robots, tasks=(under_way, lift)))
+    assert team.run(20.0, lambda: team.times("starts")["c"] == 1)
+    order = Task(id="order", position=(1, 2), starts_with=("c",), duration_s=5.0)
+    team.controls["a"].take_event(Event(at_s=0, new_task=order))
+    assert team.run(30.0, lambda: team.net.nodes["a"].owns("order"))
+    assert not plan_of(team.problem, team.net.nodes["a"]).unassigned
+    assert ends(team) == {"c": 1, "lift": 2}  # told by both
+    assert refusals(team) == [("a", "order", "relation: begins with c, which is done")]
+
+
+def test_a_plan_says_of_what_is_left_out_why_it_does_not_fit_after_what_was_done():
+    robots = tuple(Robot(id=name, position=(x, 0)) for name, x in (("a", 0), ("b", 36)))
+    long = Task(id="long", position=(0, 8), duration_s=20.0, deadline_s=50.0)
+    soon = Task(id="soon", position=(20, 8), duration_s=5.0, window_s=((0.0, 30.0),))
+    team = SimulatedTeam(Mission(robots=robots, tasks=(long, soon)))
+    assert team.run(20.0, lambda: team.times("starts")["long"] == 1)
+    team.crash("b")
+    assert ends(team) == {"long": 1}
+    (left_out,) = plan_of(team.problem, team.net.nodes["a"]).unassigned
+    assert {reason.robot: reason.reason for reason in left_out.reasons}["a"] == "window"
 
 
 def test_a_robot_plans_again_after_another_has_done_what_only_the_same_may_go_on_with():

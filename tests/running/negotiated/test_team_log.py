@@ -6,6 +6,8 @@ from muster import Event, Mission, Robot, Task
 from muster.allocation.problem import Problem
 from muster.execution import report_of
 from muster.execution.record import NoObserver
+from muster.mission.event_descriptions import event_line
+from muster.mission.plan import Plan, Reason, Route, Unassigned
 from muster.running.negotiated.team_log import TeamLog
 
 MISSION = Mission(
@@ -89,3 +91,38 @@ def test_what_all_of_a_team_tell_is_told_once_and_work_that_is_broken_off_is_ope
     assert (task.robot, report(log).starts_s, report(log).ends_s) == ("a", {"t": 6.0}, {"t": 8.0})
     assert log.ledger.usage["t"] == (2.0, 4.0)
     assert log.ledger.team_waits_s["t"] == 8.0
+
+
+def agree(log, now_s):
+    """Robots agree on a plan that leaves out the task, which fits by all that the plan knows."""
+    fits = tuple(Reason(robot.id, "not-chosen", "fits as number 1") for robot in MISSION.robots)
+    routes = tuple(Route(robot.id, ()) for robot in MISSION.robots)
+    log.agreed(Plan(routes=routes, unassigned=(Unassigned("t", fits),)), now_s)
+
+
+def test_a_lost_task_has_the_reasons_of_the_robots_that_refused_it_and_none_of_those_that_failed(log):
+    agree(log, 0.0)
+    log.take_event(Event(at_s=3, robot_fails="b"), 3.0)
+    assert log.lost()["t"] == "not-chosen: fits as number 1 (a); no longer taking part: b (failed at 3 s)"
+    log.take("a", 4.0, "task_refused", {"task": "t", "robot": "a", "reason": "window: has closed"}, used=1.0)
+    assert log.lost()["t"] == "window: has closed (a); no longer taking part: b (failed at 3 s)"
+    agree(log, 5.0)
+    (again,) = [event for event in log.events if event.kind == "replanned"]
+    assert [cause["kind"] for cause in again.data["causes"]] == ["robot_fails", "task_refused"]
+    log.take_event(Event(at_s=6, robot_fails="a"), 6.0)
+    assert log.lost()["t"].startswith("no robot takes part any more")
+
+
+def test_robots_that_agree_anew_without_a_word_have_a_cause_for_it(log):
+    agree(log, 0.0)
+    agree(log, 5.0)
+    (again,) = [event for event in log.events if event.kind == "replanned"]
+    assert event_line(again.kind, again.data).startswith("replanned after new_agreement: ")
+
+
+def test_a_task_that_is_ordered_after_another_was_missed_has_a_reason_of_its_own(log):
+    agree(log, 0.0)
+    missed = {"task": "t", "reason": "window: closed at 3 s", "next_s": None}
+    log.take("a", 3.0, "window_missed", missed, used=1.0)
+    log.take_event(Event(at_s=4, new_task=Task(id="new", position=(1, 1), starts_with=("t",))), 4.0)
+    assert log.lost() == {"t": "window: closed at 3 s", "new": "not done"}

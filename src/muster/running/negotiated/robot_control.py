@@ -57,6 +57,9 @@ _ITS_OWN = {
 }
 """Events that nobody else knows of."""
 
+_REFUSALS = {"task_refused", *MISSED.values()}
+"""Of these, those that say why a robot does not do a task."""
+
 
 class RobotControl:
     """The control of one robot.
@@ -107,6 +110,7 @@ class RobotControl:
         self._hand.recall(used)
         self._learned: set[Fact] = set()
         self._known = 0  # the digest of what was learned
+        self._first = 0  # the number of the first event of this tick
         self._left_with: dict[str, tuple[float, float]] = {}  # the usage for tasks broken off, the last time
         self._notice_s = NOTICE_HEARTBEATS * negotiator.timeouts.heartbeat_s * speed
 
@@ -126,10 +130,11 @@ class RobotControl:
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
-        first = self._executor.events.total
+        self._first = self._executor.events.total
         self._break_off()
         self._learn()
-        if not self._hand.out and self._wanted != self._hand.route:
+        wanted = self._wanted
+        if not self._hand.out and (wanted != self._hand.route or any(map(self._too_late_for, wanted))):
             self._executor.plan_again("agreed", {})
         for event in self._executor.tick(now):
             if event.kind == "ends":
@@ -137,7 +142,7 @@ class RobotControl:
             elif _is_back(event):
                 self._negotiator.come_back()
         self._negotiator.joint.leave_all_but(self._at)
-        return [event for event in self._executor.events.since(first) if event.kind in _ITS_OWN or _is_back(event)]
+        return [event for event in self._news if event.kind in _ITS_OWN or _is_back(event)]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
@@ -216,6 +221,11 @@ class RobotControl:
         return self._negotiator.joint.end(task)
 
     @property
+    def _news(self) -> Sequence[ExecutionEvent]:
+        """The events of this tick so far."""
+        return self._executor.events.since(self._first)
+
+    @property
     def _at(self) -> str:
         """The task at which the robot waits or works; empty if at none."""
         there = self._hand.activity in (Activity.WAITING, Activity.WORKING) and not self._hand.out
@@ -285,13 +295,14 @@ class RobotControl:
         robot = self._negotiator.robot
         begun = {claim.task for claim in self._negotiator.route if claim.begun}
         once = self._negotiator.once
-        for task, robots in rest.refusals.items():
-            if robot in robots and task in self._wanted and not (task in begun and task in once):
-                self._negotiator.release(task)
-        for task in rest.expired.keys() & set(self._wanted):  # no robot can begin it any more
-            self._negotiator.cancel(task)
         for task in self._wanted:
-            if self._is_too_late_for(task):
+            refused = rest.refusals.get(task, {}).get(robot)
+            if refused and not (task in begun and task in once):
+                self._refuse(task, refused)
+                self._negotiator.release(task)
+        for task in self._wanted:
+            if why := rest.expired.get(task) or self._too_late_for(task):  # no robot can begin it any more
+                self._refuse(task, why)
                 self._negotiator.cancel(task)
         if not rest.crew:
             for task in begun - once:
@@ -305,14 +316,25 @@ class RobotControl:
         route = [task for task in self._wanted if task != me.task]
         while True:
             ahead = usage_ahead(replace(rest, routes={robot: route}), self._travel)
-            if not route or route[-1] in begun or not exceeds(me.used + ahead[robot][""], capacity):
+            most = me.used + ahead[robot][""]
+            if capacity is None or not route or route[-1] in begun or not exceeds(most, capacity):
                 return _revision({robot: tuple(route)}, ahead)
+            self._refuse(route[-1], f"capacity: {most:.2f} used with it, of {capacity:.2f}")
             self._negotiator.release(route.pop())
 
-    def _is_too_late_for(self, task: str) -> bool:
-        """Whether a task that begins with this one is done, and the robot has not begun this one."""
+    def _refuse(self, task: str, reason: str) -> None:
+        """Tell why the robot gives a task back or up, unless the executor has just told it."""
+        robot = self._negotiator.robot
+        told = (event.data["task"] for event in self._news if event.kind in _REFUSALS)
+        if task not in told:
+            self._executor.emit("task_refused", {"task": task, "robot": robot, "reason": reason})
+
+    def _too_late_for(self, task: str) -> str:
+        """Why the robot can begin a task no more where one that begins with it is done; empty where none is."""
         ledger = self._executor.ledger
-        return task not in self._negotiator.joint.under_way and any(name in ledger.ends_s for name in ledger.unit(task))
+        if task in self._negotiator.joint.under_way:
+            return ""
+        return ledger.too_late_to_begin_with([name for name in ledger.unit(task) if name in ledger.ends_s])
 
     def _is_known(self, task: Task) -> bool:
         """Whether the robot knows this new task, even if the task has moved since."""

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
 from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Observer
 from muster.execution.punctuality import MISSED
-from muster.execution.reallocation import reasons_in_one_line
+from muster.execution.reallocation import why_left_out
 from muster.execution.report import Account
 from muster.execution.task_ledger import Ledger
 from muster.execution.traffic_waits import TrafficAccount
 from muster.mission.model import Event
-from muster.mission.plan import Plan, teams_of
+from muster.mission.plan import Plan, Unassigned, teams_of
 from muster.mission.yaml_writer import plain
 from muster.motion.port import Telemetry
 from muster.verification import verify
@@ -23,6 +24,10 @@ _OF_ALL_AT_WORK = ("starts", "ends", "work_broken_off")
 _SAME_JAM_S = 30.0
 """Seconds within which two robots tell of one jam."""
 _OF_A_TASK = ("cancel_task", "move_task", "delay_task")
+_CAUSES = ("robot_stuck", "robot_returns", "task_refused", "work_broken_off", *MISSED.values())
+"""What robots tell that makes them agree anew."""
+_NEW_AGREEMENT = {"kind": "new_agreement"}
+"""Robots agreed anew, and told of nothing that has happened: they lost each other, or met again."""
 
 
 class TeamLog:
@@ -47,7 +52,7 @@ class TeamLog:
         on_event: Callable[[ExecutionEvent], None],
         late: Collection[str] = (),
     ) -> None:
-        self.ledger = Ledger.of(problem.mission.tasks, problem.holds("prerequisite"))
+        self.ledger = Ledger.of(problem.mission.tasks, problem.holds("prerequisite"), problem.ignored)
         self.events: list[ExecutionEvent] = []
         self.used = {robot.id: 0.0 for robot in problem.mission.robots if robot.id not in late}
         self._problem = problem
@@ -82,14 +87,16 @@ class TeamLog:
             return  # another robot of the team has told it
         elif kind == "robot_stuck":
             self._lose(robot, f"did not get on at {at_s:g} s")
-            self._causes.append({"kind": kind, "robot": robot})
         elif kind == "robot_returns":
             self._out.pop(robot, None)
-            self._causes.append({"kind": kind, "robot": robot})
+        elif kind == "task_refused":
+            self.ledger.refuse(task, robot, str(data["reason"]))
         elif kind == "traffic_jam" and self._is_told_of_jam(frozenset(data["robots"]), at_s):
             return  # another robot of the jam has told it
         elif kind in MISSED.values() and data["next_s"] is None:
             self.ledger.expire(task, str(data["reason"]))
+        if kind in _CAUSES:
+            self._causes.append({"kind": kind, **data})
         self._traffic.take(kind, data)
         self.tell(at_s, kind, data)
 
@@ -109,11 +116,12 @@ class TeamLog:
             self.tell(now_s, "without_effect", plain(event))
             return False
         if event.new_task is not None:
-            self.ledger.tasks[event.new_task.id] = event.new_task
+            self.ledger.add(event.new_task)
         elif event.cancel_task is not None:
             self.ledger.withdraw(event.cancel_task, now_s)
         elif event.move_task is not None:
             self.ledger.move(event.move_task.task, event.move_task.position)
+            self.ledger.refusals.pop(event.move_task.task, None)
         elif event.robot_fails is not None:
             self._lose(event.robot_fails, f"failed at {now_s:g} s")
         elif event.robot_joins is not None:
@@ -135,7 +143,7 @@ class TeamLog:
         """Process the plan of the whole mission on which robots have agreed."""
         self._plans.append(plan)
         if len(self._plans) > 1:
-            causes, self._causes = self._causes, []
+            causes, self._causes = self._causes or [_NEW_AGREEMENT], []
             self.tell(now_s, "replanned", {"causes": causes, **_difference(*self._plans[-2:])})
         self._observer.on_plan(max(now_s, self._now_s), plan)
 
@@ -156,16 +164,22 @@ class TeamLog:
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why."""
-        reasons = (
-            {item.task: reasons_in_one_line(item.reasons) for item in self._plans[-1].unassigned} if self._plans else {}
-        )
+        reasons = {item.task: self._why(item) for item in self._plans[-1].unassigned} if self._plans else {}
         missed = {**{task.id: self._tied_to_done(task.id) for task in self.ledger.open}, **self.ledger.expired}
         return self.ledger.lost(lambda task: missed.get(task) or reasons.get(task) or "not done", self._out)
+
+    def _why(self, item: Unassigned) -> str:
+        """Why a task is left out by the robots that take part: what kept them from it, which no plan knows, first."""
+        present = self.used.keys() - self._out.keys()
+        if not present:
+            return "no robot takes part any more"
+        reasons = tuple(reason for reason in item.reasons if reason.robot in present)
+        return why_left_out(replace(item, reasons=reasons), self.ledger.refusals.get(item.task, {}))
 
     def _tied_to_done(self, task: str) -> str:
         """Why a task cannot begin any more where one that begins with it is done; empty where none is."""
         done = [name for name in self.ledger.unit(task) if name in self.ledger.ends_s]
-        return f"relation: begins with {done[0]}, which is done" if done else ""
+        return self.ledger.too_late_to_begin_with(done)
 
     @property
     def account(self) -> Account:
