@@ -203,7 +203,8 @@ def test_a_robot_that_would_have_to_do_more_tasks_than_there_are_is_a_warning(mu
 
 
 def test_robots_that_touch_where_they_start_are_a_warning(muster):
-    bodies = "200, radius_m: 0.3}\n  - {id: r_1, position: [2, 0], radius_m: 0.3}\n  - {id: r_2, position: [2, 0.5], radius_m: 0.3}"
+    others = "\n  - {id: r_1, position: [2, 0], radius_m: 0.3}\n  - {id: r_2, position: [2, 0.5], radius_m: 0.3}"
+    bodies = "200, radius_m: 0.3}" + others
     Path("two.yaml").write_text(TWO.replace("CAPACITY}", bodies), encoding="utf-8")
     code, _, err = muster("check", "two.yaml")
     assert (code, err) == (0, "warning: robots r_1 and r_2 start 0.5 m apart, and touch below 0.6 m\n")

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from tests.disturbances.traffic.verdicts import Poses
+from tests.running.lane_runs import carried_out
 
-from muster import Simulation, load, solve
 from muster.traffic.roadmap_plan import RoadmapPlan
 
 LOOP = """
@@ -47,13 +46,6 @@ def test_a_lane_is_left_before_one_too_many_enters_it(capacity, whole, tmp_path,
     """As many stop to work on the lane as are in the mission: the planner lets them come one after the other."""
     if not whole:
         monkeypatch.setattr(RoadmapPlan, "whole", lambda plan, travellers: None)
-    path = tmp_path / "loop.yaml"
-    path.write_text(LOOP.replace("CAPACITY", str(capacity)))
-    mission, poses = load(path), Poses()
-    simulation = Simulation(mission, solve(mission, "greedy"), traffic="reserve", recorder=poses)
-    while not simulation.done:
-        simulation.advance(simulation.time_s + 10.0)
-        assert simulation.time_s < 300.0
-    report = simulation.result()
-    assert (len(report.tasks_done), report.contacts) == (7, 0)
+    report, poses = carried_out(LOOP.replace("CAPACITY", str(capacity)), tmp_path, 300.0)
+    assert len(report.tasks_done) == 7
     assert most_between(poses) == capacity

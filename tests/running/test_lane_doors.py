@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.disturbances.traffic.verdicts import Poses
-
-from muster import Simulation, load, solve
+from tests.running.lane_runs import carried_out
 
 SQUARE = """
 schema: muster/1
@@ -31,16 +29,8 @@ events: [{at_s: CLOSES, door_closes: ab}]
 
 def places(site, lane, closes_s, kinematics, tmp_path):
     """When all robots are where, (n, robots, 2), until all is done."""
-    path = tmp_path / "square.yaml"
     text = site.replace("LANE", lane).replace("CLOSES", str(closes_s)).replace("KINEMATICS", kinematics)
-    path.write_text(text)
-    mission, poses = load(path), Poses()
-    simulation = Simulation(mission, solve(mission, "greedy"), traffic="reserve", recorder=poses)
-    while not simulation.done:
-        simulation.advance(simulation.time_s + 5.0)
-        assert simulation.time_s < 120.0
-    report = simulation.result()
-    assert (len(report.tasks_done), report.contacts) == (len(mission.tasks), 0)
+    _, poses = carried_out(text, tmp_path, 120.0)
     times = np.array([now for now, _ in poses.steps])
     return times, np.array([places[:, :2] for _, places in poses.steps])
 

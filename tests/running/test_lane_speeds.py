@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from tests.disturbances.traffic.verdicts import Poses
+from tests.running.lane_runs import carried_out
 
-from muster import Simulation, load, simulate, solve
+from muster import load, simulate, solve
 
 SLOW_MPS, FROM_M, TO_M = 0.25, 3.0, 8.0
 SITE = """
@@ -29,15 +29,8 @@ lanes:
 def test_nobody_is_faster_on_a_lane_than_it_allows(world, kinematics, tmp_path):
     if world == "physics":
         pytest.importorskip("mujoco")
-    path = tmp_path / "lane.yaml"
-    path.write_text(SITE.replace("KINEMATICS", kinematics))
-    mission, poses = load(path), Poses()
-    simulation = Simulation(mission, solve(mission, "greedy"), traffic="reserve", world=world, recorder=poses)
-    while not simulation.done:
-        simulation.advance(simulation.time_s + 5.0)
-        assert simulation.time_s < 100.0
-    report = simulation.result()
-    assert (len(report.tasks_done), report.contacts) == (2, 0)
+    report, poses = carried_out(SITE.replace("KINEMATICS", kinematics), tmp_path, 100.0, world)
+    assert len(report.tasks_done) == 2
     times, x = np.array([now for now, _ in poses.steps]), np.array([places[:, 0] for _, places in poses.steps])
     speeds_mps = np.abs(np.diff(x, axis=0)) / np.diff(times)[:, None]
     margin_m = 0.05

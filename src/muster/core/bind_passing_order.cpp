@@ -95,8 +95,7 @@ void bind_passing_order(nb::module_& m) {
       .def("append", &CheckedOrder::append, "robot"_a, "to"_a, "stop"_a = 0,
            "speed"_a = std::numeric_limits<double>::infinity(),
            "A move from where the robot's moves end; False where another would stand in the way, or too many on a "
-           "lane. `stop`: the number of "
-           "the stop to which it leads; `speed`: the greatest on it.")
+           "lane. `stop`: the number of the stop to which it leads; `speed`: the greatest on it.")
       .def("lead", &CheckedOrder::lead, "robot"_a, "stop"_a,
            "Let a robot go as far as this stop of its moves, 0 at first; others are planned after the rest, too.")
       .def("drop_ahead", &CheckedOrder::drop_ahead, "Drop all moves that have not begun.")

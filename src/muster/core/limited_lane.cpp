@@ -8,8 +8,9 @@ namespace muster {
 
 namespace {
 
-constexpr double kOn =
-    0.05;  // metres from the middle at which a robot drives on a lane, and from an end at which it is
+// Metres from the middle of a lane at which a robot is on it, and from its end at which it is at the node; as in
+// Python.
+constexpr double kOn = 0.05;
 
 }  // namespace
 

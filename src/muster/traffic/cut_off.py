@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from muster.mission.model import Mission, Robot
-from muster.motion.actions import TaskMotion, plan
 from muster.motion.map_world import World
 from muster.motion.path import Path
 from muster.motion.paths import PathFinder
 from muster.traffic.impossible_crossings import Crossings
-from muster.traffic.mission_roadmap import MissionRoadmap
+from muster.traffic.mission_roadmap import MissionRoadmap, task_motions
 
 
 def cuts_off(made: MissionRoadmap, mission: Mission, world: World) -> bool:
@@ -28,7 +27,6 @@ def cuts_off(made: MissionRoadmap, mission: Mission, world: World) -> bool:
 
 def _goals(mission: Mission, robot: Robot) -> list[tuple[float, ...]]:
     """Where it begins the tasks that it may do, and its end."""
-    may_do = [task for task in mission.tasks if task.only_robots is None or robot.id in task.only_robots]
-    motions = [plan(task, robot) for task in may_do]
+    entries = [motion.entry for motion in task_motions(mission, [robot])]
     end = robot.place_at_end(mission.rules)
-    return [motion.entry for motion in motions if isinstance(motion, TaskMotion)] + ([] if end is None else [end])
+    return entries if end is None else [*entries, end]

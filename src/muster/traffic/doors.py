@@ -13,6 +13,7 @@ from muster.mission.lanes import Lanes
 from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.motion.map_world import Body, World
+from muster.traffic.lane_sections import ON_LANE_M
 
 if TYPE_CHECKING:
     import shapely
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 Bools = npt.NDArray[np.bool_]
 Pieces = Floats
 """(n, 2 ends, 2) metres."""
-_ON_LANE_M = 0.05
-"""Who is no farther from the middle of a lane drives along it, and who is no farther from its end is at its node."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +47,7 @@ class RoadmapDoors:
         areas = () if world is None else world.areas
         stopping = [(area.zone.id, area.polygon) for area in areas if body.kind in area.zone.forbidden_to]
         zones = {name: (polygon, body.radius_m) for name, polygon in stopping if name is not None}
-        lanes = {} if mission.lanes is None else _lane_doors(mission.lanes, max(_ON_LANE_M, body.radius_m))
+        lanes = {} if mission.lanes is None else _lane_doors(mission.lanes, max(ON_LANE_M, body.radius_m))
         return cls(zones, lanes, frozenset() if world is None else world.closed & zones.keys())
 
     def open_ways(self, pieces: Pieces, closed: Collection[str]) -> Bools:
@@ -83,11 +82,11 @@ def _along(pieces: Pieces, lane: Floats, beside_m: float) -> Bools:
     unit = along / long_m
     off = pieces - begin
     forward, aside = off @ unit, np.abs(off @ np.array([-unit[1], unit[0]]))
-    between = (forward > _ON_LANE_M) & (forward < long_m - _ON_LANE_M)
+    between = (forward > ON_LANE_M) & (forward < long_m - ON_LANE_M)
     begins_there = between[:, 0] & (aside[:, 0] <= beside_m)
-    ends_there = between[:, 1] & (aside[:, 1] <= _ON_LANE_M)
-    overlaps = (forward.min(axis=1) < long_m - _ON_LANE_M) & (forward.max(axis=1) > _ON_LANE_M)
-    all_along = overlaps & (aside <= _ON_LANE_M).all(axis=1)
+    ends_there = between[:, 1] & (aside[:, 1] <= ON_LANE_M)
+    overlaps = (forward.min(axis=1) < long_m - ON_LANE_M) & (forward.max(axis=1) > ON_LANE_M)
+    all_along = overlaps & (aside <= ON_LANE_M).all(axis=1)
     return np.asarray((ends_there | all_along) & ~begins_there)
 
 

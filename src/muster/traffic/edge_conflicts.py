@@ -13,8 +13,6 @@ Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 _NEARER_M = 1e-9
-_ON_LANE_M = 0.05
-"""Who stands no farther from the middle of a lane is on it."""
 
 
 def conflicts(
@@ -45,7 +43,7 @@ def conflicts(
     metres[point == edges[edge, 1]] = 0.0
     near = (metres < reach_m) & (metres < np.hypot(*from_u.T) - _NEARER_M)
     edge, point, metres = edge[near], point[near], metres[near]
-    into, there = held_back(points, edges, sections, _ON_LANE_M).T
+    into, there = held_back(points, edges, sections).T
     edge, point = np.append(edge, into), np.append(point, there)
     metres = np.append(metres, np.zeros(len(into)))
     order = np.lexsort((metres, point, edge))

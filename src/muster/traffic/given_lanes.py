@@ -16,15 +16,13 @@ from muster.mission.lanes import Lane, Lanes
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.paths import PathFinder
 from muster.traffic.exact_ways import Network, with_place
-from muster.traffic.lane_sections import Section, sections
+from muster.traffic.lane_sections import ON_LANE_M, Section, sections
 from muster.traffic.part import planar
 
 Floats = npt.NDArray[np.float64]
 
 _WHOLE = 1e-9
 """Of a lane's length: as many robots fit as do, whatever float64 says."""
-_ON_LANE_M = 0.05
-"""Who stands no farther from the middle of a lane drives on it."""
 _CLEAR = 1 + 1e-6
 """Who stops beside another lane keeps clear of it whatever float64 says."""
 _JUST_ON_M = 1e-3
@@ -152,7 +150,7 @@ def speeds_along(pieces: Floats, lanes: Floats, speeds_mps: Floats) -> Floats:
     lines = shapely.linestrings(lanes)
     ends = np.array(shapely.points(pieces))[:, :, np.newaxis]
     away_m: Floats = shapely.distance(ends, lines).max(axis=1)
-    return np.asarray(np.where(away_m <= _ON_LANE_M, speeds_mps, np.inf).min(axis=1))
+    return np.asarray(np.where(away_m <= ON_LANE_M, speeds_mps, np.inf).min(axis=1))
 
 
 def _length_m(lanes: Lanes, lane: Lane) -> float:

@@ -16,6 +16,8 @@ Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
+ON_LANE_M = 0.05
+"""Who is no farther from the middle of a lane is on it, and who is no farther from its end is at its node."""
 _AT_NODE_M = 1e-3
 """Who stands no farther from the end of a lane is at its node."""
 
@@ -35,13 +37,13 @@ class Section:
     ends: Floats
     both_ways: bool
 
-    def holds(self, points: Floats, off_m: float) -> Bools:
-        """Which points (n, 2) are on it, as far from the middle of the lane as that."""
+    def holds(self, points: Floats) -> Bools:
+        """Which points (n, 2) are on it."""
         begin, along = self.ends[0], self.ends[1] - self.ends[0]
         unit = along / np.hypot(*along)
         off = points - begin
         forward, aside = off @ unit, off @ np.array([-unit[1], unit[0]])
-        return np.asarray((forward > 0) & (forward <= np.hypot(*along)) & (np.abs(aside) <= off_m))
+        return np.asarray((forward > 0) & (forward <= np.hypot(*along)) & (np.abs(aside) <= ON_LANE_M))
 
     def entered(self, points: Floats, edges: Indices, inside: Bools) -> Indices:
         """The edges (m, 2) that lead into it, but not against the lane; `inside`: which points are on it."""
@@ -62,11 +64,11 @@ def sections(start: Floats, end: Floats, shares: Sequence[float], capacity: int,
     return [Section(start + np.array([[a], [b]]) * along, both_ways) for a, b in pairwise(cuts)]
 
 
-def held_back(points: Floats, edges: Indices, parts: Sequence[Section], off_m: float) -> Indices:
+def held_back(points: Floats, edges: Indices, parts: Sequence[Section]) -> Indices:
     """(k, 2): edges, and points at which nobody may be when a robot sets out on them: they lead into one section."""
     found = [np.zeros((0, 2), dtype=np.int64)]
     for part in parts:
-        inside = part.holds(points, off_m)
+        inside = part.holds(points)
         if np.count_nonzero(inside) > 1:
             edge, point = np.meshgrid(part.entered(points, edges, inside), np.flatnonzero(inside), indexing="ij")
             found.append(np.stack([edge.ravel(), point.ravel()], axis=1))

@@ -14,14 +14,13 @@ from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.traffic.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.edge_conflicts import conflicts
+from muster.traffic.lane_sections import ON_LANE_M
 from muster.traffic.roadmap import Bools, Indices, Roadmap
 from muster.traffic.single_moves import MovePlanner, Parameters
 from muster.traffic.travellers import Move, Point, Traveller
 
 _SAME_M = 1e-6
 _THERE_M = 1e-3
-_ON_LANE_M = 0.05
-"""A place that is no farther from the middle of a lane is on it."""
 _WAYS = 160
 """Ways that are sought to improve a plan, but one for each robot at least."""
 _MOST_BY_INTERVALS = 5_000_000
@@ -294,7 +293,7 @@ def _dividing(points: Floats, lanes: Indices, k: int) -> Indices:
     squared = np.einsum("ij,ij->i", along, along)
     share = np.einsum("ij,ij->i", off, along) / squared
     away_m = np.hypot(*(off - share[:, np.newaxis] * along).T)
-    on = (away_m <= _ON_LANE_M) & (share > 0) & (share < 1)
+    on = (away_m <= ON_LANE_M) & (share > 0) & (share < 1)
     here = np.full(np.count_nonzero(on), k)
     pieces = np.concatenate([np.stack([start[on], here], axis=1), np.stack([here, end[on]], axis=1)])
     return np.unique(pieces, axis=0)
