@@ -12,7 +12,8 @@ from tests.random_missions import random_mission
 import muster
 from muster import core
 from muster.allocation.problem import Problem
-from muster.allocation.search import Parameters
+from muster.allocation.search import Parameters, Variations, allocate
+from muster.allocation.stop import Stop
 from muster_studies.uniform import large_mission
 
 
@@ -118,3 +119,21 @@ def test_it_goes_on_from_a_start_plan_and_completes_it():
 def test_parameters_out_of_range_are_refused(name, value):
     with pytest.raises(muster.ParameterError, match=name):
         Parameters(**{name: value})
+
+
+@pytest.mark.parametrize("timed", [False, True])
+def test_variations_of_a_plan_differ_from_it_and_keep_the_rules(timed):
+    mission = random_mission(7, tasks=14, robots=4, min_suitability=0)
+    mission = replace(mission, suitability=None)
+    if timed:
+        tasks = tuple(replace(task, deadline_s=2000.0) for task in mission.tasks)
+        mission = replace(mission, tasks=tasks)
+    problem = Problem.compile(mission)
+    first = allocate(problem, Stop(iterations=100), 1, Parameters(), None).routes
+    variations = [Variations(problem, first, 2), Variations(problem, first, 2)]
+    found = [[each.of(first) for _ in range(60)] for each in variations]
+    assert found[0] == found[1]
+    assert len({tuple(map(tuple, routes)) for routes in found[0]}) > 10
+    for routes in found[0]:
+        assert core.Inspection(problem.core, routes).admissible
+        assert sum(map(len, routes)) == sum(map(len, first))

@@ -6,6 +6,7 @@ import pytest
 
 import muster
 from muster.allocation.stop import Stop
+from muster.planning import spreading
 from muster.planning.congestion import SharedPassages
 from muster.planning.request import Request
 from muster.planning.solving import answer
@@ -32,6 +33,17 @@ def test_routes_spread_and_the_plan_says_what_its_traffic_takes(mission):
     assert sum(plan.time_with_traffic_s for plan in spread) < 0.95 * sum(of_free)
     assert spread[0].routes == planned(mission).routes
     assert spread[0].objective_value == pytest.approx(muster.verify(mission, spread[0]).value())
+
+
+def test_varied_by_its_traffic_a_plan_is_better_than_those_it_comes_from(mission, monkeypatch):
+    """What varies keeps the rules, and the plan tells the time that the traffic of its own routes takes."""
+    varied = [planned(mission, seed=seed) for seed in range(2)]
+    monkeypatch.setattr(spreading, "VARIATIONS_BY_ITERATIONS", 0)
+    first = [planned(mission, seed=seed) for seed in range(2)]
+    assert sum(plan.time_with_traffic_s for plan in varied) < sum(plan.time_with_traffic_s for plan in first)
+    told = SharedPassages.of(mission, "auto").told(varied[0])
+    assert told.time_without_traffic_s == pytest.approx(varied[0].time_without_traffic_s)
+    assert told.time_with_traffic_s == pytest.approx(varied[0].time_with_traffic_s, rel=0.25)
 
 
 def test_plans_of_other_allocators_are_told_alone(mission):

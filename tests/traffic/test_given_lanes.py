@@ -10,7 +10,7 @@ from muster.motion.free_space import PolygonSpace
 from muster.motion.paths import PathFinder
 from muster.traffic.given_lanes import closed_lanes
 from muster.traffic.roadmap import Roadmap
-from muster.traffic.roadmap_plan import with_places
+from muster.traffic.roadmap_network import with_places
 
 RADIUS = 0.3
 NODES = {"a": (0, 0), "b": (5, 0), "c": (5, 3)}

@@ -30,8 +30,8 @@ def traveller(name, start, end):
 
 def told(roadmap, *travellers):
     roads = RoadmapPlan(roadmap, lambda points: True)
-    alone = tuple(roads.journeys([who], ways=1)[0] for who in travellers)
-    return Forecast((), tuple(roads.journeys(travellers, ways=8)), alone)
+    journeys = roads.journeys(travellers, ways=8)
+    return Forecast((), tuple(journeys.together), tuple(journeys.alone))
 
 
 def test_a_door_where_two_meet_costs_ways_through_it_half_of_what_they_lose(roadmap):

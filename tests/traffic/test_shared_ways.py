@@ -8,12 +8,27 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from muster.core import SafeIntervals, Traveller
+from muster.core import SafeIntervals, SharedWays, Traveller
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.single_moves import MovePlanner
 from muster_studies.jams import scenes
 
 HOLD_S = 5.0
+
+
+def traveller(start: int, stops: list[tuple[int, float]], *, fixed: bool = False) -> Traveller:
+    return Traveller(
+        start=start,
+        stops=stops,
+        radius=0.3,
+        speed=1.0,
+        heading=0.0,
+        yaw_rate=2.0,
+        acceleration=1.0,
+        ready=0.0,
+        fixed=fixed,
+        stays=True,
+    )
 
 
 class Aisles:
@@ -30,24 +45,13 @@ class Aisles:
 
     def travellers(self) -> list[Traveller]:
         return [
-            Traveller(
-                start=start,
-                stops=[*((stop, HOLD_S) for stop in stops), (start, 0.0)],
-                radius=0.3,
-                speed=1.0,
-                heading=0.0,
-                yaw_rate=2.0,
-                acceleration=1.0,
-                ready=0.0,
-                fixed=False,
-                stays=True,
-            )
+            traveller(start, [*((stop, HOLD_S) for stop in stops), (start, 0.0)])
             for start, stops in zip(self.starts, self.stops, strict=True)
         ]
 
-    def ways(self, tries: int):
+    def ways(self, more: int) -> SharedWays:
         travellers = self.travellers()
-        return self.search.best_of(travellers, order=list(range(len(travellers))), tries=tries, seed=1)
+        return SharedWays(self.search, travellers, order=list(range(len(travellers))), ways=more, seed=1)
 
 
 @pytest.fixture(scope="module")
@@ -56,8 +60,9 @@ def aisles():
 
 
 def test_each_goes_to_its_stops_one_after_the_other_and_home(aisles):
-    moves, ends, order = aisles.ways(4)
-    assert sorted(order) == list(range(6))
+    ways = aisles.ways(24)
+    moves, ends = ways.paths()
+    assert sorted(ways.order) == list(range(6))
     edges = aisles.roadmap.edges
     for k, start in enumerate(aisles.starts):
         own = [move for move in moves if move[1] == k]
@@ -71,7 +76,10 @@ def test_each_goes_to_its_stops_one_after_the_other_and_home(aisles):
 
 
 def test_moves_are_free_while_all_others_stand_where_theirs_have_left_them(aisles):
-    moves, _, _ = aisles.ways(4)
+    assert_free(aisles, aisles.ways(24).paths()[0])
+
+
+def assert_free(aisles, moves):
     at = dict(enumerate(aisles.roadmap.points[aisles.starts]))
     for _, robot, edge, _ in moves:
         begin, end = aisles.roadmap.points[aisles.roadmap.edges[edge]]
@@ -84,8 +92,8 @@ def test_moves_are_free_while_all_others_stand_where_theirs_have_left_them(aisle
     assert min(math.dist(at[a], at[b]) for a, b in combinations(at, 2)) > 0.6
 
 
-def test_more_tries_are_never_worse(aisles):
-    found = [aisles.ways(tries)[1] for tries in (1, 4, 16)]
+def test_more_ways_are_never_worse(aisles):
+    found = [aisles.ways(more).paths()[1] for more in (0, 24, 96)]
     costs = [max(ends) + sum(ends) / len(ends) for ends in found]
     assert costs == sorted(costs, reverse=True)
     assert costs[-1] < costs[0]
@@ -93,19 +101,33 @@ def test_more_tries_are_never_worse(aisles):
 
 def test_who_is_cut_off_by_one_that_never_leaves_does_not_hinder_the_others(aisles):
     blocked = aisles.travellers()[:2]
-    standing = Traveller(
-        start=aisles.stops[0][0],
-        stops=[],
-        radius=0.3,
-        speed=1.0,
-        heading=0.0,
-        yaw_rate=2.0,
-        acceleration=1.0,
-        ready=0.0,
-        fixed=True,
-        stays=True,
-    )
-    moves, ends, _ = aisles.search.best_of([*blocked, standing], order=[0, 1, 2], tries=2, seed=0)
+    standing = traveller(aisles.stops[0][0], [], fixed=True)
+    moves, ends = SharedWays(aisles.search, [*blocked, standing], order=[0, 1, 2], ways=6, seed=0).paths()
     assert math.isnan(ends[0])
     assert ends[1] < math.inf
     assert 2 not in {robot for _, robot, _, _ in moves}
+
+
+def test_alone_each_is_as_fast_as_if_nobody_else_were_planned(aisles):
+    moves, ends = aisles.ways(24).paths_alone()
+    for k, who in enumerate(aisles.travellers()):
+        own, (end,) = SharedWays(aisles.search, [who], order=[0], ways=0, seed=1).paths()
+        assert end == ends[k]
+        assert [(at, edge) for at, _, edge, _ in own] == [(at, edge) for at, robot, edge, _ in moves if robot == k]
+
+
+def test_who_goes_elsewhere_passes_the_others_and_comes_back_when_that_is_undone(aisles):
+    ways = aisles.ways(24)
+    before = ways.paths()
+    tours = [[*((stop, HOLD_S) for stop in aisles.stops[1 - k]), (aisles.starts[k], 0.0)] for k in (0, 1)]
+    ways.change([(k, traveller(aisles.starts[k], tours[k])) for k in (0, 1)], ways=12)
+    moves, ends = ways.paths()
+    assert_free(aisles, moves)
+    assert max(ends) < math.inf
+    at = {k: [aisles.roadmap.edges[edge, 1] for _, robot, edge, _ in moves if robot == k] for k in (0, 1)}
+    assert set(aisles.stops[1]) <= set(at[0])
+    assert set(aisles.stops[0]) <= set(at[1])
+    ways.undo()
+    assert ways.paths() == before
+    with pytest.raises(ValueError, match="changes: no number of a traveller"):
+        ways.change([(6, aisles.travellers()[0])], ways=0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
@@ -38,13 +38,20 @@ class Algorithm(Protocol):
     ) -> Outcome | Sequence[Sequence[int]]: ...
 
 
+class Variations(Protocol):
+    """Plans that differ a little from others."""
+
+    def of(self, routes: Routes) -> Routes: ...
+
+
 @dataclass(frozen=True, kw_only=True)
 class Allocator:
     """An algorithm that turns a problem into a plan.
 
     `anytime` tells whether it goes on until it is stopped. `parameters` is a frozen, keyword-only dataclass that checks
     itself when made and has the published defaults. `auctions` tells whether its plans have a book; `keeps_fixed`,
-    whether it leaves tasks where they are that are to stay; `can`, which rules of time, teams and relations it
+    whether it leaves tasks where they are that are to stay; `variations`, where there are any, makes what varies the
+    plans of a problem, from first routes and a seed; `can` tells which rules of time, teams and relations it
     keeps (of `capabilities.ALL`).
     """
 
@@ -55,6 +62,7 @@ class Allocator:
     algorithm: Algorithm
     auctions: bool = False
     keeps_fixed: bool = False
+    variations: Callable[[Problem, Routes, int], Variations] | None = None
     can: frozenset[str] = NONE
 
     def solve(

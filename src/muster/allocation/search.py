@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from itertools import cycle
 
 from muster import core
 from muster.allocation import greedy
@@ -76,6 +77,11 @@ class Parameters:
             raise ParameterError(f"blink: {self.blink:g}; expected a number from 0 to below 1")
 
 
+_SHORT_STEP = Parameters(removed=2.0, longest_string=3, blink=0.2)
+_LONG_STEP = Parameters(removed=8.0, blink=0.2)
+_ACCEPTING = 2.0  # temperature of a variation, in ways
+
+
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Anneal the greedy plan; of a team that outgrows that, one part after the other."""
     parts = 1 if problem.core.is_timed else params.parts or number_of_parts(len(problem.tasks))
@@ -124,6 +130,32 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
                 exchanged += 1
                 exchange(searches, best)
     return _best(searches).best
+
+
+class Variations:
+    """Plans that are a step of the search away from others: every third a long step.
+
+    Parameters
+    ----------
+    problem
+        of the plans.
+    routes
+        of a first plan.
+    seed
+        of the steps.
+    """
+
+    def __init__(self, problem: Problem, routes: Routes, seed: int) -> None:
+        short, long = (_search(problem, routes, seed, params) for params in (_SHORT_STEP, _LONG_STEP))
+        self._searches = cycle((short, short, long))
+        self._temperature = _ACCEPTING * (short.mean_way or 1.0)
+
+    def of(self, routes: Routes) -> Routes:
+        """Routes a step away from these."""
+        search = next(self._searches)
+        search.go_on_from(routes)
+        search.anneal(1, self._temperature, self._temperature)
+        return search.routes
 
 
 def exchange(searches: Sequence[_Search], best: _Search) -> None:
@@ -180,4 +212,5 @@ SEARCH = Allocator(
     algorithm=allocate,
     keeps_fixed=True,
     can=ALL,
+    variations=Variations,
 )

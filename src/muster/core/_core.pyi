@@ -287,6 +287,10 @@ class Search:
         """Go on from these routes; the best stays."""
 
     @property
+    def routes(self) -> list[list[int]]:
+        """With which it goes on."""
+
+    @property
     def best(self) -> list[list[int]]: ...
 
     @property
@@ -398,6 +402,10 @@ class ScheduleSearch:
 
     def go_on_from(self, routes: Sequence[Sequence[int]]) -> None:
         """Go on from these routes; the best stays."""
+
+    @property
+    def routes(self) -> list[list[int]]:
+        """With which it goes on."""
 
     @property
     def best(self) -> list[list[int]]: ...
@@ -933,10 +941,35 @@ class SafeIntervals:
     def metres_to(self, goal: int) -> list[float]:
         """What it costs to come to a point from each; inf where there is no way."""
 
-    def best_of(self, travellers: Sequence[Traveller], *, order: Sequence[int], tries: int, seed: int) -> tuple[list[tuple[float, int, int, int]], list[float], list[int]]:
+class SharedWays:
+    """
+    Ways of all who share a roadmap: one after the other, then few at a time anew [li2021].
+    """
+
+    def __init__(self, paths: SafeIntervals, travellers: Sequence[Traveller], *, order: Sequence[int], ways: int, seed: int) -> None:
         """
-        Moves (seconds, traveller, edge, the number of the stop to which it leads) in order; when each has held at its last stop, inf where it finds no path, NaN where those that are fixed cut it off; and the order of travellers in which these were found. The first is the one given; then few travellers at a time are planned anew, until so many ways as `tries` have been sought for each.
+        The first ways are in the order given; `ways` more are sought to improve them.
         """
+
+    def change(self, changes: Sequence[tuple[int, Traveller]], *, ways: int) -> None:
+        """
+        Travellers, by number, do something else: theirs are sought anew, and `ways` more.
+        """
+
+    def undo(self) -> None:
+        """Take the last change back."""
+
+    @property
+    def order(self) -> list[int]:
+        """Of the travellers, in which these ways were found."""
+
+    def paths(self) -> tuple[list[tuple[float, int, int, int]], list[float]]:
+        """
+        Moves (seconds, traveller, edge, the number of the stop to which it leads) in order; and when each has held at its last stop, inf where it finds no path, NaN where those that are fixed cut it off.
+        """
+
+    def paths_alone(self) -> tuple[list[tuple[float, int, int, int]], list[float]]:
+        """The same of each, were it alone with those that are fixed."""
 
 class DirectedGraph:
     """A directed graph in compressed rows."""

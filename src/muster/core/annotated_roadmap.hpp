@@ -63,7 +63,10 @@ class AnnotatedRoadmap {
   // The greatest on it.
   double speed(int edge) const { return speeds_[edge]; }
   // Radians from one edge to the next, without sign.
-  double turn(int edge, int next) const { return turn_from(directions_[edge], next); }
+  double turn(int edge, int next) const {
+    const double by = std::abs(directions_[next] - directions_[edge]);
+    return std::min(by, 2.0 * std::numbers::pi - by);
+  }
   // Radians from a heading, from east and anticlockwise, to that of an edge, without sign; 0 from NaN.
   double turn_from(double heading, int edge) const {
     const double by = std::abs(std::remainder(directions_[edge] - heading, 2.0 * std::numbers::pi));

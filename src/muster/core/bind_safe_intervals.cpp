@@ -23,8 +23,6 @@ namespace muster {
 
 namespace {
 
-constexpr int kTriesWhereLost = 4;  // times as many where some find no path
-
 using Stops = std::vector<std::pair<int, double>>;
 
 Traveller traveller_of(int start, const Stops& stops, double radius, double speed, double heading, double yaw_rate,
@@ -36,25 +34,28 @@ Traveller traveller_of(int start, const Stops& stops, double radius, double spee
   return who;
 }
 
-std::tuple<std::vector<std::tuple<double, int, int, int>>, std::vector<double>, std::vector<int>> told(
-    const Paths& paths) {
+std::pair<std::vector<std::tuple<double, int, int, int>>, std::vector<double>> told(Paths paths) {
   std::vector<std::tuple<double, int, int, int>> moves;
   for (const TimedMove& move : paths.moves) moves.emplace_back(move.start, move.traveller, move.edge, move.stop);
-  return {std::move(moves), paths.ends, paths.order};
+  return {std::move(moves), std::move(paths.ends)};
 }
 
-void check(const SafeIntervals& paths, const std::vector<Traveller>& travellers, std::vector<int> order, int tries) {
+void check(const SafeIntervals& paths, const Traveller& who) {
   const auto known = [&](int point) { return point >= 0 && point < paths.points(); };
-  for (const Traveller& who : travellers) {
-    if (!known(who.start)) throw std::invalid_argument("start: no point of the roadmap");
-    for (const Stop& stop : who.stops)
-      if (!known(stop.point)) throw std::invalid_argument("stop: no point of the roadmap");
-  }
+  if (!known(who.start)) throw std::invalid_argument("start: no point of the roadmap");
+  for (const Stop& stop : who.stops)
+    if (!known(stop.point)) throw std::invalid_argument("stop: no point of the roadmap");
+}
+
+void check(std::vector<int> order, std::size_t travellers) {
   std::ranges::sort(order);
-  bool each = order.size() == travellers.size();
+  bool each = order.size() == travellers;
   for (std::size_t k = 0; each && k < order.size(); ++k) each = order[k] == static_cast<int>(k);
   if (!each) throw std::invalid_argument("order: expected each traveller once");
-  if (tries < 1) throw std::invalid_argument("tries: expected at least 1");
+}
+
+void check(int ways) {
+  if (ways < 0) throw std::invalid_argument("ways: expected at least 0");
 }
 
 }  // namespace
@@ -81,22 +82,46 @@ void bind_safe_intervals(nb::module_& m) {
             if (goal < 0 || goal >= self.points()) throw std::invalid_argument("goal: no point of the roadmap");
             return self.metres_to(goal);
           },
-          "goal"_a, "What it costs to come to a point from each; inf where there is no way.")
+          "goal"_a, "What it costs to come to a point from each; inf where there is no way.");
+
+  nb::class_<SharedWays>(m, "SharedWays",
+                         "Ways of all who share a roadmap: one after the other, then few at a time anew [li2021].")
       .def(
-          "best_of",
-          [](SafeIntervals& self, const std::vector<Traveller>& travellers, std::vector<int> order, int tries,
-             std::uint64_t seed) {
-            check(self, travellers, order, tries);
+          "__init__",
+          [](SharedWays* self, SafeIntervals& paths, const std::vector<Traveller>& travellers, std::vector<int> order,
+             int ways, std::uint64_t seed) {
+            for (const Traveller& who : travellers) check(paths, who);
+            check(order, travellers.size());
+            check(ways);
             const nb::gil_scoped_release free;
-            SharedWays ways(self, travellers, std::move(order), seed);
-            ways.improve(tries, kTriesWhereLost * tries);
-            return told(ways.paths());
+            new (self) SharedWays(paths, travellers, std::move(order), ways, seed);
           },
-          "travellers"_a, nb::kw_only(), "order"_a, "tries"_a, "seed"_a,
-          "Moves (seconds, traveller, edge, the number of the stop to which it leads) in order; when each has held at "
-          "its last stop, inf where it finds no path, NaN where those that are fixed cut it off; and the order of "
-          "travellers in which these were found. The first is the one given; then few travellers at a time are planned "
-          "anew, until so many ways as `tries` have been sought for each.");
+          "paths"_a, "travellers"_a, nb::kw_only(), "order"_a, "ways"_a, "seed"_a, nb::keep_alive<1, 2>(),
+          "The first ways are in the order given; `ways` more are sought to improve them.")
+      .def(
+          "change",
+          [](SharedWays& self, const std::vector<std::pair<int, Traveller>>& changes, int ways) {
+            for (const auto& [k, who] : changes) {
+              check(self.roadmap(), who);
+              if (k < 0 || k >= static_cast<int>(self.travellers().size()))
+                throw std::invalid_argument("changes: no number of a traveller");
+              if (who.fixed || self.travellers()[k].fixed) throw std::invalid_argument("changes: one is fixed");
+            }
+            check(ways);
+            const nb::gil_scoped_release free;
+            self.change(changes, ways);
+          },
+          "changes"_a, nb::kw_only(), "ways"_a,
+          "Travellers, by number, do something else: theirs are sought anew, and `ways` more.")
+      .def("undo", &SharedWays::undo, "Take the last change back.")
+      .def_prop_ro("order", &SharedWays::order, "Of the travellers, in which these ways were found.")
+      .def(
+          "paths", [](const SharedWays& self) { return told(self.paths()); },
+          "Moves (seconds, traveller, edge, the number of the stop to which it leads) in order; and when each has held "
+          "at its last stop, inf where it finds no path, NaN where those that are fixed cut it off.")
+      .def(
+          "paths_alone", [](const SharedWays& self) { return told(self.paths_alone()); },
+          "The same of each, were it alone with those that are fixed.");
 }
 
 }  // namespace muster

@@ -34,6 +34,7 @@ void bind_schedule_search(nb::module_& m) {
            "So many steps, while the temperature falls evenly from hot to cold (in the unit of the objective).")
       .def("go_on_from", &ScheduleSearch::go_on_from, "routes"_a, Unlocked(),
            "Go on from these routes; the best stays.")
+      .def_prop_ro("routes", &ScheduleSearch::routes, "With which it goes on.")
       .def_prop_ro("best", &ScheduleSearch::best)
       .def_prop_ro("best_weight_left_out", [](const ScheduleSearch& s) { return -s.best_value().weight; })
       .def_prop_ro("best_objective", [](const ScheduleSearch& s) { return s.best_value().objective; })

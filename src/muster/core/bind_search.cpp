@@ -37,6 +37,7 @@ void bind_search(nb::module_& m) {
       .def("anneal", &Search::anneal, "steps"_a, "hot"_a, "cold"_a, Unlocked(),
            "So many steps, while the temperature falls evenly from hot to cold (in the unit of the objective).")
       .def("go_on_from", &Search::go_on_from, "routes"_a, Unlocked(), "Go on from these routes; the best stays.")
+      .def_prop_ro("routes", &Search::routes, "With which it goes on.")
       .def_prop_ro("best", &Search::best)
       .def_prop_ro("best_weight_left_out", [](const Search& s) { return -s.best_value().weight; })
       .def_prop_ro("best_objective", [](const Search& s) { return s.best_value().objective; })

@@ -18,7 +18,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;
 constexpr double kNearly = 1e-6;  // metres by which two may be nearer
 constexpr double kTailsToLeave = 4.0;
-constexpr double kRestingInTheWay = 10.0;  // seconds that a path may be longer to rest out of the way
+constexpr double kRestingInTheWay = 10.0;       // seconds that a path may be longer to rest out of the way
+constexpr std::size_t kMostKnown = 20'000'000;  // edges from which it is known how long goals take
 
 }  // namespace
 
@@ -82,8 +83,8 @@ double SafeIntervals::apart(const Traveller& who, double radius) const {
 // Half the time that a robot takes to get clear of a point: one that comes is as far away still.
 double SafeIntervals::tail(const Traveller& who) const { return (who.radius + margin_) / who.speed; }
 
-double SafeIntervals::seconds(const Traveller& who, int edge) const {
-  return roadmap_->length(edge) / std::min(who.speed, roadmap_->speed(edge));
+SecondsToGoal& SafeIntervals::seconds_to(const Manner& manner, int goal) {
+  return seconds_to_goals_.try_emplace({goal, manner}, *roadmap_, manner, goal).first->second;
 }
 
 const std::vector<double>& SafeIntervals::metres_to(int goal) {
@@ -153,21 +154,25 @@ double SafeIntervals::leaves_by(const Traveller& who) {
 std::optional<Way> SafeIntervals::path(const Traveller& who) {
   std::ranges::fill(known_, false);
   std::ranges::fill(known_edge_, false);
+  if (seconds_to_goals_.size() * known_edge_.size() > kMostKnown) seconds_to_goals_.clear();
   const DirectedGraph& graph = roadmap_->graph();
+  const Manner manner = who.manner();
   const int legs = static_cast<int>(who.stops.size());
-  std::vector<const std::vector<double>*> to_stop;
-  std::vector<double> after(legs + 1, 0.0);  // seconds from a stop to the last
-  for (const Stop& stop : who.stops) to_stop.push_back(&metres_to(stop.point));
   if (legs > 0 && who.stays) {  // where another stays for good nobody can: that is seen without a search
     const std::vector<Span>& at_last = safe(who, who.stops.back().point);
     if (at_last.empty() || at_last.back().until < kNever) return std::nullopt;
   }
+  std::vector<SecondsToGoal*> to_stop;
+  for (const Stop& stop : who.stops) to_stop.push_back(&seconds_to(manner, stop.point));
+  const auto held_after = [&](int leg) { return 0.5 * manner.stopping() + who.stops[leg].hold; };
+  std::vector<double> after(legs + 1, 0.0);  // seconds from one stop to when it has held at the last, alone
   for (int leg = legs - 1; leg > 0; --leg)
-    after[leg] = after[leg + 1] + (*to_stop[leg])[who.stops[leg - 1].point] / who.speed + who.stops[leg].hold;
-  const auto remaining = [&](int leg, int point) {
-    return leg >= legs ? 0.0 : (*to_stop[leg])[point] / who.speed + who.stops[leg].hold + after[leg + 1];
+    after[leg] = to_stop[leg]->from_point(who.stops[leg - 1].point) + held_after(leg) + after[leg + 1];
+  const auto remaining = [&](const Label& label, int point, bool stands) {
+    if (label.leg >= legs) return 0.0;
+    SecondsToGoal& to = *to_stop[label.leg];
+    return (stands ? to.from_point(point) : to.from_edge(label.edge)) + held_after(label.leg) + after[label.leg + 1];
   };
-  const double stop_s = who.speed / who.acceleration;
 
   std::vector<Label> labels;
   struct Item {
@@ -179,9 +184,10 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
   by_edge_.clear();
   by_point_.clear();
   // Who comes this much later in the same interval is no better whatever way it faces.
-  const double worst = std::numbers::pi / who.yaw_rate + 1.5 * stop_s;
+  const double worst = std::numbers::pi / manner.yaw_rate + 1.5 * manner.stopping();
+  const auto stands = [](const Label& label) { return label.edge < 0 || label.start == kNever; };
   const auto offer = [&](Label label, int point) {
-    label.key = label.ready + remaining(label.leg, point);
+    label.key = label.ready + remaining(label, point, stands(label));
     if (!(label.key < kNever)) return;
     const int state = (label.interval + 1) * (legs + 1) + label.leg;
     double &at_point = by_point_.at(point, state), &by_edge = by_edge_.at(label.edge + 1, state);
@@ -209,7 +215,7 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
     const int point = label.edge < 0 ? who.start : graph.head(label.edge);
     const Span here = interval_of(label);
     if (label.leg < legs && who.stops[label.leg].point == point) {
-      const double held = label.ready + 0.5 * stop_s + who.stops[label.leg].hold;
+      const double held = label.ready + held_after(label.leg);
       const bool last = label.leg + 1 == legs;
       if (here.until >= held && (!last || !who.stays || here.until == kNever)) {
         Label on = label;
@@ -229,11 +235,9 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
     }
     if (label.leg == legs && rests && here.until == kNever)
       queue.push({label.ready + (rests_[point] ? 0.0 : kRestingInTheWay), item.label, true});
-    const bool stands = label.edge < 0 || label.start == kNever;
     for (int edge = graph.begin(point); edge < graph.end(point); ++edge) {
       const double angle = label.edge < 0 ? roadmap_->turn_from(who.heading, edge) : roadmap_->turn(label.edge, edge);
-      const double slowed = stands ? 0.5 : std::min(1.0, angle / (0.5 * std::numbers::pi));
-      const double turning = angle / who.yaw_rate + slowed * stop_s;
+      const double turning = stands(label) ? manner.setting_out(angle) : manner.turning(angle);
       const std::vector<Span>& there = safe(who, graph.head(edge));
       for (int k = 0; k < static_cast<int>(there.size()); ++k) {
         const double from = std::max(label.ready + turning, there[k].from),
@@ -241,7 +245,7 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
         const double set_out = from <= until ? earliest(who, edge, from, until) : kNever;
         if (set_out == kNever) continue;
         const double waited = set_out - label.ready - turning;
-        const double arrives = set_out + seconds(who, edge) + std::min(waited, 0.5 * stop_s);
+        const double arrives = set_out + manner.along(*roadmap_, edge) + std::min(waited, 0.5 * manner.stopping());
         if (arrives > there[k].until) continue;
         offer({0.0, arrives, label.leg, edge, k, item.label, set_out}, graph.head(edge));
       }

@@ -6,12 +6,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "annotated_roadmap.hpp"
+#include "seconds_to_goal.hpp"
 
 namespace muster {
 
@@ -28,6 +30,8 @@ struct Traveller {
   double ready;  // seconds for which it stays at its start
   bool fixed;    // it never leaves
   bool stays;    // it stays at its last stop for good; else it leaves when it has held, to rest anywhere
+
+  Manner manner() const { return {speed, yaw_rate, acceleration}; }
 };
 
 struct TimedMove {
@@ -85,7 +89,7 @@ class SafeIntervals {
 
   double apart(const Traveller& who, double radius) const;
   double tail(const Traveller& who) const;
-  double seconds(const Traveller& who, int edge) const;  // along an edge at its speed
+  SecondsToGoal& seconds_to(const Manner& manner, int goal);
   std::optional<Way> path(const Traveller& who);
   void erase_stays(int robot, int point);
   // The intervals in which a robot may be at a point.
@@ -123,6 +127,7 @@ class SafeIntervals {
   std::vector<std::vector<AnnotatedRoadmap::Near>>
       around_;  // of each point those as near as any edge's, itself included
   GoalTables<std::vector<double>> to_goals_;
+  std::map<std::pair<int, Manner>, SecondsToGoal> seconds_to_goals_;
 };
 
 }  // namespace muster

@@ -95,6 +95,8 @@ void ScheduleSearch::go_on_from(const Routes& routes) {
   note_best();
 }
 
+Routes ScheduleSearch::routes() const { return roster_.routes(); }
+
 void ScheduleSearch::anneal(int steps, double hot, double cold) {
   if (problem_.tasks() == 0) return;
   const double cooling = std::pow(cold / hot, 1.0 / steps);

@@ -62,6 +62,12 @@ void Search::go_on_from(const Routes& routes) {
   note_best();
 }
 
+Routes Search::routes() const {
+  Routes routes;
+  for (int robot = 0; robot < problem_.robots(); ++robot) routes.push_back(team_.route(robot));
+  return routes;
+}
+
 void Search::anneal(int steps, double hot, double cold) {
   if (problem_.tasks() == 0) return;
   const double cooling = std::pow(cold / hot, 1.0 / steps);

@@ -29,6 +29,8 @@ class Search {
   // Goes on from these routes; the best stays.
   void go_on_from(const Routes& routes);
 
+  // With which it goes on.
+  Routes routes() const;
   const Routes& best() const { return best_; }
   const Value& best_value() const { return best_value_; }
   // The usual way from one task to the next.

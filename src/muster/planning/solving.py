@@ -107,7 +107,7 @@ def _spread(
 ) -> Plan:
     """The plan of an allocator whose routes spread over the passages that robots share."""
     from muster.allocation.allocator import first_routes
-    from muster.planning.congestion import spread
+    from muster.planning.spreading import spread
 
     allocator.require_able(problem, request.seed)
     start = first_routes(problem, request.start)
@@ -115,7 +115,7 @@ def _spread(
     def allocate(expected: Problem, part: Stop, first: Routes | None) -> Outcome:
         return allocator.outcome(expected, part, request.seed, params, start if first is None else first)
 
-    return spread(problem, shared, allocate, stop, allocator=allocator.name, seed=request.seed, on_progress=report)
+    return spread(problem, shared, allocate, stop, allocator=allocator, seed=request.seed, on_progress=report)
 
 
 def _compiled(request: Request) -> Problem:

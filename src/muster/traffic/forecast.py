@@ -11,12 +11,15 @@ from muster.mission.model import Mission, Robot
 from muster.mission.plan import RouteStop
 from muster.motion.actions import TaskMotion
 from muster.motion.actions import plan as motion_of
+from muster.traffic.joint_journeys import JointJourneys, Journey
 from muster.traffic.names import drives
-from muster.traffic.roadmap_plan import Journey, RoadmapPlan
+from muster.traffic.roadmap_plan import RoadmapPlan
 from muster.traffic.travellers import Stop, Traveller
 
 _WAYS_EACH, _LEAST_WAYS = 4, 40
 """Ways of each robot that are sought, and of all: they tell how long a plan takes as well as the more of a run do."""
+_WAYS_AFTER_CHANGE = 12
+"""Ways that are sought beside those of robots that go elsewhere."""
 
 
 @dataclass(frozen=True)
@@ -70,27 +73,70 @@ class Forecast:
         return _last([one.alone_s for one in self.robots])
 
 
-def forecast(mission: Mission, routes: Mapping[str, Sequence[RouteStop]], traffic: RoadmapPlan) -> Forecast:
-    """What `traffic` makes of the routes of robots.
+class Forecaster:
+    """Forecasts of the traffic of one mission.
 
     A robot stays at each task as long as its route says, waiting for prerequisites, windows and teams included.
+
+    Parameters
+    ----------
+    mission
+        whose robots drive.
+    traffic
+        the roadmap that they share.
 
     Raises
     ------
     ParameterError
         if no robot is of kind `ground` with a radius above 0.
     """
-    driving = [robot for robot in mission.robots if drives(robot)]
-    if not driving:
-        raise ParameterError("no robot is of kind ground with a radius above 0; expected one whose traffic is forecast")
-    travellers = [_traveller(mission, robot, routes.get(robot.id, ())) for robot in driving]
-    together = traffic.journeys(travellers, ways=max(_LEAST_WAYS, _WAYS_EACH * len(travellers)))
-    alone = [traffic.journeys([who], ways=1)[0] for who in travellers]
-    robots = tuple(
-        RobotForecast(robot.id, finite(among.end_s), finite(by_itself.end_s))
-        for robot, among, by_itself in zip(driving, together, alone, strict=True)
-    )
-    return Forecast(robots, tuple(together), tuple(alone))
+
+    def __init__(self, mission: Mission, traffic: RoadmapPlan) -> None:
+        self._mission, self._traffic = mission, traffic
+        self._driving = [robot for robot in mission.robots if drives(robot)]
+        if not self._driving:
+            raise ParameterError(
+                "no robot is of kind ground with a radius above 0; expected one whose traffic is forecast"
+            )
+        self._journeys: JointJourneys | None = None
+
+    def of(self, routes: Mapping[str, Sequence[RouteStop]]) -> Forecast:
+        """What the traffic of routes comes to."""
+        travellers = self._travellers(routes)
+        self._journeys = self._traffic.journeys(travellers, ways=max(_LEAST_WAYS, _WAYS_EACH * len(travellers)))
+        return self._told(self._journeys)
+
+    def changed(self, routes: Mapping[str, Sequence[RouteStop]]) -> Forecast:
+        """The same after a forecast of routes most of which are as these: that of the others is sought among them.
+
+        It may be less, as more was sought from one forecast to the next.
+        """
+        travellers = self._travellers(routes)
+        if self._journeys is None or not self._journeys.knows(travellers):
+            return self.of(routes)
+        self._journeys.change(travellers, ways=_WAYS_AFTER_CHANGE)
+        return self._told(self._journeys)
+
+    def undo(self) -> None:
+        """Take the last change back: the next one is of the routes before it."""
+        if self._journeys is not None:
+            self._journeys.undo()
+
+    def _travellers(self, routes: Mapping[str, Sequence[RouteStop]]) -> list[Traveller]:
+        return [_traveller(self._mission, robot, routes.get(robot.id, ())) for robot in self._driving]
+
+    def _told(self, journeys: JointJourneys) -> Forecast:
+        together, alone = journeys.together, journeys.alone
+        robots = tuple(
+            RobotForecast(robot.id, finite(among.end_s), finite(by_itself.end_s))
+            for robot, among, by_itself in zip(self._driving, together, alone, strict=True)
+        )
+        return Forecast(robots, tuple(together), tuple(alone))
+
+
+def forecast(mission: Mission, routes: Mapping[str, Sequence[RouteStop]], traffic: RoadmapPlan) -> Forecast:
+    """What `traffic` makes of the routes of robots: see `Forecaster`."""
+    return Forecaster(mission, traffic).of(routes)
 
 
 def _last(times_s: Sequence[float | None]) -> float | None:

@@ -10,9 +10,9 @@ import numpy as np
 
 from muster.motion.grid import Floats
 from muster.traffic.forecast import Forecast
+from muster.traffic.joint_journeys import Journey, TimedMove
 from muster.traffic.passages import passages
 from muster.traffic.roadmap import Roadmap
-from muster.traffic.roadmap_plan import Journey, TimedMove
 
 
 class PassageDelays:
