@@ -17,7 +17,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;
 constexpr double kNearly = 1e-6;  // metres by which two may be nearer
-constexpr double kTailsToLeave = 4.0;
+constexpr double kTailsToLeave = 25.0;  // so that a crowd can unravel before a door
 constexpr double kRestingInTheWay = 10.0;       // seconds that a path may be longer to rest out of the way
 constexpr std::size_t kMostKnown = 20'000'000;  // edges from which it is known how long goals take
 
