@@ -44,6 +44,13 @@ def test_a_task_ends_in_time_for_the_deadline_of_what_waits_for_it():
     ]
 
 
+def test_what_is_too_late_whenever_the_other_ends_binds_nothing():
+    late = task("b", 0, prerequisites=("a",), lags={"a": Lag(after_s=6)}, deadline_s=8, robots_needed=2)
+    assert latest(task("a", 0), late) == [None, 8]
+    plan = muster.solve(mission_of(task("a", 0), late), "auction")
+    assert [item.task for item in plan.unassigned] == ["b"]
+
+
 def test_a_window_binds_when_work_begins():
     assert latest(task("a", 0), task("b", 0, prerequisites=("a",), window_s=((2, 8), (20, 22)))) == [22, 27]
     late = task("b", 0, prerequisites=("a",), window_s=((2, 8), (20, 22)), deadline_s=24)

@@ -77,7 +77,8 @@ def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
         for j in unit:
             ends[j] = min(ends[j], begin + longest[j])
             for k, after, _ in rules.lags(j):
-                ends[k] = min(ends[k], begin - after)
+                if after <= begin:  # else it is too late whenever the other ends
+                    ends[k] = min(ends[k], begin - after)
     return ends
 
 
