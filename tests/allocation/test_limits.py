@@ -80,6 +80,21 @@ def test_a_team_is_there_when_its_last_member_is():
     assert found["a", "r_1"][1] == "arrives at 94 s at the earliest, its window closes at 50 s"
 
 
+@pytest.mark.parametrize(
+    ("limit", "word", "said"),
+    [
+        ({"deadline_s": 50}, "deadline", "what it waits for is too late for its deadline, which is 50 s"),
+        ({"window_s": ((0, 50),)}, "window", "what it waits for is too late for its window, which closes at 50 s"),
+    ],
+)
+def test_no_time_is_named_that_only_the_limit_itself_makes_so_late(limit, word, said):
+    """By the limit far cannot lift, so it must light, from 100 s on; without the limit the team is there at 90 s."""
+    robots = [robot(), robot("r_1"), robot("far", x=100)]
+    found = why(robots, task("lift", 10, robots_needed=2, **limit), task("light", 0, starts_with=("lift",)))
+    assert found["lift", "r_0"] == found["lift", "r_1"] == (word, said)
+    assert "90 s" in found["lift", "far"][1]
+
+
 def test_a_lag_that_would_hold_a_prerequisite_back_for_too_long():
     first = task("a", 10, deadline_s=100)
     then = task("b", 10, prerequisites=("a",), lags={"a": Lag(within_s=60)}, window_s=((500, 600),))

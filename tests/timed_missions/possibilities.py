@@ -149,6 +149,18 @@ def _waits_too_long(possible, robot, name, lost, until):
     return not done and near(until, possible.mission.robots[possible.robot[robot]].available_until_s)
 
 
+def _waits_too_long_for(word):
+    """No plan does the task by the robot, and its deadline, or last window, ends when it is said to."""
+
+    def holds(possible, robot, name, lost, end):
+        task = possible.task(name)
+        return not possible.by(robot, name)[-1] and near(
+            end, task.deadline_s if word == "deadline" else sorted(task.window_s)[-1][1]
+        )
+
+    return holds
+
+
 def _takes(possible, robot, name, lost, usage, _, capacity, __):
     meaning, i, _, plans = possible.by(robot, name, robots=[robot], without=["capacity"])
     own = possible.every.meaning._capacity(possible.mission.robots[i])
@@ -238,6 +250,11 @@ ALONE = (
     (rf"ends {_TIME}{_DEADLINE}", _ends),
     (rf"its route would end {_TIME}shift ends at {SECONDS}", _route_ends),
     (rf"what it waits for is too late for its shift, which ends at {SECONDS}", _waits_too_long),
+    (rf"what it waits for is too late for its deadline, which is {SECONDS}", _waits_too_long_for("deadline")),
+    (
+        rf"what it waits for is too late for its (?:last )?window, which closes at {SECONDS}",
+        _waits_too_long_for("window"),
+    ),
     (r"takes at least ([\d.]+) (m|s), of ([\d.]+) (m|s)", _takes),
     (rf"(\S+) may end only so long before what follows: it (begins) {_TIME}{_WINDOW}", _held_back),
     (rf"(\S+) may end only so long before what follows: it (ends) {_TIME}{_DEADLINE}", _held_back),

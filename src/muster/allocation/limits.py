@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +20,9 @@ from muster.allocation.rules.window import closed
 from muster.allocation.timed_rules import ROUNDING, TimedRules
 
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
-_MOST_NARROWED = 2_000_000  # robots squared times tasks, up to which bounds are narrowed again for each robot
+_MOST_NARROWED = (
+    2_000_000  # pairs times robots, or tasks, up to which bounds are narrowed again for each robot, or task
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,17 +131,31 @@ class Limits:
 
     def without_shift(self, i: int) -> Limits | None:
         """Bounds that hold whatever the shift of a robot; None: to narrow them would take too long."""
+        return self._without("available_until_s", i)
+
+    def without_deadline(self, j: int) -> Limits | None:
+        """The same whatever the deadline of a task."""
+        return self._without("deadline_s", j)
+
+    def without_windows(self, j: int) -> Limits | None:
+        """The same whatever the windows of a task."""
+        return self._without("window_s", j)
+
+    def _without(self, key: str, at: int) -> Limits | None:
+        """Bounds that hold whatever a key says of one robot or task: by it other pairs may have been excluded."""
         if not self.steps:
-            return self  # no pair was excluded by any shift before
-        if i not in self._without_shift and self.usable.size * len(self.usable) <= _MOST_NARROWED:
-            robots = list(self.problem.robots)
-            robots[i] = replace(robots[i], available_until_s=None)
-            problem = replace(self.problem, robots=tuple(robots), known=self.problem.measured)
-            self._without_shift[i] = _narrowed(_unnarrowed(problem, self.usage, self.arrival, self.home))
-        return self._without_shift.get(i)
+            return self  # no pair was excluded before
+        whose = "robots" if key == "available_until_s" else "tasks"
+        all_of_them: list[Any] = list(getattr(self.problem, whose))
+        if (key, at) not in self._freed and self.usable.size * len(all_of_them) <= _MOST_NARROWED:
+            all_of_them[at] = replace(all_of_them[at], **{key: () if key == "window_s" else None})
+            changes: dict[str, Any] = {whose: tuple(all_of_them), "known": self.problem.measured}
+            freed = _unnarrowed(replace(self.problem, **changes), self.usage, self.arrival, self.home)
+            self._freed[key, at] = _narrowed(freed)
+        return self._freed.get((key, at))
 
     @cached_property
-    def _without_shift(self) -> dict[int, Limits]:
+    def _freed(self) -> dict[tuple[str, int], Limits]:
         return {}
 
     def must_also(self, j: int) -> list[int]:

@@ -75,7 +75,12 @@ class Deadline(Rule):
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         limits = outlook.limits
-        return too_late(problem, j, float(limits.pair_end[i, j])) if limits.is_timed else None
+        if not limits.is_timed or too_late(problem, j, float(limits.pair_end[i, j])) is None:
+            return None
+        free = limits.without_deadline(j)
+        (until,) = moments(problem, float(problem.timed_rules.deadline[j]))
+        late = None if free is None else too_late(problem, j, float(free.pair_end[i, j]))
+        return late or f"what it waits for is too late for its deadline, which is {until}"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         return plan.kept_out(self.word, i, j)

@@ -92,6 +92,10 @@ class Limits(Protocol):
 
     def without_shift(self, i: int) -> Limits | None: ...
 
+    def without_deadline(self, j: int) -> Limits | None: ...
+
+    def without_windows(self, j: int) -> Limits | None: ...
+
 
 class Change:
     """What has to change for a robot to do a task under one rule: the least. Subclasses are frozen dataclasses."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar
 
@@ -70,7 +70,7 @@ class Window(Rule):
         if not limits.is_timed or math.isfinite(limits.pair_begin[i, j]):
             return None
         own = closed(problem, j, "arrives at", float(limits.arrival[i, j]))
-        return own or closed(problem, j, *reaches(limits, i, j)) or _never_together(problem, j)
+        return own or _waits_too_long(limits, i, j) or _never_together(problem, j)
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         return plan.kept_out(self.word, i, j)
@@ -82,8 +82,23 @@ def closed(problem: Question, j: int, how: str, ready: float) -> str | None:
     if not windows or ready <= windows[-1][1]:
         return None
     at, closes = moments(problem, ready, windows[-1][1])
-    which = "window" if len(windows) == 1 else "last window"
-    return f"{how} {at} at the earliest, its {which} closes at {closes}"
+    return f"{how} {at} at the earliest, its {_which(windows)} closes at {closes}"
+
+
+def _waits_too_long(limits: Limits, i: int, j: int) -> str | None:
+    """That the last window of a task is closed when all is there that it waits for; None: it is not."""
+    problem = limits.problem
+    if closed(problem, j, *reaches(limits, i, j)) is None:
+        return None
+    free = limits.without_windows(j)
+    late = None if free is None else closed(problem, j, *reaches(free, i, j))
+    windows = problem.timed_rules.windows[j]
+    (closes,) = moments(problem, windows[-1][1])
+    return late or f"what it waits for is too late for its {_which(windows)}, which closes at {closes}"
+
+
+def _which(windows: Sequence[tuple[float, float]]) -> str:
+    return "window" if len(windows) == 1 else "last window"
 
 
 def _never_together(problem: Question, j: int) -> str:
