@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 from muster import core
 from muster.allocation.problem import Problem
+from muster.allocation.rules import RULES
 from muster.allocation.stop import Stop
 from muster.allocation.working_roster import Routes, WorkingRoster
 
@@ -28,8 +29,8 @@ def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
         counts = [len(route) for route in roster.routes]
         roster.finish()
         # Robots that would have had too few tasks have none now; what they left is for the others.
-        enough = [i for i in robots if not 0 < counts[i] < problem.robots[i].min_tasks]
-        if len(enough) == len(robots) or not problem.holds("min-tasks"):
+        enough = [i for i in robots if not any(rule.too_few(problem, i, counts[i]) for rule in RULES)]
+        if len(enough) == len(robots):
             return roster.routes
         robots = enough
 

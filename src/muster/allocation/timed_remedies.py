@@ -16,10 +16,9 @@ from muster.allocation.changed_problem import changed, pair_changes, with_capaci
 from muster.allocation.feasibility import impossible, limits_of
 from muster.allocation.problem import Problem
 from muster.allocation.remedy import Before, Remedy
-from muster.allocation.rules import Change
+from muster.allocation.rules import RULES, Change
 from muster.allocation.rules.capacity import CapacityChange
 from muster.allocation.rules.deadline import LaterDeadline
-from muster.allocation.rules.min_tasks import FewerTasks, MinTasks
 from muster.allocation.rules.relation import Untied
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.rules.shift import LongerShift
@@ -63,11 +62,13 @@ def _first(problem: Problem, routes: Routes, i: int, j: int) -> Remedy:
 
 
 def _wider(problem: Problem, first: Remedy, rest: Routes, i: int, j: int) -> Iterator[Remedy]:
-    """The remedy as it is; with fewer tasks for the robot; with the robots that a team lacks; and free of relations."""
+    """The remedy as it is; without a rule that binds the robot; with robots that a team lacks; free of relations."""
     task, robot = problem.tasks[j], problem.robots[i]
     yield first
-    if robot.min_tasks > 1 and problem.holds(MinTasks.word):
-        yield _with(first, MinTasks.word, FewerTasks(robot.min_tasks, 0))
+    for rule in RULES:
+        change = rule.lifted(problem, i) if problem.holds(rule.word) else None
+        if change is not None:
+            yield _with(first, rule.word, change)
     names = {*problem.robot_index, *problem.task_index}
     base = changed(problem, first, i, j)
     more = missing_robots(base, base.robot_index[robot.id], base.task_index[task.id], names)
@@ -196,7 +197,8 @@ def _needed(
     inspection = core.Inspection(opened.core, routes)
     begin, end, over = _times(opened, routes, inspection, at, of)
     limits, rules = limits_of(opened, timed=True), problem.timed_rules
-    changes = dict(remedy.changes)
+    narrowed = {word: change.narrowed(len(routes[at])) for word, change in remedy.changes.items()}
+    changes = {word: change for word, change in narrowed.items() if change is not None}
     if rules.windows[j] and begin > rules.windows[j][-1][1] * (1 + ROUNDING):
         changes["window"] = LongerWindow(rules.windows[j][-1][1], begin, float(limits.pair_begin[at, of]))
     if end > rules.deadline[j] * (1 + ROUNDING):
@@ -204,9 +206,6 @@ def _needed(
     if over > rules.available_until[i] * (1 + ROUNDING):
         least = float(limits.pair_end[at, of] + limits.home[at, of])
         changes["shift"] = LongerShift(float(rules.available_until[i]), over, least, moments(problem, over)[0])
-    fewer = FewerTasks(problem.robots[i].min_tasks, len(routes[at]))
-    if changes.pop(MinTasks.word, None) and fewer.enough < fewer.now:
-        changes[MinTasks.word] = fewer
     now = remedy.capacity.now
     used = inspection.usages[at] / (1.0 - problem.mission.rules.capacity_reserve)
     enough = None if now is None else max(used, now)

@@ -95,8 +95,7 @@ def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[st
         click.echo(json_text({"errors": [error.as_dict() for error in errors], **found.as_dict()}), nl=False)
     else:
         _print_checked(mission, lost, len(errors))
-        if "min-tasks" not in ignored_rules(ignore):
-            _print_never_used(mission)
+        _print_never_used(mission, ignored_rules(ignore))
         _print_touching(mission)
         _print_unseen(found.unseen, errors)
         _print_blocked(found.blocked)
@@ -139,13 +138,14 @@ def _print_unseen(unseen: tuple[Unseen, ...], errors: Sequence[Finding]) -> None
             click.echo(f"warning: task {one.task}: {one.detail}", err=True)
 
 
-def _print_never_used(mission: Mission) -> None:
-    """Print on standard error the robots that would have to do more tasks than there are."""
-    tasks = counted(len(mission.tasks), "task")
-    for robot in mission.robots:
-        if robot.min_tasks > len(mission.tasks):
-            least = f"min_tasks {robot.min_tasks}, and the mission has {tasks}"
-            click.echo(f"warning: robot {robot.id}: {least}: it does none", err=True)
+def _print_never_used(mission: Mission, ignored: Collection[str]) -> None:
+    """Print on standard error the robots that a rule keeps from doing anything."""
+    from muster.allocation.rules import RULES
+
+    for rule in RULES:
+        for robot in mission.robots if rule.word not in ignored else ():
+            if (why := rule.never_used(mission, robot)) is not None:
+                click.echo(f"warning: robot {robot.id}: {why}: it does none", err=True)
 
 
 def _print_touching(mission: Mission) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.data_frames import data_frame
 from muster.mission.errors import ParameterError
 from muster.mission.html_tables import html_line, html_table
+from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.value_types import shown
 
 if TYPE_CHECKING:
@@ -19,19 +20,9 @@ KINDS = (
     "unknown-task",
     "repeated-robot",
     "repeated-task",
-    "skill",
+    *IGNORABLE,
     "action",
-    "suitability",
-    "lock",
     "unreachable",
-    "capacity",
-    "prerequisite",
-    "window",
-    "deadline",
-    "shift",
-    "team",
-    "relation",
-    "min-tasks",
     "deadlock",
     "unassigned",
     "reason",

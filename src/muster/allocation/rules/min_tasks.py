@@ -22,7 +22,7 @@ from muster.allocation.rules.rule import (
     first_robot,
     listed,
 )
-from muster.mission.model import Robot
+from muster.mission.model import Mission, Robot
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,9 @@ class FewerTasks(Change):
 
     def robot(self, robot: Robot) -> Robot:
         return replace(robot, min_tasks=self.enough)
+
+    def narrowed(self, tasks: int) -> Change | None:
+        return replace(self, enough=tasks) if tasks < self.now else None
 
 
 class MinTasks(Rule):
@@ -93,6 +96,18 @@ class MinTasks(Rule):
             for k, n in min(short, key=len).items()
         )
         return f"with it {listed(list(said))}"
+
+    def never_used(self, mission: Mission, robot: Robot) -> str | None:
+        if robot.min_tasks <= len(mission.tasks):
+            return None
+        return f"min_tasks {robot.min_tasks}, and the mission has {_counted(len(mission.tasks))}"
+
+    def too_few(self, problem: Question, i: int, tasks: int) -> bool:
+        return 0 < tasks < _least(problem, i)
+
+    def lifted(self, problem: Question, i: int) -> Change | None:
+        least = problem.robots[i].min_tasks
+        return FewerTasks(least, 0) if least > 1 else None
 
 
 def least_tasks(problem: Question) -> npt.NDArray[np.int32]:

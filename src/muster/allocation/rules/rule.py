@@ -135,6 +135,10 @@ class Change:
         """Another task of the mission as it would have to be."""
         return other
 
+    def narrowed(self, tasks: int) -> Change | None:
+        """What of it is needed where the robot does so many tasks; None: nothing."""
+        return self
+
     @property
     def seconds(self) -> float:
         """How much time the change gives; 0 for what is not about time."""
@@ -261,6 +265,18 @@ class Rule:
 
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
         """How routes with one more task for robot i break it, where they break it least; None: by their times."""
+        return None
+
+    def never_used(self, mission: Mission, robot: Robot) -> str | None:
+        """Why a robot of a mission does nothing, whatever the plan; None if it may do something."""
+        return None
+
+    def too_few(self, problem: Question, i: int, tasks: int) -> bool:
+        """Whether robot i does not do so few tasks, though it may do more."""
+        return False
+
+    def lifted(self, problem: Question, i: int) -> Change | None:
+        """The change of robot i with which it is bound no more; less may do (`narrowed`). None: there is none."""
         return None
 
     def change(self, problem: Question, robot: Robot, task: Task) -> Change | None:
