@@ -7,6 +7,7 @@ from tests.timed_missions.meaning import Meaning
 
 LESS = 1e-6  # relative: by how much less than what is said to be needed is tried
 LIMITS = {"window": "window", "deadline": "deadline_s", "shift": "available_until_s"}
+UNPROVEN = (*LIMITS, "relation", "min-tasks")  # changes with which a plan was found: without them there may be another
 
 
 def changed(mission, i, j, remedy, **until):
@@ -106,9 +107,9 @@ class Remedied:
         return any(self.j in routes[self.i] for routes in EveryPlan(meaning).admissible)
 
     def _needless(self):
-        """Changes, not of times, without which a plan does the task by the robot, the others made."""
+        """Changes that are said to be needed, without which a plan does the task by the robot, the others made."""
         for word in self.remedy.changes:
-            if word in LIMITS or word == "relation":
+            if word in UNPROVEN:
                 continue
             rest = {other: change for other, change in self.remedy.changes.items() if other != word}
             if self._can(changed(self.mission, self.i, self.j, replace(self.remedy, changes=rest))):

@@ -50,6 +50,7 @@ def trial(seed, *, planned=True):
         report.story += [str(part) for part in (*mission.robots, *mission.tasks, mission.rules, ignored)]
         tried = Trial(report, mission, ignored)
         tried.without_plans()
+        tried.explained()
         if planned:
             tried.with_plans()
     return report
