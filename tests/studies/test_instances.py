@@ -7,7 +7,7 @@ import pytest
 import muster
 from muster_studies.instances.coalitions import ONE_SKILL, SEVERAL_SKILLS, SKILL_SETS, counted_teams
 from muster_studies.instances.solomon import REFERENCES, solomon_instance, solomon_mission
-from muster_studies.instances.waiting import windows_mission
+from muster_studies.instances.waiting import lattice_mission, windows_mission
 
 SMALL = """TINY
 
@@ -81,6 +81,13 @@ def test_the_robots_together_can_do_every_task(skill_set, seed):
     assert muster.check(mission).impossible == ()
     species = {tuple(sorted(robot.abilities)) for robot in mission.robots}
     assert len(species) == skill_set.species
+
+
+def test_a_lattice_has_a_task_at_each_of_its_places():
+    mission = lattice_mission(2, 3, robots=4)
+    places = {task.position[:2] for task in mission.tasks}
+    assert places == {(0, 0), (10, 0), (20, 0), (0, 10), (10, 10), (20, 10)}
+    assert [robot.position[:2] for robot in mission.robots] == [(0, 0)] * 4
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -1,4 +1,4 @@
-"""The search on a schedule: windows with prerequisites, and a large mission whose tasks wait for each other."""
+"""The search on a schedule: windows with prerequisites, a large mission whose tasks wait, and a lattice of tasks."""
 
 from __future__ import annotations
 
@@ -8,18 +8,22 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster_studies.benches.measurement import Measurement
-from muster_studies.instances.waiting import ordered_mission, windows_mission
+from muster_studies.instances.waiting import lattice_mission, ordered_mission, windows_mission
+from muster_studies.peers.processor_time import ProcessorClock
+from muster_studies.runs import accepted
 
-SECONDS = 1.0
+SECONDS, LATTICE_S = 1.0, 5.0
 
 
 def schedules(runs: int) -> list[Measurement]:
-    """Tasks done within their windows, and steps of the search with 2,000 tasks that wait for each other."""
+    """Tasks done within their windows, steps with 2,000 tasks that wait for each other, and the end of a lattice."""
     done = [_done(seed) for seed in range(runs)]
     steps = [_steps_per_second(seed) for seed in range(runs)]
+    ends = [_end_of_lattice(seed) for seed in range(runs)]
     return [
         Measurement.over_runs(f"windows with prerequisites, search, {SECONDS:g} s", "% of tasks", done, ""),
         Measurement.over_runs("search, makespan, 2,000 tasks that wait", "steps/s", steps, ">= 5000"),
+        Measurement.over_runs(f"search, makespan, lattice of 20 x 20, {LATTICE_S:g} s", "s", ends, "<= 410"),
     ]
 
 
@@ -34,3 +38,12 @@ def _steps_per_second(seed: int) -> float:
     steps, began_s = 10_000, time.process_time()
     ALLOCATORS["search"].solve(problem, Stop(iterations=steps), seed=seed)
     return steps / (time.process_time() - began_s)
+
+
+def _end_of_lattice(seed: int) -> float:
+    """The end of 400 tasks: together with 15 robots more places than the search once kept the times of."""
+    problem = Problem.compile(lattice_mission(20, 20, 15)).ready()
+    plan = ALLOCATORS["search"].solve(problem, Stop(time_limit=LATTICE_S, clock=ProcessorClock()), seed=seed)
+    verdict = accepted(problem.mission, plan, f"lattice, seed {seed}")
+    end = verdict.value("makespan")
+    return float("inf") if end is None or verdict.tasks_completed < verdict.tasks_total else end

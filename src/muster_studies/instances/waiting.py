@@ -1,4 +1,4 @@
-"""Random missions whose tasks wait for each other, with and without time windows."""
+"""Missions that end early only with a good schedule: tasks that wait for each other, time windows, a lattice."""
 
 from __future__ import annotations
 
@@ -39,6 +39,17 @@ def ordered_mission(tasks: int, robots: int, seed: int) -> Mission:
         for k in range(tasks)
     )
     return Mission(name=f"ordered-{tasks}", rules=Rules(objective="makespan"), robots=team, tasks=work)
+
+
+def lattice_mission(rows: int, columns: int, robots: int) -> Mission:
+    """Tasks without work 10 m apart on a lattice, and robots that all begin at its corner."""
+    team = tuple(Robot(id=f"r{k}", position=(0.0, 0.0, 0.0)) for k in range(robots))
+    work = tuple(
+        Task(id=f"t{row}-{column}", position=(10.0 * column, 10.0 * row, 0.0))
+        for row in range(rows)
+        for column in range(columns)
+    )
+    return Mission(name=f"lattice-{rows}-{columns}", rules=Rules(objective="makespan"), robots=team, tasks=work)
 
 
 def _place(draw: Random) -> tuple[float, float, float]:
