@@ -16,8 +16,7 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;
-constexpr double kNearly = 1e-6;  // metres by which two may be nearer
-constexpr double kTailsToLeave = 25.0;  // so that a crowd can unravel before a door
+constexpr double kNearly = 1e-6;                // metres by which two may be nearer
 constexpr double kRestingInTheWay = 10.0;       // seconds that a path may be longer to rest out of the way
 constexpr std::size_t kMostKnown = 20'000'000;  // edges from which it is known how long goals take
 
@@ -293,8 +292,8 @@ void SafeIntervals::erase_stays(int robot, int point) {
   std::erase_if(stays_[point], [&](const Stay& stay) { return stay.robot == robot; });
 }
 
-void SafeIntervals::reserve_start(int robot, const Traveller& who) {
-  stays_[who.start].push_back({robot, -kNever, who.ready + kTailsToLeave * tail(who), who.radius});
+void SafeIntervals::reserve_start(int robot, const Traveller& who, double tails) {
+  stays_[who.start].push_back({robot, -kNever, who.ready + tails * tail(who), who.radius});
 }
 
 std::vector<int> SafeIntervals::meetings(int robot, const Way& way, int robots) const {

@@ -63,8 +63,8 @@ class SafeIntervals {
   void reserve(int robot, const Traveller& who, const Way& way);
   // It does so no more.
   void release(int robot, const Traveller& who, const Way& way);
-  // A robot has no way yet, but stays at its start long enough to leave that.
-  void reserve_start(int robot, const Traveller& who);
+  // A robot has no way yet, but stays at its start so many times as long as it takes to get clear of a point.
+  void reserve_start(int robot, const Traveller& who, double tails);
   void release_start(int robot, const Traveller& who) { erase_stays(robot, who.start); }
   // How often others are where a robot passes.
   std::vector<int> meetings(int robot, const Way& way, int robots) const;

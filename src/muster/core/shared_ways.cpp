@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace muster {
@@ -9,6 +10,7 @@ namespace muster {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kTailsToLeave[] = {4.0, 25.0};
 constexpr int kGroup = 4;          // travellers that are planned anew at a time
 constexpr int kMoreWhereLost = 4;  // times as many ways are sought where some find none
 
@@ -23,8 +25,26 @@ SharedWays::SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers
   std::ranges::copy_if(now_.order, std::back_inserter(now_.free), [&](int k) { return !now_.travellers[k].fixed; });
   clear();
   for (int k = 0; k < static_cast<int>(n); ++k) find_alone(k);
-  plan(now_.free);
+  plan_all();
   improve(ways);
+}
+
+// Those that are planned later are given a short time to leave their starts, so that few do not go round each other, or
+// a long one, so that a crowd can leave one after the other.
+void SharedWays::plan_all() {
+  std::optional<State> best;
+  Cost least;
+  for (const double tails : kTailsToLeave) {
+    now_.tails_to_leave = tails;
+    clear();
+    plan(now_.free);
+    if (best && !(cost() < least)) continue;
+    least = cost();
+    best = now_;
+  }
+  now_ = *std::move(best);
+  clear();
+  put_on_all_but({});
 }
 
 void SharedWays::change(const std::vector<std::pair<int, Traveller>>& changes, int ways) {
@@ -36,8 +56,7 @@ void SharedWays::change(const std::vector<std::pair<int, Traveller>>& changes, i
   }
   clear();
   for (const int k : changed) find_alone(k);
-  for (const int k : now_.free)
-    if (std::ranges::find(changed, k) == changed.end()) roadmap_.reserve(k, now_.travellers[k], now_.ways[k]);
+  put_on_all_but(changed);
   plan(changed);
   move_back(changed);
   improve(ways);
@@ -47,6 +66,11 @@ void SharedWays::clear() {
   roadmap_.clear();
   for (int k = 0; k < static_cast<int>(now_.travellers.size()); ++k)
     if (now_.travellers[k].fixed) roadmap_.reserve(k, now_.travellers[k], now_.ways[k]);
+}
+
+void SharedWays::put_on_all_but(std::span<const int> group) {
+  for (const int k : now_.free)
+    if (std::ranges::find(group, k) == group.end()) roadmap_.reserve(k, now_.travellers[k], now_.ways[k]);
 }
 
 // Stops to which no way leads past those who never leave, and those after them, are left out.
@@ -74,7 +98,7 @@ void SharedWays::improve(int ways) {
 }
 
 void SharedWays::plan(std::span<const int> group) {
-  for (const int k : group) roadmap_.reserve_start(k, now_.travellers[k]);
+  for (const int k : group) roadmap_.reserve_start(k, now_.travellers[k], now_.tails_to_leave);
   for (const int k : group) {
     roadmap_.release_start(k, now_.travellers[k]);
     now_.ways[k] = roadmap_.way(now_.travellers[k]);

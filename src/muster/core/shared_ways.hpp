@@ -48,12 +48,16 @@ class SharedWays {
     std::vector<char> cut_off;          // whether no way leads to any stop of each
     std::vector<Way> alone;             // of each, were it alone with those who never leave
     std::vector<Way> ways;
+    double tails_to_leave = 0.0;  // see `SafeIntervals::reserve_start`
   };
 
   Paths paths(const std::vector<Way>& ways) const;
   Cost cost() const;
   // Who never leaves is on the roadmap, and nobody else.
   void clear();
+  // And all others but some.
+  void put_on_all_but(std::span<const int> group);
+  void plan_all();
   void find_alone(int traveller);
   void plan(std::span<const int> group);
   void improve(int ways);
