@@ -348,7 +348,7 @@ class TestNegotiate:
 
 
 def test_the_physics_world_without_its_extra_is_one_line():
-    program = "import sys; sys.modules['mujoco'] = None; from muster.cli.main import main; sys.exit(main())"
+    program = "import sys; sys.modules['mujoco'] = None; from muster.cli.__main__ import main; main()"
     command = [sys.executable, "-c", program, "simulate", "6T-2R", "--world", "physics", "--iterations", "10"]
     ran = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (ran.returncode, ran.stdout) == (2, "")

@@ -41,7 +41,7 @@ def run(installed):
 
 @pytest.fixture(scope="module")
 def muster(run):
-    return lambda *arguments: run("-c", "from muster.cli.main import main; main()", *arguments)
+    return lambda *arguments: run("-m", "muster.cli", *arguments)
 
 
 def test_the_package_is_about_forty_lines():

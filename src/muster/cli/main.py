@@ -149,11 +149,6 @@ def muster() -> None:
     """Plan missions of robot teams."""
 
 
-def main() -> None:
-    """Run the command and exit."""
-    sys.exit(run(sys.argv[1:]))
-
-
 def run(arguments: list[str]) -> int:
     """Run the command; returns the exit code."""
     for stream in (sys.stdout, sys.stderr):
@@ -180,16 +175,25 @@ def run(arguments: list[str]) -> int:
             return _internal(error)
         return _fail(f"{error.filename}: {error.strerror}; expected a file that can be read or written")
     except (KeyboardInterrupt, click.Abort):
-        click.echo("interrupted", err=True)
-        return INTERRUPTED
+        return _interrupted()
     except Exception as error:  # whatever happens, the user gets a line
-        return _internal(error)
+        return _interrupted() if _is_ctrl_c(error) else _internal(error)
     return result if isinstance(result, int) else 0
 
 
 def _fail(message: str) -> int:
     click.echo(message, err=True)
     return BAD_INPUT
+
+
+def _interrupted() -> int:
+    click.echo("interrupted", err=True)
+    return INTERRUPTED
+
+
+def _is_ctrl_c(error: BaseException | None) -> bool:
+    """Whether Ctrl-C is at the root of an error: Python 3.11 wraps one that comes while it makes a class."""
+    return isinstance(error, KeyboardInterrupt) or (error is not None and _is_ctrl_c(error.__cause__))
 
 
 def _internal(error: Exception) -> int:

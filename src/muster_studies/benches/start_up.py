@@ -12,7 +12,7 @@ from muster_studies.benches.measurement import Measurement
 def start_up(runs: int) -> list[Measurement]:
     """Whole processes: `import muster` and `muster --help`, with what Python itself takes."""
     commands = (
-        ("import muster", [sys.executable, "-c", "import muster"], "< 0.3"),
+        ("from muster import *", [sys.executable, "-c", "from muster import *"], "< 0.3"),
         ("muster --help", [sys.executable, "-m", "muster.cli", "--help"], "< 0.4"),
         ("python alone", [sys.executable, "-c", "pass"], ""),
     )

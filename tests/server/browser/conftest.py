@@ -30,7 +30,7 @@ FLAGS = (
 @contextmanager
 def serving(folder):
     """The address of `muster serve` with a database of its own in this folder."""
-    command = [sys.executable, "-c", "from muster.cli.main import main; main()", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "muster.cli", "serve", "--port", "0"]
     command += ["--db", f"sqlite:///{folder / 'muster.db'}"]
     log = folder / "log"
     with (

@@ -29,7 +29,7 @@ def guarded(tmp_path_factory):
     tokens = folder / "tokens"
     tokens.write_text(TOKENS)
     tokens.chmod(0o600)
-    command = [sys.executable, "-c", "from muster.cli.main import main; main()", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "muster.cli", "serve", "--port", "0"]
     command += ["--db", f"sqlite:///{folder / 'muster.db'}", "--tokens", str(tokens)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
         yield re.match(r"mission control: (http://\S+)/$", server.stdout.readline())[1]
