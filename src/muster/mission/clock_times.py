@@ -84,11 +84,15 @@ SHIFT = (
     "in place of available_from_s and available_until_s: clock times, beside starts_at",
 )
 
+_KEYS_OF_TASKS = frozenset(key for key, _, _ in (WINDOW, DEADLINE, DUE))
+
 
 def clock_times_to_seconds(data: object, faults: list[Fault]) -> None:
     """Replace, within `data`, clock times by seconds; by INVALID, and a fault, those that are wrong."""
     clock = _Clock(data, faults)
     for at, task in tasks_in(data):
+        if _KEYS_OF_TASKS.isdisjoint(task):
+            continue
         for (key, kind, _), seconds in ((WINDOW, "window_s"), (DEADLINE, "deadline_s"), (DUE, "due_s")):
             if _stands_alone(task, key, (seconds,), at, faults):
                 task[seconds] = clock.seconds(kind, task.pop(key), (*at, key))

@@ -45,10 +45,10 @@ def _repeated_ids(mission: MissionData) -> Iterator[Fault]:
 
 def _locks(mission: MissionData) -> Iterator[Fault]:
     ids = [r.id for r in mission.robots]
-    joining = [robot.id for _, robot in robots_that_join(mission)]
+    known = {*ids, *(robot.id for _, robot in robots_that_join(mission))}
     for path, task in all_work(mission):
         for r, name in enumerate(task.only_robots or ()):
-            if name not in ids and name not in joining:
+            if name not in known:
                 yield unknown_id((*path, "only_robots", r), name, ids, "robot")
 
 
@@ -100,19 +100,19 @@ def _marks(mission: MissionData) -> Iterator[tuple[Path, Point]]:
 
 
 def _places(at: Path, task: Task) -> Iterator[tuple[Path, Point]]:
-    for name, point in (("position", task.position), ("entry", task.entry), ("exit", task.exit)):
-        if point is not None:
-            yield (*at, name), point
-    for key, point in ({} if task.action is None else task.action.places).items():
-        yield (*at, "action", key), point
+    yield (*at, "position"), task.position
+    if task.entry is not None:
+        yield (*at, "entry"), task.entry
+    if task.exit is not None:
+        yield (*at, "exit"), task.exit
+    if task.action is not None:
+        yield from (((*at, "action", key), point) for key, point in task.action.places.items())
 
 
 def _dimensions(mission: MissionData) -> Iterator[Fault]:
     """Positions with z among positions without; the fewer of the two are the wrong ones."""
-    places = list(positions(mission))
-    flat = [item for item in places if len(item[1]) == 2]
-    spatial = [item for item in places if len(item[1]) == 3]
-    if flat and spatial:
+    if len({len(point) for _, point in positions(mission)} & {2, 3}) == 2:
+        flat, spatial = ([item for item in positions(mission) if len(item[1]) == n] for n in (2, 3))
         wrong, expected = (flat, "[x, y, z]") if len(flat) <= len(spatial) else (spatial, "[x, y]")
         for path, point in wrong:
             yield Fault(path, shown(list(point)), f"{expected} as the other positions are")
@@ -235,6 +235,8 @@ def _found(mission: MissionData) -> Iterator[Fault]:
 
 def _tags_on_the_ground(mission: MissionData) -> Iterator[Fault]:
     """Robots take what they see to lie on the ground: 0, or the lowest place of the mission."""
+    if not mission.tags:
+        return
     heights = [place[2] for path, place in positions(mission) if len(place) == 3 and path[0] != "tags"]
     ground = min([0.0, *heights])
     for k, tag in enumerate(mission.tags):

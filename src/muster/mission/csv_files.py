@@ -1,12 +1,12 @@
-"""The rows of CSV files with their lines; shared by the readers of task lists, robot lists and tables."""
+"""The columns of CSV files with their lines; shared by the readers of task lists, robot lists and tables."""
 
 from __future__ import annotations
 
 import csv
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path as FilePath
+from typing import NamedTuple
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.near_matches import did_you_mean
@@ -14,16 +14,15 @@ from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 
 
-@dataclass(frozen=True)
-class Row:
-    """A line of a CSV file; `cells` by column, spaces around them removed."""
+class Columns(NamedTuple):
+    """The cells of a CSV file by column, spaces around them removed; and the line of each row."""
 
-    line: int
-    cells: dict[str, str]
+    lines: list[int]
+    cells: dict[str, list[str]]
 
 
-def read_rows(path: FilePath, needed: Sequence[str], optional: Sequence[str] = ()) -> list[Row]:
-    """The rows of a CSV file with a head line.
+def read_columns(path: FilePath, needed: Sequence[str], optional: Sequence[str] = ()) -> Columns:
+    """The columns of a CSV file with a head line.
 
     Raises
     ------
@@ -42,7 +41,9 @@ def read_rows(path: FilePath, needed: Sequence[str], optional: Sequence[str] = (
             found.append(Finding(str(path), line, "", f"{len(cells)} cells", expected))
     if found:
         raise MissionError(found)
-    return [Row(line, dict(zip(head, (c.strip() for c in cells), strict=True))) for line, cells in lines[1:]]
+    columns = zip(*(cells for _, cells in lines[1:]), strict=True) if lines[1:] else ((),) * len(head)
+    by_name = {name: [*map(str.strip, column)] for name, column in zip(head, columns, strict=True)}
+    return Columns([line for line, _ in lines[1:]], by_name)
 
 
 def _head_findings(
@@ -94,7 +95,7 @@ def _lines(path: FilePath) -> list[tuple[int, list[str]]]:
     begins = 1
     try:
         for cells in reader:
-            if any(cell.strip() for cell in cells):
+            if any(map(str.strip, cells)):
                 lines.append((begins, cells))
             begins = reader.line_num + 1
     except csv.Error as error:

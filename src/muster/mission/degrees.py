@@ -70,7 +70,8 @@ def _places(data: object) -> Iterator[InDegrees]:
     for at, record in _records(data):
         if "lat_lon" in record:
             yield InDegrees(record["lat_lon"], (*at, "lat_lon"), (*at, "position"), record)
-        yield from _by_key(at, record, (*_OTHER_PLACES, *_own_places(record)))
+        if dict in map(type, record.values()):
+            yield from _by_key(at, record, (*_OTHER_PLACES, *_own_places(record)))
     lanes = data.get("lanes") if isinstance(data, dict) else None
     nodes = lanes.get("nodes") if isinstance(lanes, dict) else None
     if isinstance(nodes, dict):

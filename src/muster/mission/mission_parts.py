@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from muster.mission.mission_data import MissionData
 from muster.mission.near_matches import did_you_mean
@@ -21,10 +21,11 @@ def robots_that_join(mission: MissionData) -> list[tuple[Path, Robot]]:
     return [(("events", k, "robot_joins"), e.robot_joins) for k, e in enumerate(mission.events) if e.robot_joins]
 
 
-def all_work(mission: MissionData) -> list[tuple[Path, Work]]:
+def all_work(mission: MissionData) -> Iterator[tuple[Path, Work]]:
     """Tasks, those that come later, and what becomes of tags."""
-    becomes = [(("found", k, "becomes"), found.becomes) for k, found in rules_of_tags(mission)]
-    return [*((("tasks", k), task) for k, task in enumerate(mission.tasks)), *new_tasks(mission), *becomes]
+    yield from ((("tasks", k), task) for k, task in enumerate(mission.tasks))
+    yield from new_tasks(mission)
+    yield from ((("found", k, "becomes"), found.becomes) for k, found in rules_of_tags(mission))
 
 
 def all_robots(mission: MissionData) -> list[tuple[Path, Robot]]:

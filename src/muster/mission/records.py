@@ -7,9 +7,10 @@ unknown keys, the help of the class and the published JSON Schema, so that these
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields
-from typing import Any, ClassVar, TypeVar, dataclass_transform
+from functools import partial
+from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.field_help import fields_text
@@ -26,12 +27,15 @@ from muster.mission.value_types import (
     Kind,
     Path,
     Table,
+    read_column,
     refuse,
     shown,
 )
 
 C = TypeVar("C")
 _SPECIFIED: dict[type[Any], tuple[Field[Any], ...]] = {}
+_MISSING = object()
+_Fillers = tuple[tuple[str, Callable[[], Any]], ...]
 
 
 def spec(
@@ -114,6 +118,8 @@ class Checked:
     """Checks and converts the fields of a model class by their kinds when one is made in Python."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    tied: ClassVar[frozenset[str] | None] = None
+    """The fields without any of which `settled` and `cross_check` have nothing to do; None: they always have."""
 
     def __post_init__(self) -> None:
         faults: list[Fault] = []
@@ -128,6 +134,11 @@ class Checked:
             faults.extend(self.cross_check(self.__dict__))
         if faults:
             raise MissionError(findings(faults, IN_PYTHON))
+
+    @classmethod
+    def is_tied(cls, given: Iterable[str]) -> bool:
+        """Whether `settled` and `cross_check` have anything to do where these fields are given."""
+        return cls.tied is None or not cls.tied.isdisjoint(given)
 
     @classmethod
     def settled(cls, values: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -176,52 +187,147 @@ class Record:
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, self.of):
             return value
-        if not isinstance(value, Mapping):
+        if type(value) is not dict and not isinstance(value, Mapping):
             refuse(self, value, at, faults)
             return self._instance({})
         before = len(faults)
-        known = {key_of(f): f for f in specified(self.of)}
-        further = {key: one.kind for key, one in self.of.further_keys(value).items()}
-        names = (*known, *further)
-        hints = (*names, *(f.metadata["instead"][0] for f in known.values() if "instead" in f.metadata))
-        faults.extend(_unknown_key(str(key), item, at, hints) for key, item in value.items() if key not in names)
-        values = _read_further(further, value, at, faults)
-        for name, f in known.items():
-            item = value.get(name, INVALID)
-            if name in value and not (item is None and f.default is None):
-                read = INVALID if item is INVALID else f.metadata["kind"].read(item, (*at, name), faults)
-                values[f.name] = read
-            elif required(f):
-                faults.append(Fault((*at, name), "missing", f.metadata["kind"].expected))
-        whole = len(faults) == before and not any(item is INVALID for item in values.values())
-        values |= self.of.settled({key: item for key, item in values.items() if item is not INVALID})
-        if whole:
-            faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(values))
-        return self._instance(values)
+        keys = _keys(self.of, tuple(value))
+        further = self.of.further_keys(value)
+        if keys.unknown:
+            faults.extend(_unknown_keys(self.of, keys.unknown, further, value, at))
+        values = _read_further(further, value, at, faults) if further else {}
+        for name, kind, read_as, may_be_null in keys.fields:
+            item = value.get(name, _MISSING)
+            if item is _MISSING:
+                faults.append(Fault((*at, name), "missing", kind.expected))
+            elif item is INVALID:
+                values[read_as] = INVALID
+            elif not (item is None and may_be_null):
+                values[read_as] = kind.read(item, (*at, name), faults)
+        given = {name: item for name, item in values.items() if item is not INVALID}
+        whole = len(faults) == before and len(given) == len(values)
+        if self.of.is_tied(given):
+            given |= self.of.settled(given)
+            if whole:
+                faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(given))
+        return self._instance(given)
+
+    def read_column(self, values: Sequence[Any]) -> Sequence[Any] | None:
+        """By groups of the same keys, and in each of them key by key."""
+        kinds = set(map(type, values))
+        if kinds == {self.of}:
+            return values
+        if kinds != {dict} or any(map(self.of.further_keys, values)):
+            return None
+        groups: dict[tuple[Any, ...], list[int]] = {}
+        for k, given in enumerate(map(tuple, values)):
+            groups.setdefault(given, []).append(k)
+        read: list[Any] = [None] * len(values)
+        for given, members in groups.items():
+            instances = self._read_group(given, [values[k] for k in members])
+            if instances is None:
+                return None
+            for k, instance in zip(members, instances, strict=True):
+                read[k] = instance
+        return read
+
+    def _read_group(self, keys: tuple[Any, ...], values: Sequence[dict[Any, Any]]) -> list[Any] | None:
+        """Mappings that have the same keys."""
+        wanted = _keys(self.of, keys)
+        if wanted.unknown or not wanted.fields or len(wanted.fields) > len(keys):
+            return None
+        columns: list[Sequence[Any]] = []
+        for name, kind, _, may_be_null in wanted.fields:
+            given = [value[name] for value in values]
+            column = None if may_be_null and None in given else read_column(kind, given)
+            if column is None:
+                return None
+            columns.append(column)
+        names = [key.read_as for key in wanted.fields]
+        records = [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
+        if self.of.is_tied(names):
+            for one in records:
+                one |= self.of.settled(one)
+                if any(self.of.cross_check(one)):
+                    return None
+        return list(map(self._instance, records))
 
     def schema(self) -> JsonSchema:
         """A reference to the definition that `json_schema` makes of the class."""
         return {"$ref": f"#/$defs/{self.of.__name__}"}
 
-    def _instance(self, values: Mapping[str, Any]) -> Any:
-        """An instance made without checks: they have just been made, and all faults are on the list."""
+    def _instance(self, given: dict[str, Any]) -> Any:
+        """An instance made without checks: they have just been made, and all faults are on the list.
+
+        It holds what is given; for all else the class has the default.
+        """
+        for name, filler in _fillers(self.of):
+            if name not in given:
+                given[name] = filler()
         instance = object.__new__(self.of)
-        for f in fields(self.of):
-            value = values.get(f.name, INVALID)
-            if value is INVALID:
-                value = f.metadata["kind"].filler if required(f) else _default(f)
-            object.__setattr__(instance, f.name, value)
+        object.__setattr__(instance, "__dict__", given)
         return instance
 
 
-def _read_further(kinds: Mapping[str, Kind], data: Mapping[str, Any], at: Path, faults: list[Fault]) -> dict[str, Any]:
+class _FieldKey(NamedTuple):
+    """A key of a file, with the kind of its value, the field that it is read as, and whether null stands for none."""
+
+    name: str
+    kind: Kind
+    read_as: str
+    may_be_null: bool
+
+
+class _Keys(NamedTuple):
+    """What the keys of a mapping mean to a class: its fields that are given or required, in order; and the others."""
+
+    fields: tuple[_FieldKey, ...]
+    unknown: tuple[Any, ...]
+
+
+def _keys(cls: type[Checked], given: tuple[Any, ...]) -> _Keys:
+    """Most records of a file have the same keys, so this is found once for all of them."""
+    if (found := _KEYS.get((cls, given))) is None:
+        known = {key_of(f): f for f in specified(cls)}
+        looked_up = [(name, f) for name, f in known.items() if name in given or required(f)]
+        own = tuple(_FieldKey(name, f.metadata["kind"], f.name, f.default is None) for name, f in looked_up)
+        found = _Keys(own, tuple(key for key in given if key not in known))
+        if len(_KEYS) >= _MOST_KEYS:
+            _KEYS.clear()
+        _KEYS[cls, given] = found
+    return found
+
+
+_KEYS: dict[tuple[type[Checked], tuple[Any, ...]], _Keys] = {}
+_MOST_KEYS = 4096  # a server reads the files of many
+
+
+def _fillers(cls: type[Checked]) -> _Fillers:
+    """What makes a value for a field that is not given, where the class itself has none."""
+    if cls not in _FILLERS:
+        own = [f for f in fields(cls) if f.default is MISSING]
+        made = [(f.name, f.default_factory) for f in own if f.default_factory is not MISSING]
+        required_ones = [(f.name, partial(getattr, f.metadata["kind"], "filler")) for f in own if required(f)]
+        _FILLERS[cls] = (*required_ones, *made)
+    return _FILLERS[cls]
+
+
+_FILLERS: dict[type[Checked], _Fillers] = {}
+
+
+def _unknown_keys(
+    cls: type[Checked], unknown: Iterable[Any], further: Mapping[str, Key], data: Mapping[Any, Any], at: Path
+) -> Iterator[Fault]:
+    """The faults of keys that are none of the fields, nor further ones."""
+    own = specified(cls)
+    hints = (*map(key_of, own), *further, *(f.metadata["instead"][0] for f in own if "instead" in f.metadata))
+    return (_unknown_key(str(key), data[key], at, hints) for key in unknown if key not in further)
+
+
+def _read_further(keys: Mapping[str, Key], data: Mapping[str, Any], at: Path, faults: list[Fault]) -> dict[str, Any]:
     """The values of keys that are not fields, as the field `extra`; nothing where there are none."""
-    read = {key: kinds[key].read(data[key], (*at, key), faults) for key in kinds if data.get(key) is not None}
+    read = {key: one.kind.read(data[key], (*at, key), faults) for key, one in keys.items() if data.get(key) is not None}
     return {"extra": {key: value for key, value in read.items() if value is not INVALID}} if read else {}
-
-
-def _default(f: Field[Any]) -> Any:
-    return f.default if f.default_factory is MISSING else f.default_factory()
 
 
 def _unknown_key(key: str, value: object, at: Path, known: Iterable[str]) -> Fault:

@@ -73,6 +73,8 @@ class Robot(Checked):
     avoidance_priority: float = spec(Number(minimum=0), "who gives way: the lower one", default=0.0)
     camera: Camera | None = spec(Record(Camera, "a camera"), "its camera", default=None)
 
+    tied = frozenset({"skill_quality", "available_until_s"})
+
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         skills = values.get("skills", ())

@@ -22,6 +22,8 @@ def _unknown_or_repeated(mission: MissionData) -> Iterator[Fault]:
     with_new = [*ids, *(t.id for _, t in new_tasks(mission))]
     own, all_of_them = set(ids), set(with_new)
     for path, task in all_work(mission):
+        if not task.prerequisites:
+            continue
         known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
         seen: set[str] = set()
         for p, name in enumerate(task.prerequisites):
@@ -39,6 +41,8 @@ def _cycles(tasks: Sequence[Task]) -> Iterator[Fault]:
     Tasks that start together are one node, named by the first of them. Not all cycles are named: there can be more than
     anyone could read, and the others go when one task of theirs is set right, or are found when it was.
     """
+    if not any(task.prerequisites for task in tasks):
+        return
     index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
     node = tied_by("starts_with", tasks)
     before: list[list[int]] = [[] for _ in tasks]

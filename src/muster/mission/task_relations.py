@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from operator import attrgetter
 
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_work, new_tasks, unknown_id
@@ -10,6 +11,7 @@ from muster.mission.tasks import Task
 from muster.mission.value_types import Fault, Path, shown
 
 RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")
+_tasks_named_by = attrgetter(*RELATIONS)
 
 
 def relation_faults(mission: MissionData) -> Iterator[Fault]:
@@ -43,7 +45,7 @@ def _wrong_names(mission: MissionData) -> Iterator[Fault]:
     own, all_of_them = set(ids), set(with_new)
     for path, task in all_work(mission):
         known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
-        for relation in RELATIONS:
+        for relation in RELATIONS if any(_tasks_named_by(task)) else ():
             names = getattr(task, relation)
             for n, name in enumerate(names):
                 at: Path = (*path, relation, n)

@@ -157,6 +157,8 @@ class Work(Checked):
     lags: Mapping[str, Lag] = field(default_factory=dict, hash=False)
     """By prerequisite, those that have one; in files they stand inside `prerequisites`."""
 
+    tied = frozenset({"prerequisites", "lags", "robots_needed", "team", "needs", "action"})
+
     @property
     def is_for_team(self) -> bool:
         """Whether more robots than one may have to do it."""

@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
+from typing import Any, cast
 
-from muster.mission.csv_files import Row, number, read_rows, read_table
+from muster.mission.csv_files import Columns, number, read_columns, read_table
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
+from muster.mission.garbage import collector_paused
 from muster.mission.model import SCHEMA, Mission, Robot, Task
 from muster.mission.source import Place, Source
 from muster.mission.value_types import Path, shown
@@ -26,6 +28,7 @@ ROBOT_COLUMNS = ("id", "type", "x", "y", "work_capacity")
 _UNLIMITED = ("", "inf", "infinity", ".inf")
 
 
+@collector_paused()
 def read_csv(tasks: FilePath, robots: FilePath, suitability: FilePath | None = None) -> Mission:
     """Read a mission from a task list, a robot list and, where types matter, a table of suitability.
 
@@ -36,8 +39,9 @@ def read_csv(tasks: FilePath, robots: FilePath, suitability: FilePath | None = N
     """
     places: dict[Path, Place] = {("robots",): (str(robots), 1)}
     data = _without_robots(tasks, suitability, places)
-    robot_rows = read_rows(robots, ROBOT_COLUMNS, ("z",))
-    data["robots"] = [_robot(row, k, robots, places) for k, row in enumerate(robot_rows)]
+    columns = read_columns(robots, ROBOT_COLUMNS, ("z",))
+    data["robots"] = _robots(columns.cells)
+    places |= _lines(columns, "robots", robots)
     return mission_from(data, Source(str(tasks), places), [])
 
 
@@ -58,58 +62,69 @@ def read_csv_for(
     """
     places: dict[Path, Place] = {}
     data = _without_robots(tasks, suitability, places)
-    columns = read_rows(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))[:1]
-    data["robots"] = list(robots(len(_position(columns[0])) if columns else 2))
+    first = next(iter(cast("list[dict[str, Any]]", data["tasks"])), None)
+    data["robots"] = list(robots(2 if first is None else len(first["position"])))
     return mission_from(data, Source(str(tasks), places), [])
 
 
 def _without_robots(tasks: FilePath, suitability: FilePath | None, places: dict[Path, Place]) -> dict[str, object]:
     """The data of a mission but for its robots."""
     places["suitability",] = (str(suitability), 1)
-    task_rows = read_rows(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))
+    columns = read_columns(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))
     data: dict[str, object] = {"schema": SCHEMA, "name": tasks.stem}
-    data["tasks"] = [_task(row, k, tasks, places) for k, row in enumerate(task_rows)]
+    data["tasks"] = _tasks(columns.cells)
+    places |= _lines(columns, "tasks", tasks)
     if suitability is not None:
         data["suitability"] = _suitability(suitability, places)
     return data
 
 
-def _place(at: Path, row: Row, file: FilePath, places: dict[Path, Place]) -> None:
-    places[at] = (str(file), row.line)
+def _lines(columns: Columns, group: str, path: FilePath) -> dict[Path, Place]:
+    """The place of each record of a group."""
+    file = str(path)
+    return {(group, k): (file, line) for k, line in enumerate(columns.lines)}
 
 
-def _position(row: Row) -> list[object]:
-    return [number(row.cells[axis]) for axis in ("x", "y", "z") if axis in row.cells]
+def _tasks(cells: Mapping[str, list[str]]) -> list[dict[str, object]]:
+    values: dict[str, Iterable[object]] = {"id": cells["index"], "position": _positions(cells)}
+    values |= {name: _values(cells[name], read) for name, read in _WRITTEN.items() if name in cells}
+    return _records(values)
 
 
-def _task(row: Row, k: int, file: FilePath, places: dict[Path, Place]) -> dict[str, object]:
-    _place(("tasks", k), row, file, places)
-    cells = row.cells
-    task: dict[str, object] = {"id": cells["index"], "position": _position(row)}
-    task["prerequisites"] = _prerequisites(cells["prerequisites"])
-    if cells["type"]:
-        task["type"] = cells["type"]
-    if cells["actuation_cost"]:
-        task["actuation_cost"] = number(cells["actuation_cost"])
-    for name in TIME_COLUMNS:
-        if cells.get(name):
-            task[name] = _WRITTEN[name](cells[name])
-    return task
+def _robots(cells: Mapping[str, list[str]]) -> list[dict[str, object]]:
+    values: dict[str, Iterable[object]] = {"id": cells["id"], "position": _positions(cells)}
+    return _records(
+        values | {"type": _values(cells["type"], str), "work_capacity": map(_limit, cells["work_capacity"])}
+    )
+
+
+def _records(values: Mapping[str, Iterable[object]]) -> list[dict[str, object]]:
+    """A record of each row, with the keys that are given there."""
+    rows = zip(*values.values(), strict=True)
+    return [{key: value for key, value in zip(values, row, strict=True) if value is not None} for row in rows]
+
+
+def _values(cells: list[str], read: Callable[[str], object]) -> list[object]:
+    """The values in the cells of a column; None for those that are empty."""
+    return [read(cell) if cell else None for cell in cells]
+
+
+def _positions(cells: Mapping[str, list[str]]) -> list[list[object]]:
+    axes = [map(number, cells[axis]) for axis in ("x", "y", "z") if axis in cells]
+    return [*map(list, zip(*axes, strict=True))]
+
+
+def _limit(cell: str) -> object:
+    return None if cell.lower() in _UNLIMITED else number(cell)
 
 
 def _windows(cell: str) -> list[list[object]]:
     ends = [re.split(r"[\s,]+", part.strip("[] ")) for part in cell.split(";")]
-    return [[None if end.lower() in _UNLIMITED else number(end) for end in pair] for pair in ends]
+    return [[_limit(end) for end in pair] for pair in ends]
 
 
 def _whole(cell: str) -> object:
     return int(cell) if cell.isascii() and cell.isdecimal() else cell
-
-
-_WRITTEN: Mapping[str, Callable[[str], object]] = dict.fromkeys(TIME_COLUMNS, number) | {
-    "window_s": _windows,
-    "robots_needed": _whole,
-}
 
 
 def _prerequisites(cell: str) -> list[str]:
@@ -117,15 +132,15 @@ def _prerequisites(cell: str) -> list[str]:
     return re.split(r"[\s,;]+", ids) if ids else []
 
 
-def _robot(row: Row, k: int, file: FilePath, places: dict[Path, Place]) -> dict[str, object]:
-    _place(("robots", k), row, file, places)
-    cells = row.cells
-    robot: dict[str, object] = {"id": cells["id"], "position": _position(row)}
-    if cells["type"]:
-        robot["type"] = cells["type"]
-    if cells["work_capacity"].lower() not in _UNLIMITED:
-        robot["work_capacity"] = number(cells["work_capacity"])
-    return robot
+_WRITTEN: Mapping[str, Callable[[str], object]] = {
+    "prerequisites": _prerequisites,
+    "type": str,
+    "actuation_cost": number,
+    **dict.fromkeys(TIME_COLUMNS, number),
+    "window_s": _windows,
+    "robots_needed": _whole,
+}
+"""How the cells of tasks are read, where they are not empty."""
 
 
 def _suitability(path: FilePath, places: dict[Path, Place]) -> dict[str, dict[str, object]]:

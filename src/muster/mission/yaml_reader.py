@@ -15,6 +15,8 @@ import yaml
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
+from muster.mission.garbage import collector_paused
+from muster.mission.json_reader import JsonPlaces, json_data
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.source import Place, Source
 from muster.mission.text_files import read_text
@@ -48,6 +50,7 @@ def read_yaml(path: FilePath) -> Mission:
     return parse_yaml(read_text(path), path)
 
 
+@collector_paused()
 def parse_yaml(
     text: str, path: FilePath, robots: Callable[[int], Sequence[Mapping[str, object]]] | None = None
 ) -> Mission:
@@ -79,6 +82,8 @@ def parse_data(text: str, path: FilePath, expected: str) -> tuple[dict[str, obje
     MissionError
         if it is no mapping, or no YAML.
     """
+    if (plain := json_data(text)) is not None:
+        return plain, Source(str(path), JsonPlaces(text, str(path))), []
     reading = _Reading(str(path), expected)
     data = reading.document(text)
     return data, Source(str(path), reading.places), reading.faults
