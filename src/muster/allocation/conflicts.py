@@ -17,10 +17,11 @@ from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.subset_times import tied_pairs
 from muster.allocation.usage_bounds import UsageBounds
-from muster.allocation.witness_plans import Judge, attempt, can_do, closed, does_all
+from muster.allocation.witness_plans import Judge, attempt, can_do, closed, does_all, least_seconds
 from muster.mission.clock import Clock, SystemClock
 
 _LEFT_OUT_TRIED = 5
+_OVERTIME_S = 0.2
 _BEFORE_PROOFS = 1  # seed of the last search before proofs are tried
 
 
@@ -53,13 +54,18 @@ class Together:
 
 
 def together(problem: Problem, judge: Judge, *, time_limit: float = 2.0, clock: Clock | None = None) -> Together:
-    """Look for a plan of all tasks, and where there seems to be none for a minimal conflict."""
+    """Look for a plan of all tasks, and where there seems to be none for a minimal conflict.
+
+    Nothing is begun that is known to take longer than the time limit by more than `_OVERTIME_S`.
+    """
     clock = clock or SystemClock()
     begin = clock.now()
 
     def left() -> float:
         return max(0.0, begin + time_limit - clock.now())
 
+    if least_seconds(problem) > time_limit + _OVERTIME_S:
+        return Together(unknown=True)
     lost = {item.task for item in impossible(problem)}
     tasks = [j for j, task in enumerate(problem.tasks) if task.id not in lost]
     for seed in itertools.count():

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from muster.allocation.limits import Limits, narrowed
-from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.limits import Limits, narrowed, untimed
+from muster.allocation.problem import Bools, Floats, Indices, Problem
 from muster.allocation.rules import Outlook
+from muster.allocation.timed_rules import ROUNDING
 from muster.mission.plan import Reason, Unassigned
 
 Legs = Callable[[int, Any, Any], Floats]
@@ -26,8 +27,9 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
     without a team, and those whose prerequisites, or tasks that begin with them, are impossible. There can be others,
     such as a chain of prerequisites too long for the robots.
     """
-    limits = limits_of(problem)
-    lost = dict.fromkeys(np.flatnonzero(~limits.usable.any(axis=0)).tolist(), "")
+    limits = limits_of(problem) if problem.has_timed_rules else untimed(problem)
+    alone = ~limits.usable.any(axis=0) if problem.has_timed_rules else _out_of_reach(problem)
+    lost = dict.fromkeys(np.flatnonzero(alone).tolist(), "")
     waiting = list(lost)
     while waiting:
         before = waiting.pop()
@@ -52,9 +54,38 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
 
 def _outlooks(limits: Limits, i: int, j: int, befores: Sequence[str]) -> Iterator[Outlook]:
     """What is known of a pair: first by the times that excluded it, then by all."""
-    for bounds in (limits.that_excluded(i, j), limits):
+    steps = (limits.that_excluded(i, j), limits) if limits.is_timed else (limits,)
+    least = limits.usage[i, j] if limits.is_timed else _least_usage_with(limits.problem, i, [j])[0]
+    for bounds in steps:
         for before in befores:
-            yield Outlook(bounds, float(limits.usage[i, j]), before)
+            yield Outlook(bounds, float(least), before)
+
+
+def _out_of_reach(problem: Problem) -> Bools:
+    """(n,) the tasks that no robot can do, where nothing is timed.
+
+    The robots are tried one by one, on the tasks that none before them can do: a table of all pairs would not fit into
+    memory for a city, and the first robots leave few tasks to the others.
+    """
+    out = np.ones(len(problem.tasks), dtype=np.bool_)
+    capacity = problem.capacity * (1 + ROUNDING)
+    for i in np.argsort(-problem.capacity, kind="stable").tolist():
+        left = np.flatnonzero(out & problem.allowed_by_kind[problem.kinds[i]])
+        least = _least_usage_with(problem, i, left)
+        out[left] = ~(np.isfinite(least) & (least <= capacity[i]))
+        if not out.any():
+            break
+    return out
+
+
+def _least_usage_with(problem: Problem, i: int, tasks: Sequence[int] | Indices) -> Floats:
+    """The least usage of any route of robot i that holds a task, for each of some tasks; inf where there is none."""
+    if len(problem.shortcuts()):
+        return np.asarray(least_usage(problem, i)[tasks])
+    there = np.asarray(problem.legs(i, [problem.start(i)], tasks)[0] + problem.work_usage(i)[tasks])
+    if problem.robots[i].place_at_end(problem.mission.rules) is None:
+        return there
+    return np.asarray(there + problem.legs(i, tasks, [problem.end(i)])[:, 0])
 
 
 def _reason(problem: Problem, i: int, j: int, outlooks: Iterable[Outlook]) -> Reason:

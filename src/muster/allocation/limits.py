@@ -198,6 +198,12 @@ def narrowed(
     return _narrowed(_unnarrowed(problem, usage, np.array([a for a, _ in found]), np.array([h for _, h in found])))
 
 
+def untimed(problem: Problem) -> Limits:
+    """No bounds, for a problem in which nothing is timed; its pairs depend on their usage alone."""
+    none, at_once = np.empty((0, 0)), np.zeros(len(problem.tasks))
+    return Limits(problem, none, none.astype(np.bool_), none, none, at_once, at_once, (None,) * len(problem.tasks))
+
+
 def _unnarrowed(problem: Problem, usage: Floats, arrival: Floats, home: Floats) -> Limits:
     at_once = np.zeros(len(problem.tasks))
     return Limits(problem, usage, problem.allowed, arrival, home, at_once, at_once, (None,) * len(problem.tasks))

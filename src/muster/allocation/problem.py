@@ -468,6 +468,10 @@ class Problem:
 
     def shortcuts(self) -> Indices:
         """Tasks through which a way can be shorter than the direct one."""
+        return self._shortcuts
+
+    @cached_property
+    def _shortcuts(self) -> Indices:
         if len(self.travel[0]) or len(self.waiting.seconds):
             return np.arange(len(self.tasks))
         n = len(self.tasks)

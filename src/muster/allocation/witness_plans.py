@@ -17,6 +17,7 @@ Judge = Callable[[Mission, Plan, tuple[str, ...]], bool]
 """Whether a plan is admissible, some rules ignored: given by the caller, as this room may not import `verification`."""
 
 _ITERATIONS, _EFFORT = 5000, 800_000  # most steps of a short search; most steps times tasks and robots
+_LEAST_S = 1.5e-4  # for each task and robot: what the least search takes, and the judging of its plan
 _OTHERS_WEIGHT = 1e-6  # of a task that only shortens ways
 
 
@@ -30,6 +31,11 @@ def closed(problem: Problem, tasks: Iterable[int]) -> list[int]:
         needed |= new
         waiting += new
     return sorted(needed)
+
+
+def least_seconds(problem: Problem) -> float:
+    """How long an attempt takes at least: it cannot be cut short before it has a plan of all robots and tasks."""
+    return _LEAST_S * (len(problem.tasks) + len(problem.robots))
 
 
 def attempt(

@@ -47,7 +47,7 @@ _NOT_MINIMAL = "some of them may already be too many: not without each of them a
     default=2.0,
     show_default=True,
     metavar="S",
-    help="Seconds for finding out whether all tasks can be done in one plan.",
+    help="Seconds after which it is not looked at any more whether one plan can do all tasks.",
 )
 @quiet_option
 @server_option()

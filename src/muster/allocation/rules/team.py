@@ -96,7 +96,9 @@ class Team(Rule):
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         refused = self.refusal(problem, i, j)
-        return refused or shortfall(problem, i, j, outlook.limits.alone[:, j])
+        if refused or not problem.timed_rules.is_for_team(j):
+            return refused
+        return shortfall(problem, i, j, outlook.limits.alone[:, j])
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         problem = plan.problem

@@ -9,6 +9,7 @@ from typing import Any
 from muster.allocation.conflicts import Conflict, Together, together
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.mission.plan import Reason, Unassigned
 from muster.motion.actions.coverage import Unseen
@@ -69,18 +70,20 @@ def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float
     ignored
         rules that do not hold.
     time_limit
-        seconds for finding out whether all tasks can be done in one plan; None: that stays unknown.
+        seconds after which it is not looked at any more whether all tasks can be done in one plan; None: that stays
+        unknown.
 
     Raises
     ------
     MissionError, NotSupportedError
         if the mission cannot be planned at all, or its map is wrong.
     """
+    budget = Stop(time_limit=time_limit)
     problem = Problem.compile(mission, ignored=ignored).ready()  # which reads the map
     lost, unseen, blocked = impossible(problem), unseen_searches(problem), blocked_ways(problem)
-    if time_limit is None:
+    if budget.time_left_s is None:
         return Possible(lost, Together(unknown=True), unseen, blocked)
-    return Possible(lost, together(problem, admits, time_limit=time_limit), unseen, blocked)
+    return Possible(lost, together(problem, admits, time_limit=budget.time_left_s), unseen, blocked)
 
 
 def _conflict(data: Mapping[str, Any] | None) -> Conflict | None:
