@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from muster.allocation.consensus import NO_BID, NOBODY, Beliefs, Message, diameter, neighbours
+from muster.allocation.stop import Stop
 
 # The conflict table: sender 0, receiver 1, others 2 (m) and 3 (n).
 
@@ -78,7 +79,7 @@ def test_a_message_is_read_by_every_receiver_and_task():
     beliefs = Beliefs(3, 2)
     beliefs.z[:] = [[0, NOBODY], [NOBODY, 0], [2, 0]]
     beliefs.y[:] = [[-1.0, NO_BID], [NO_BID, -2.0], [-1.5, -2.0]]
-    beliefs.exchange([[1, 2], [], []], now=1)
+    beliefs.exchange([[1, 2], [], []], now=1, stop=Stop())
     assert beliefs.z.tolist() == [[0, NOBODY]] * 3
     assert beliefs.y.tolist() == [[-1.0, NO_BID]] * 3
     assert beliefs.agree()
@@ -91,7 +92,7 @@ def test_news_travels_one_neighbour_a_round():
     for now in (1, 2, 3):
         assert beliefs.z[now, 0] == NOBODY
         assert beliefs.agreed_winners().tolist() == [NOBODY]
-        beliefs.exchange(neighbours("line", 4), now)
+        beliefs.exchange(neighbours("line", 4), now, Stop())
     assert beliefs.agreed_winners().tolist() == [0]
     assert beliefs.s[3, :3].tolist() == [1, 2, 3]
 

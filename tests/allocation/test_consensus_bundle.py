@@ -309,9 +309,9 @@ def test_an_interrupted_auction_leaves_what_is_agreed(topology, seed, after):
 
 def test_an_auction_cut_short_has_agreed_on_something():
     mission = muster.load("31T-6R")
-    done = [solved(mission, stop=Interrupted(after)).tasks_completed for after in range(40)]
+    done = [solved(mission, stop=Interrupted(after)).tasks_completed for after in (0, 2, 60, 600)]
     assert done[0] == 0
-    assert 0 < done[2] < done[-1] == 31
+    assert 0 < done[1] < done[2] < done[3] == 31
 
 
 @pytest.mark.parametrize("robots", [1, 3])

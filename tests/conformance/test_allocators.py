@@ -103,6 +103,31 @@ def test_a_time_limit_is_kept_on_the_given_clock(allocator):
     assert stop.iterations_done > 10
 
 
+@pytest.mark.parametrize("allocator", ["auction", "market", "consensus-bundle"])
+def test_an_auction_ends_when_its_time_is_up_and_notes_it(allocator):
+    problem = Problem.compile(muster.load("31T-6R50")).ready()
+    stop = Stop(time_limit=0.1, clock=VirtualClock(step_s=0.01))
+    plan = ALLOCATORS[allocator].solve(problem, stop)
+    assert plan.elapsed_s < 0.3  # in which each robot sees once that time is up
+    assert plan.tasks_completed < 31
+    assert stop.cut_short
+    assert muster.verify(problem.mission, plan).valid
+
+
+def test_an_auction_that_ends_by_itself_was_not_cut_short():
+    stop = Stop(time_limit=1e6)
+    ALLOCATORS["auction"].solve(Problem.compile(muster.load("31T-6R50")), stop)
+    assert not stop.cut_short
+
+
+def test_no_reasons_are_looked_for_long_after_the_time_is_up():
+    problem, clock = Problem.compile(muster.load("31T-6R50")).ready(), VirtualClock()
+    stop = Stop(time_limit=0.0, clock=clock)
+    assert all(item.reasons for item in ALLOCATORS["auction"].solve(problem, stop).unassigned)
+    clock.advance(0.2)
+    assert not any(item.reasons for item in ALLOCATORS["auction"].solve(problem, stop).unassigned)
+
+
 @every_allocator
 def test_an_anytime_run_never_ends_below_its_start(allocator):
     mission = muster.load("31T-6R50")

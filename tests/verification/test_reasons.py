@@ -14,6 +14,7 @@ import muster
 from muster.mission.model import Map, Mission, Robot, Rules, Task, TravelTable, Zone
 from muster.mission.plan import REASONS, Plan, Reason, Route, Unassigned
 from muster.verification import verify
+from muster.verification.rules.deadline import Deadline
 
 
 def with_reason(plan: Plan, task: str, robot: str, word: str) -> Plan:
@@ -205,3 +206,17 @@ def test_a_team_that_is_there(robots, is_false):
     routes = tuple(Route(robot.id, ()) for robot in members)
     plan = Plan(routes=routes, unassigned=(Unassigned("a", (Reason("r_0", "team", "..."),)),))
     assert found(mission, plan) == ([("reason", "r_0", "a")] if is_false else [])
+
+
+def test_what_a_mission_is_subject_to_is_looked_up_once_and_not_for_each_reason(monkeypatch):
+    """Else the time to judge a plan that leaves tasks out grows with the square of their number."""
+    looked = []
+    is_in = Deadline.is_in
+    monkeypatch.setattr(Deadline, "is_in", lambda self, mission: looked.append(mission) or is_in(self, mission))
+    tasks = [Task(id=f"t{k}", position=(k, 0)) for k in range(30)]
+    mission = Mission(robots=[Robot(id="r", position=(0, 0), work_capacity=0)], tasks=tasks)
+    plan = muster.solve(mission, "greedy")
+    assert len(plan.unassigned) == 29
+    looked.clear()
+    assert muster.verify(mission, plan).valid
+    assert len(looked) <= 2

@@ -183,7 +183,7 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         weight_completed=sum(problem.tasks[j].priority for j in done),
         elapsed_s=elapsed,
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
-        unassigned=unassigned_of_plan(problem, lists, lambda: stop.hurried),
+        unassigned=unassigned_of_plan(problem, lists, lambda: stop.overdue),
         history=tuple(stop.history),
         book=outcome.book,
     )

@@ -31,7 +31,8 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
         auctioneer = Auctioneer(problem, params, start, on_round)
-        auctioneer.sell(until)
+        if not auctioneer.sell(until):
+            until.cut()
         return auctioneer
 
     held = hold(stop)

@@ -65,10 +65,13 @@ class Auctioneer:
         self._bidders.announce(list(tasks))
         self._winner_rule.note(self._robots)
 
-    def sell(self, stop: Stop) -> None:
-        """Select and assign until nobody bids any more. No time limit cuts that short: half an auction is of no use."""
-        while not stop.interrupted and (sale := self.select()):
+    def sell(self, stop: Stop) -> bool:
+        """Select and assign until nobody bids any more; whether it came so far before it was time to stop."""
+        while not stop.due():
+            if (sale := self.select()) is None:
+                return True
             self.assign(sale)
+        return False
 
     def select(self) -> Sale | None:
         """The sale of the next round; None if nobody bids for anything."""

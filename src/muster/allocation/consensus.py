@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.allocation.problem import Bools, Floats, Indices, Problem
+from muster.allocation.stop import Stop
 from muster.mission.auction_book import Award, Bid, Book, TakeBid
 
 TOPOLOGIES = ("complete", "ring", "line")
@@ -95,11 +96,14 @@ class Beliefs:
         self.y: Floats = np.full((m, n), NO_BID)
         self.s: Indices = np.zeros((m, m), dtype=np.int64)
 
-    def exchange(self, network: Sequence[Sequence[int]], now: int) -> None:
-        """A round: every robot sends what it believes to its neighbours, which read their messages by their senders."""
+    def exchange(self, network: Sequence[Sequence[int]], now: int, stop: Stop) -> None:
+        """A round: every robot sends what it believes to its neighbours, which read their messages by their senders.
+
+        Messages that are not read when it is time to stop are lost.
+        """
         sent = self._copy()
         for k, receivers in enumerate(network):
-            if receivers:
+            if receivers and not stop.due():
                 self._read(sent, k, np.array(receivers, dtype=np.int64), now)
 
     def lose(self, i: int, bundle: Sequence[int]) -> list[int]:

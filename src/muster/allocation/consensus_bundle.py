@@ -90,7 +90,8 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
         winners = _agree(problem, team, offered, ledger, stop, params)
         for bidder in team:
             done.update(bidder.settle(winners))
-        if stop.interrupted:
+        if stop.due():
+            stop.cut()
             break
     routes = [bidder.route for bidder in team]
     stop.improved(*problem.value(routes))
@@ -108,8 +109,8 @@ def _agree(
     last_round = ledger.rounds + most_rounds
     for bidder in team:
         bidder.offer(offered)
-    while not stop.interrupted:
-        added = [bidder.build_bundle(beliefs, limit, ledger) for bidder in team]  # phase 1
+    while not stop.due():
+        added = [bidder.build_bundle(beliefs, limit, ledger, stop) for bidder in team]  # phase 1
         if not any(added) and beliefs.agree():
             if params.bundle_size or not any(bidder.could_take_more(beliefs) for bidder in team):
                 break
@@ -118,7 +119,7 @@ def _agree(
             continue
         if ledger.rounds == last_round:
             raise MusterError(f"consensus-bundle: the robots do not agree within {most_rounds} rounds")
-        beliefs.exchange(network, ledger.end_round())  # phase 2
+        beliefs.exchange(network, ledger.end_round(), stop)  # phase 2
         for bidder in team:
             bidder.release(beliefs)
     return beliefs.agreed_winners()
@@ -230,11 +231,11 @@ class Bidder:
             if j in self._column:
                 self._free[self._column[j]] = False
 
-    def build_bundle(self, beliefs: Beliefs, limit: int, ledger: Ledger) -> bool:
+    def build_bundle(self, beliefs: Beliefs, limit: int, ledger: Ledger, stop: Stop) -> bool:
         """Algorithm 3: add the task of highest score that outbids the winner known; whether any was added."""
         z, y = beliefs.z[self._i], beliefs.y[self._i]
         before = len(self._bundle)
-        while len(self._bundle) < limit and len(self._columns):
+        while len(self._bundle) < limit and len(self._columns) and not stop.due():
             gaps, scores = self._scores()
             bids = np.minimum(scores, y[self._bundle[-1]] if self._bundle else math.inf)
             known, holder = y[self._columns], z[self._columns]

@@ -77,7 +77,8 @@ def trade(
     random = Random(seed)
     auctioneer = Auctioneer(problem, params, start, on_round)
     before = _allocation(problem, auctioneer)
-    auctioneer.sell(stop)
+    if not auctioneer.sell(stop):
+        stop.cut()
     current = _allocation(problem, auctioneer)
     best = min(before, current, key=_rank)
     stop.improved(-best.rank[0], best.rank[1])

@@ -9,6 +9,7 @@ from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
 
 DEFAULT_TIME_LIMIT_S = 5.0
+_OVERTIME, _OVERTIME_S = 0.05, 0.1  # share of a time limit, and seconds, in which what was found is put together
 
 
 def usual_time_limit(anytime: bool, time_limit: float | None, iterations: int | None) -> float | None:
@@ -44,7 +45,9 @@ class Progress:
 
 
 class Stop:
-    """Ends an algorithm after a number of iterations, a time, or when it is interrupted; keeps the history.
+    """The budget of an algorithm: ends it after a number of iterations, a time, or when it is interrupted.
+
+    It keeps the history, and notes what was cut short (`cut_short`).
 
     Parameters
     ----------
@@ -80,6 +83,7 @@ class Stop:
         self._begin = self._clock.now()
         self._reported = self._begin
         self._interrupted = self._hurried = False
+        self.cut_short = False
         self._whole = whole
         self.iterations_done = 0
         self.best: tuple[float, float] | None = None
@@ -102,6 +106,18 @@ class Stop:
         """End the algorithm at the next chance; it returns the best it has. A second time: leave out the reasons."""
         self._hurried = self._interrupted
         self._interrupted = True
+
+    def cut(self) -> None:
+        """Note that an algorithm ended before it had looked at all tasks."""
+        self.cut_short = True
+        if self._whole is not None:
+            self._whole.cut()
+
+    @property
+    def overdue(self) -> bool:
+        """Whether nothing more is worth waiting for: it was interrupted twice, or the time limit has passed by far."""
+        limit = self._time_limit
+        return self.hurried or (limit is not None and self.elapsed_s > limit * (1 + _OVERTIME) + _OVERTIME_S)
 
     def due(self) -> bool:
         """Whether time is up or the algorithm was interrupted."""

@@ -84,6 +84,8 @@ def command(
         if not quiet:
             click.echo("interrupted: this is the best plan so far", err=True)
         return INTERRUPTED
+    if solution.cut_short and not quiet:
+        click.echo("time limit: planning was cut short; it did not come to all tasks that are left out", err=True)
     _say_why(solution, quiet=quiet, verbose=verbose)
     return INCOMPLETE if require_complete and not solution.plan.complete else DONE
 

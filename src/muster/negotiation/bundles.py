@@ -18,6 +18,7 @@ from muster.allocation.allocator import Routes
 from muster.allocation.consensus import Beliefs, Ledger
 from muster.allocation.consensus_bundle import Bidder, Parameters, ScoreClock, first_limit, layers
 from muster.allocation.problem import Problem
+from muster.allocation.stop import Stop
 from muster.negotiation.messages import Bid, RoundBids, Sold
 from muster.negotiation.valuation import Resolution, TeamValuer
 
@@ -63,7 +64,7 @@ class BundleValuer(TeamValuer):
             more = len(self._offered) and self._bidder.could_take_more(self._beliefs)
             return ((self.problem.tasks[int(self._offered[0])].id, 0.0),) if more else ()
         before = len(self._bidder.bundle)
-        self._bidder.build_bundle(self._beliefs, self._limit, self.ledger)
+        self._bidder.build_bundle(self._beliefs, self._limit, self.ledger, Stop())
         return tuple(self._bid(j) for j in self._bidder.bundle[before:])
 
     def resolve(self, bids: Sequence[RoundBids]) -> Resolution:
@@ -115,7 +116,7 @@ class BundleValuer(TeamValuer):
     def _exchange(self, members: Sequence[int]) -> None:
         """Phase 2: all members read each other, and release what they lost."""
         network = [[k for k in members if k != i] if i in members else [] for i in range(len(self._robots))]
-        self._beliefs.exchange(network, self.ledger.end_round())
+        self._beliefs.exchange(network, self.ledger.end_round(), Stop())
         for bundle, lost in [(b, self._beliefs.lose(i, b)) for i, b in enumerate(self._bundles)]:
             del bundle[len(bundle) - len(lost) :]
         self._bidder.release(self._beliefs)

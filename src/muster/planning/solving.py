@@ -36,6 +36,8 @@ class Solution:
         how many the allocator did.
     interrupted
         whether planning was interrupted, so that the plan is the best until then, neither rewired nor bounded.
+    cut_short
+        whether the time limit ended an auction before it came to all tasks that are left out.
     """
 
     plan: Plan
@@ -43,6 +45,7 @@ class Solution:
     why: str = ""
     iterations: int = 0
     interrupted: bool = False
+    cut_short: bool = False
 
 
 def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt: Stop | None = None) -> Solution:
@@ -84,7 +87,14 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     if shared is not None and plan.time_without_traffic_s is None and not stop.interrupted:
         plan = shared.told(plan)
     verdict = judged(request.mission, plan, request.ignore, request.objective)
-    return Solution(plan=plan, verdict=verdict, why=why, iterations=stop.iterations_done, interrupted=stop.interrupted)
+    return Solution(
+        plan=plan,
+        verdict=verdict,
+        why=why,
+        iterations=stop.iterations_done,
+        interrupted=stop.interrupted,
+        cut_short=stop.cut_short and not plan.complete,
+    )
 
 
 def _shared_passages(request: Request) -> SharedPassages | None:

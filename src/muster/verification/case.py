@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -57,6 +58,26 @@ class Case:
             for name in task.starts_with:
                 named.setdefault(name, []).append(task.id)
         return named
+
+    @cached_property
+    def awaited(self) -> frozenset[str]:
+        """The tasks that tasks in the plan wait for."""
+        return frozenset(name for route in self.routes for step in route.steps for name in step.task.prerequisites)
+
+    @cached_property
+    def has_relations(self) -> bool:
+        """Whether tasks are tied by who does them."""
+        return any(task.same_robot_as or task.other_robot_than or task.starts_with for task in self.mission.tasks)
+
+    def is_subject_to(self, kind: str, is_in: Callable[[Mission], bool]) -> bool:
+        """Whether anything in the mission is subject to a kind of rule; looked up once, not for each reason."""
+        if kind not in self._subject_to:
+            self._subject_to[kind] = is_in(self.mission)
+        return self._subject_to[kind]
+
+    @cached_property
+    def _subject_to(self) -> dict[str, bool]:
+        return {}
 
     def needs_others(self, task: Task) -> bool:
         """Whether other robots may have to work at the same time: in its team, or at a task that begins with it."""

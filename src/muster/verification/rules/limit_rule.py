@@ -27,4 +27,4 @@ class LimitRule(ABC):
 
     def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
         """Undecided where there are such limits: one more task may delay others past theirs."""
-        return None if self.is_in(case.mission) else False
+        return None if case.is_subject_to(self.kind, self.is_in) else False

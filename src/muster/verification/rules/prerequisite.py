@@ -31,5 +31,5 @@ class Prerequisite:
         """
         if not case.done.issuperset(task.prerequisites):
             return True
-        awaited = case.deadlocked or any(task.id in step.task.prerequisites for r in case.routes for step in r.steps)
+        awaited = case.deadlocked or task.id in case.awaited
         return None if awaited or case.is_timed else False

@@ -24,8 +24,7 @@ class Relation:
 
     def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
         """Undecided where tasks are tied."""
-        tied = any(t.same_robot_as or t.other_robot_than or t.starts_with for t in case.mission.tasks)
-        return None if tied else False
+        return None if case.has_relations else False
 
 
 def _wrong(case: Case, task: Task) -> Iterator[str]:
