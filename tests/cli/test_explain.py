@@ -137,7 +137,7 @@ def test_the_smallest_change_for_each_task_left_out(shed, muster):
 
 def test_the_smallest_changes_in_json(shed, muster):
     data = json.loads(muster("explain", *shed, "--format", "json")[1])
-    assert list(data) == ["ignored", "unassigned", "smallest"]
+    assert list(data) == ["ignored", "unassigned", "smallest", "cut_short"]
     kinds = {item["task"]: (item["remedy"]["robot"], item["remedy"]["kinds"]) for item in data["smallest"]}
     assert kinds == {
         "c": ("r_0", ["capacity"]),
@@ -202,7 +202,7 @@ def test_lines_are_not_too_long(shed, muster):
 def test_remedies_in_json(shed, muster):
     data = json.loads(muster("explain", *shed, "--task", "far", "--format", "json")[1])
     first, second = data["remedies"]
-    assert list(data) == ["task", "robot", "team", "ignored", "objective", "alternatives", "remedies"]
+    assert list(data) == ["task", "robot", "team", "ignored", "objective", "alternatives", "remedies", "cut_short"]
     assert (first["suitability"]["score"], first["suitability"]["needed"]) == (0.5, 0.65)
     assert second["capacity"]["now"] == 20
     assert second["kinds"] == ["capacity"]

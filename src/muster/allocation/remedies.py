@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from muster import core
@@ -23,17 +23,24 @@ _MOST_SEARCHED = 6  # robots, those that need least with the rest of the plan as
 _NEAR_ENOUGH = 1e-3  # relative
 
 
-def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Remedy, ...]:
-    """For every robot, in mission order, the remedy with which it can do task j."""
+def remedies(
+    problem: Problem, routes: Routes, j: int, judge: Judge, due: Callable[[], bool] = lambda: False
+) -> tuple[Remedy, ...]:
+    """For every robot, in mission order, the remedy with which it can do task j.
+
+    From when `due` says so remedies are no longer searched for.
+    """
     if problem.core.is_timed:
         order = [problem.robot_index[robot.id] for robot in problem.mission.robots]
-        return tuple(timed_remedy(problem, routes, i, j, judge) for i in order)
+        return tuple(timed_remedy(problem, routes, i, j, judge, due=due) for i in order)
     first = dict(_needs_as_is(problem, routes, j))
     able = [i for i, remedy in first.items() if not remedy.unable]
     searched = set(sorted(able, key=lambda i: first[i].size)[:_MOST_SEARCHED])
     found = {
         i: _not_found(replace(remedy, impossible=True))
         if remedy.unable
+        else replace(_not_found(remedy), searched=False)
+        if due()
         else _searched_for(problem, routes, i, j, remedy, judge)
         if i in searched
         else replace(_as_is(problem, routes, i, j, remedy, judge), searched=False)
@@ -42,19 +49,24 @@ def remedies(problem: Problem, routes: Routes, j: int, judge: Judge) -> tuple[Re
     return tuple(found[problem.robot_index[robot.id]] for robot in problem.mission.robots)
 
 
-def smallest_as_is(problem: Problem, routes: Routes, j: int, judge: Judge) -> Remedy | None:
-    """The smallest change for task j at any robot with the rest of the plan as it is; None if there is none.
+def smallest_as_is(
+    problem: Problem, routes: Routes, j: int, judge: Judge, due: Callable[[], bool] = lambda: False
+) -> Remedy | None:
+    """The smallest change for task j at any robot with the rest of the plan as it is; None if none was found.
 
+    From when `due` says so it is not looked for any more.
     Where prerequisites are left out they would have to be done first: such a change is never said to be enough.
     """
     if problem.core.is_timed:
         robots = range(len(problem.robots))
-        return smallest([timed_remedy(problem, routes, i, j, judge, searched=False) for i in robots])
+        return smallest([timed_remedy(problem, routes, i, j, judge, searched=False, due=due) for i in robots])
     first = dict(_needs_as_is(problem, routes, j))
     order = sorted((i for i, remedy in first.items() if not remedy.unable), key=lambda i: first[i].size)
     if order and first[order[0]].before:
         return first[order[0]]
     for i in order:
+        if due():
+            break
         if first[i].capacity.as_is is not None:
             remedy = _as_is(problem, routes, i, j, first[i], judge)
             if remedy.enough:

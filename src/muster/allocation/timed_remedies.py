@@ -7,7 +7,7 @@ no more: the mission so changed has an admissible plan with the task, which was 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from muster import core
@@ -31,13 +31,24 @@ from muster.allocation.witness_plans import Judge, attempt, bare_plan, closed
 _RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")
 
 
-def timed_remedy(problem: Problem, routes: Routes, i: int, j: int, judge: Judge, *, searched: bool = True) -> Remedy:
+def timed_remedy(
+    problem: Problem,
+    routes: Routes,
+    i: int,
+    j: int,
+    judge: Judge,
+    *,
+    searched: bool = True,
+    due: Callable[[], bool] = lambda: False,
+) -> Remedy:
     """The remedy with which robot i can do task j: beside the rest of the plan as it is, else in another plan."""
     first = _first(problem, routes, i, j)
     if first.unable:
         return replace(first, impossible=True)
     rest = [[k for k in route if k != j] for route in routes]
     for wider in _wider(problem, first, rest, i, j):
+        if due():
+            return replace(first, searched=False)
         found = _lifted_and_tried(problem, rest, i, j, wider, judge, searched=False)
         if found is None and searched:
             found = _lifted_and_tried(problem, rest, i, j, wider, judge, searched=True)

@@ -58,7 +58,9 @@ class Backend(Protocol):
     def verify(self, mission: Mission, plan: Plan, ignore: Sequence[str], objective: str | None) -> Verdict:
         """What the judge says."""
 
-    def explain(self, mission: Mission, plan: Plan, task: str | None, ignore: Sequence[str], file: str) -> Explanation:
+    def explain(
+        self, mission: Mission, plan: Plan, task: str | None, ignore: Sequence[str], file: str, time_limit: float
+    ) -> Explanation:
         """Why tasks are left out, or why one task is done by this robot."""
 
     def export(

@@ -22,8 +22,16 @@ if TYPE_CHECKING:
 @click.option("--task", metavar="T", help="Only this task, which may also be one that is done.")
 @ignore_option
 @format_option
+@click.option(
+    "--time-limit",
+    type=click.FloatRange(min=0),
+    default=10.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds after which nothing more is looked for.",
+)
 @quiet_option
-@server_option()
+@server_option("time_limit")
 def command(
     backend: Backend,
     mission: MissionFile,
@@ -31,13 +39,14 @@ def command(
     task: str | None,
     ignore: tuple[str, ...],
     form: str,
+    time_limit: float,
     quiet: bool,
     verbose: bool,
 ) -> None:
     """Say why tasks are left out of a PLAN; with --task, why a task is done by this robot and not by another."""
     loaded = mission.load(verbose=verbose)
     given = read_plan(plan)
-    found = backend.explain(loaded, given, task, ignore, str(plan))
+    found = backend.explain(loaded, given, task, ignore, str(plan), time_limit)
     say_of_plan(given, plan, loaded, ignore, quiet=quiet, verbose=verbose)
     _print(form, found)
 

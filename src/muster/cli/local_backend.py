@@ -57,10 +57,12 @@ class LocalBackend:
 
         return verify(mission, plan, ignore, objective)
 
-    def explain(self, mission: Mission, plan: Plan, task: str | None, ignore: Sequence[str], file: str) -> Explanation:
+    def explain(
+        self, mission: Mission, plan: Plan, task: str | None, ignore: Sequence[str], file: str, time_limit: float
+    ) -> Explanation:
         from muster.planning.explaining.tables import explained
 
-        return explained(mission, plan, task, ignore, file)
+        return explained(mission, plan, task, ignore, file, time_limit)
 
     def export(
         self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str

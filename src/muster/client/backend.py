@@ -84,7 +84,9 @@ class ServerBackend:
     def verify(self, mission: Mission, plan: Plan, ignore: Sequence[str], objective: str | None) -> Verdict:
         return self._client.plans.verdict(self._kept_plan(mission, plan), ignore, objective)
 
-    def explain(self, mission: Mission, plan: Plan, task: str | None, ignore: Sequence[str], file: str) -> Explanation:
+    def explain(
+        self, mission: Mission, plan: Plan, task: str | None, ignore: Sequence[str], file: str, time_limit: float
+    ) -> Explanation:
         from muster.planning.explaining.tables import Explanation, Table
 
         found = self._client.plans.explain(self._kept_plan(mission, plan), task, ignore)

@@ -39,15 +39,34 @@ def check(mission: Mission, *, ignore: str | Collection[str] = (), time_limit: f
 
 
 @overload
-def explain(mission: Mission, plan: GivenPlan, task: None = None, *, ignore: str | Collection[str] = ()) -> LeftOut: ...
+def explain(
+    mission: Mission,
+    plan: GivenPlan,
+    task: None = None,
+    *,
+    ignore: str | Collection[str] = (),
+    time_limit: float | None = 10.0,
+) -> LeftOut: ...
 
 
 @overload
-def explain(mission: Mission, plan: GivenPlan, task: str, *, ignore: str | Collection[str] = ()) -> OneTask: ...
+def explain(
+    mission: Mission,
+    plan: GivenPlan,
+    task: str,
+    *,
+    ignore: str | Collection[str] = (),
+    time_limit: float | None = 10.0,
+) -> OneTask: ...
 
 
 def explain(
-    mission: Mission, plan: GivenPlan, task: str | None = None, *, ignore: str | Collection[str] = ()
+    mission: Mission,
+    plan: GivenPlan,
+    task: str | None = None,
+    *,
+    ignore: str | Collection[str] = (),
+    time_limit: float | None = 10.0,
 ) -> LeftOut | OneTask:
     """Explain why tasks are left out of a plan; or why a task is done by this robot and not by another.
 
@@ -59,6 +78,8 @@ def explain(
         the id of one task; None: all that are left out.
     ignore
         rules that do not hold.
+    time_limit
+        seconds after which nothing more is looked for (`cut_short`); None: no limit.
 
     Raises
     ------
@@ -67,10 +88,14 @@ def explain(
     PlanError
         if the plan is not one of this mission, or a mapping is no plan.
     """
+    from muster.allocation.stop import Stop
     from muster.planning.explaining import left_out, one_task, require_fit
 
     require_mission(mission)
+    stop = Stop(time_limit=time_limit)
     ignored = ignored_rules(ignore)
     explained = plan_of(plan)
     require_fit(mission, explained, "<plan>", ignored)
-    return left_out(mission, explained, ignored) if task is None else one_task(mission, explained, task, ignored)
+    if task is None:
+        return left_out(mission, explained, ignored, stop)
+    return one_task(mission, explained, task, ignored, stop)

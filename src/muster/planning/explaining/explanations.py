@@ -11,6 +11,7 @@ from muster.allocation.explanations import Alternative, alternatives, unassigned
 from muster.allocation.problem import Problem
 from muster.allocation.remedies import remedies, smallest_as_is
 from muster.allocation.remedy import Remedy
+from muster.allocation.stop import Stop
 from muster.mission.auction_book import Award
 from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.model import Mission
@@ -18,6 +19,8 @@ from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, Unassigned
 from muster.verification import RouteFigures, Verdict, verify
 
+EXPLAIN_TIME_LIMIT_S = 10.0
+_FOR_REASONS = 0.5  # share of the time; the rest is for changes
 _MOST_SHORT = 50  # tasks left out whose smallest change is looked for when none is asked for by name
 _IN_KNOTS = ("mission", "unknown-robot", "unknown-task", "repeated-robot", "repeated-task", "deadlock", "prerequisite")
 
@@ -29,6 +32,8 @@ class LeftOut:
     problem: Problem = field(repr=False)
     unassigned: tuple[Unassigned, ...]
     changes: Mapping[str, Remedy | None]
+    cut_short: bool = False
+    """Whether time was up before all reasons and changes were found."""
 
     def as_dict(self) -> dict[str, Any]:
         """Return what `muster explain --format json` prints."""
@@ -37,6 +42,7 @@ class LeftOut:
             "ignored": list(self.problem.ignored),
             "unassigned": [asdict(item) for item in self.unassigned],
             "smallest": smallest,
+            "cut_short": self.cut_short,
         }
 
 
@@ -54,6 +60,8 @@ class OneTask:
         for each robot the changes that it would need.
     award
         the award of the task in a plan of an auction.
+    cut_short
+        whether time was up before all remedies were looked for.
     """
 
     problem: Problem = field(repr=False)
@@ -64,6 +72,7 @@ class OneTask:
     alternatives: tuple[Alternative, ...]
     remedies: tuple[Remedy, ...]
     award: Award | None
+    cut_short: bool = False
 
     @property
     def objective(self) -> float | None:
@@ -89,6 +98,7 @@ class OneTask:
             "objective": self.objective,
             "alternatives": [asdict(other) for other in self.alternatives],
             "remedies": [_plain(remedy) for remedy in self.remedies],
+            "cut_short": self.cut_short,
         }
         return data if self.award is None else {**data, "award": self.award.as_dict()}
 
@@ -112,20 +122,26 @@ def require_fit(mission: Mission, plan: Plan, file: str, ignore: Collection[str]
         )
 
 
-def left_out(mission: Mission, plan: Plan, ignore: Collection[str] = ()) -> LeftOut:
-    """Explain why tasks are left out of a plan that fits the mission."""
+def left_out(mission: Mission, plan: Plan, ignore: Collection[str], stop: Stop) -> LeftOut:
+    """Explain why tasks are left out of a plan that fits the mission, as far as there is time."""
     problem = Problem.compile(mission, plan.objective, ignore)
     routes = routes_of(problem, plan)
-    missing = unassigned(problem, routes)
-    changes = {
-        item.task: smallest_as_is(problem, routes, problem.task_index[item.task], admits)
-        for item in missing[:_MOST_SHORT]
-    }
-    return LeftOut(problem, missing, changes)
+    for_reasons = None if stop.time_left_s is None else _FOR_REASONS * stop.time_left_s
+    missing = unassigned(problem, routes, stop.part(time_limit=for_reasons, iterations=None).due)
+    changes: dict[str, Remedy | None] = {}
+    for item in missing[:_MOST_SHORT]:
+        found = smallest_as_is(problem, routes, problem.task_index[item.task], admits, stop.due)
+        if stop.due():
+            break
+        changes[item.task] = found
+    cut_short = stop.due() or not all(item.reasons for item in missing)
+    return LeftOut(problem, missing, changes, cut_short)
 
 
-def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str] = ()) -> OneTask:
+def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str], stop: Stop) -> OneTask:
     """Explain why a task is done by this robot and not by another, or left out, in a plan that fits the mission.
+
+    What robots would need to do it is looked for as long as there is time.
 
     Raises
     ------
@@ -138,7 +154,8 @@ def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str] = 
         raise ParameterError(f"--task: {task}; expected the id of a task of this mission{hint}")
     routes, j = routes_of(problem, plan), problem.task_index[task]
     found = alternatives(problem, routes, j)
-    changes = remedies(problem, routes, j, admits)
+    changes = remedies(problem, routes, j, admits, stop.due)
+    cut_short = stop.due()
     verdict = verify(mission, plan, ignore, plan.objective)
     return OneTask(
         problem=problem,
@@ -149,6 +166,7 @@ def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str] = 
         alternatives=found,
         remedies=changes,
         award=None if plan.book is None else plan.book.award_of(task),
+        cut_short=cut_short,
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.allocation.remedy import Remedy
+from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
@@ -33,6 +34,8 @@ class Table:
 
 
 Part = str | Table
+_MOST_ROWS = 2000  # of reasons, in a table for people
+_CUT_SHORT = "time limit: not all was looked for"
 
 
 @dataclass(frozen=True)
@@ -43,8 +46,12 @@ class Explanation:
     parts: Sequence[Part]
 
 
-def explained(mission: Mission, plan: Plan, task: str | None, ignore: Collection[str], file: str) -> Explanation:
+def explained(
+    mission: Mission, plan: Plan, task: str | None, ignore: Collection[str], file: str, time_limit: float
+) -> Explanation:
     """Why tasks are left out of a plan; of one task, why it is done by this robot, or left out.
+
+    After the time limit, in seconds, nothing more is looked for.
 
     Raises
     ------
@@ -53,11 +60,12 @@ def explained(mission: Mission, plan: Plan, task: str | None, ignore: Collection
     ParameterError
         if the mission has no such task.
     """
+    stop = Stop(time_limit=time_limit)
     require_fit(mission, plan, file, ignore)
     if task is None:
-        missing = left_out(mission, plan, ignore)
+        missing = left_out(mission, plan, ignore, stop)
         return Explanation(missing.as_dict(), tables_on_left_out(missing))
-    found = one_task(mission, plan, task, ignore)
+    found = one_task(mission, plan, task, ignore, stop)
     return Explanation(found.as_dict(), tables_on_task(found))
 
 
@@ -68,13 +76,19 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
         return ["no task is left out; --task T explains a task that is done"]
     title = "1 task left out" if len(left_out) == 1 else f"{len(left_out)} tasks left out"
     rows = tuple((item.task, r.robot, r.reason, r.detail) for item in left_out for r in item.reasons)
+    shown = rows[:_MOST_ROWS]
     parts: list[Part] = [
         *ignored(found.problem),
-        Table(title, ("task", "robot", "reason", "detail"), rows),
+        Table(title, ("task", "robot", "reason", "detail"), shown),
         _smallest(found.problem, changes),
     ]
+    if len(rows) > len(shown):
+        parts.append(f"and {len(rows) - len(shown)} more reasons: --format json has all")
     if len(left_out) > len(changes):
         parts.append(f"and {len(left_out) - len(changes)} more: --task T looks for the changes for one task")
+    if found.cut_short:
+        bare = sum(not item.reasons for item in left_out)
+        parts.append(f"{_CUT_SHORT}; {bare} of the tasks left out come without reasons")
     return parts
 
 
@@ -88,6 +102,8 @@ def tables_on_task(found: OneTask) -> list[Part]:
         parts.append(change)
     if note := reserve(found.problem):
         parts.append(note)
+    if found.cut_short:
+        parts.append(f"{_CUT_SHORT}: what robots would need")
     return parts
 
 

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from muster.planning.explaining import left_out, one_task, require_fit
+from muster.allocation.stop import Stop
+from muster.planning.explaining import EXPLAIN_TIME_LIMIT_S, left_out, one_task, require_fit
 from muster.planning.explaining.sentences import words_on_left_out, words_on_task
 from muster.planning.explaining.tables import Part, tables_on_left_out, tables_on_task
 from muster.server.work.missions import mission_of, plan_of
@@ -19,11 +20,12 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     """
     mission, plan = mission_of(arguments["mission"]), plan_of(arguments["plan"])
     task, ignore = arguments.get("task"), arguments.get("ignore", ())
+    stop = Stop(time_limit=EXPLAIN_TIME_LIMIT_S)
     require_fit(mission, plan, "plan", ignore)
     if task is None:
-        missing = left_out(mission, plan, ignore)
+        missing = left_out(mission, plan, ignore, stop)
         return _said(missing.as_dict(), words_on_left_out(missing), tables_on_left_out(missing))
-    found = one_task(mission, plan, task, ignore)
+    found = one_task(mission, plan, task, ignore, stop)
     return _said(found.as_dict(), words_on_task(found), tables_on_task(found))
 
 
