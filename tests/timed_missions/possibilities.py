@@ -307,7 +307,8 @@ def _too_late_in(possible, robot, part):
     late = re.fullmatch(rf"with (\S+) first, (\S+) (begins|ends) {_TIME}(?:{_WINDOW}|{_DEADLINE})", part)
     if late:
         first, then, how, time, close, deadline = late.groups()
-        routes = _in_order(possible, robot, first, then, tasks=[then], without=["window", "deadline"])
+        lifted = ["window", "deadline"] if how == "begins" else ["deadline"]
+        routes = _in_order(possible, robot, first, then, tasks=[then], without=lifted)
         times = [(at if how == "begins" else ends)[possible.number[then]] for _, at, ends in routes]
         task = possible.task(then)
         return _not_before(time, times) and near(close or deadline, task.window_s[-1][1] if close else task.deadline_s)
