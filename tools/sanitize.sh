@@ -21,5 +21,5 @@ ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
 HYPOTHESIS_PROFILE=few \
     "$environment/bin/python" -m pytest -p no:cacheprovider -n 3 --dist loadgroup --max-worker-restart 0 -rs \
-    tests/core tests/allocation tests/conformance tests/motion tests/simulation \
+    tests/core tests/allocation tests/conformance tests/motion tests/simulation tests/traffic \
     --ignore tests/core/test_stub.py --ignore tests/conformance/test_planning_doors.py
