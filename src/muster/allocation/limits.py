@@ -20,9 +20,7 @@ from muster.allocation.rules.window import closed
 from muster.allocation.timed_rules import ROUNDING, TimedRules
 
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
-_MOST_NARROWED = (
-    2_000_000  # pairs times robots, or tasks, up to which bounds are narrowed again for each robot, or task
-)
+_MOST_NARROWED = 2_000_000  # pairs times robots (or tasks) up to which bounds are narrowed again for each of these
 
 
 @dataclass(frozen=True, eq=False)

@@ -82,7 +82,6 @@ def spread(
 class _Candidate:
     """Routes that may be kept, and what they come to."""
 
-    routes: Routes
     outcome: Outcome
     weight: float
     objective: float
@@ -93,6 +92,10 @@ class _Candidate:
     def rank(self) -> tuple[float, float, float]:
         """The lower, the better."""
         return -self.weight, *self.cost
+
+    @property
+    def routes(self) -> Routes:
+        return self.outcome.routes
 
 
 class _Spreading:
@@ -123,7 +126,7 @@ class _Spreading:
         now = self.best
         if now is None or now.told is None or not self._has_time:
             return
-        best = [now]
+        better = [now]
         self._shared.forecast(scheduled(self._problem, now.routes))
         varied = variations(self._shared.expected(self._problem, self.delays), now.routes, seed)
         routes = now.routes
@@ -138,10 +141,10 @@ class _Spreading:
                 now = other
             else:
                 self._shared.undo()
-            if other.rank < best[-1].rank:
-                best.append(other)
+            if other.rank < better[-1].rank:
+                better.append(other)
             routes = now.routes
-        for other in best[-CONFIRMED:]:
+        for other in better[1:][-CONFIRMED:]:  # the first is forecast already
             self._keep(self._candidate(other.outcome, self._shared.forecast))
 
     def _until_confirmed(self) -> Stop:
@@ -182,11 +185,10 @@ class _Spreading:
 
     def _candidate(self, outcome: Outcome, forecast: Callable[[Sequence[Route]], Forecast]) -> _Candidate:
         """What routes come to with their traffic; nothing is forecast for who is in a hurry."""
-        lists = [list(route) for route in outcome.routes]
-        candidate = _Candidate(lists, outcome, *self._problem.value(lists))
+        candidate = _Candidate(outcome, *self._problem.value(outcome.routes))
         if self._stop.interrupted:
             return candidate
-        routes = scheduled(self._problem, lists)
+        routes = scheduled(self._problem, outcome.routes)
         told = forecast(routes)
         return replace(candidate, cost=_cost(self._problem, candidate.objective, routes, told), told=told)
 
