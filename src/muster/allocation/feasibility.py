@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,16 +27,8 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
     without a team, and those whose prerequisites, or tasks that begin with them, are impossible. There can be others,
     such as a chain of prerequisites too long for the robots.
     """
-    limits = limits_of(problem) if problem.has_timed_rules else untimed(problem)
-    alone = ~limits.usable.any(axis=0) if problem.has_timed_rules else _out_of_reach(problem)
-    lost = dict.fromkeys(np.flatnonzero(alone).tolist(), "")
-    waiting = list(lost)
-    while waiting:
-        before = waiting.pop()
-        for j in (*problem.dependants[before], *problem.timed_rules.beginning_with(before)):
-            if j not in lost:
-                lost[j] = problem.tasks[before].id
-                waiting.append(j)
+    limits = _limits(problem)
+    lost = _lost_tasks(problem, limits)
     robots = [problem.robot_index[robot.id] for robot in problem.mission.robots]
     order = [problem.task_index[task.id] for task in problem.mission.tasks]
 
@@ -50,6 +42,29 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
         return tuple(_reason(problem, i, j, _outlooks(limits, i, j, befores)) for i in robots)
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in order if j in lost)
+
+
+def lost_tasks(problem: Problem) -> Collection[int]:
+    """Tasks that no robot can do, as far as limits tell, and those that wait for them."""
+    return _lost_tasks(problem, _limits(problem)).keys()
+
+
+def _limits(problem: Problem) -> Limits:
+    return limits_of(problem) if problem.has_timed_rules else untimed(problem)
+
+
+def _lost_tasks(problem: Problem, limits: Limits) -> dict[int, str]:
+    """Each lost task with the lost one that it waits for, or ""."""
+    alone = ~limits.usable.any(axis=0) if problem.has_timed_rules else _out_of_reach(problem)
+    lost = dict.fromkeys(np.flatnonzero(alone).tolist(), "")
+    waiting = list(lost)
+    while waiting:
+        before = waiting.pop()
+        for j in (*problem.dependants[before], *problem.timed_rules.beginning_with(before)):
+            if j not in lost:
+                lost[j] = problem.tasks[before].id
+                waiting.append(j)
+    return lost
 
 
 def _outlooks(limits: Limits, i: int, j: int, befores: Sequence[str]) -> Iterator[Outlook]:

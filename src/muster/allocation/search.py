@@ -3,7 +3,8 @@
 Slack induction by string removals (SISR): [christiaens2020]. Beyond it: a task is put back where the team's objective
 grows least, the robot that does most included; many ruins begin at that robot, or for `makespan` at the tasks that its
 end waits for; places are those that no prerequisite forbids, through all routes; tasks left out are tried again in
-every step.
+every step. Where not all tasks can be done, as in team orienteering ([chao1996]), tasks are given away for others while
+it is hot.
 
 Where tasks are bound to times, teams or relations, and for `makespan` with prerequisites, the search works on a
 schedule that is propagated through the part that a change affects ([pearce2006]); a team is chosen at a cut through
@@ -13,16 +14,18 @@ the schedule, which gives each robot one place, so that no cycle of waiting can 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
-from itertools import cycle
+from functools import partial
+from itertools import cycle, pairwise
 
 from muster import core
 from muster.allocation import greedy
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.capabilities import ALL
+from muster.allocation.feasibility import lost_tasks
 from muster.allocation.partition import improve_in_parts, number_of_parts
 from muster.allocation.problem import Problem
 from muster.allocation.ray_cluster import joined
@@ -32,6 +35,10 @@ from muster.mission.errors import ParameterError
 
 _Search = core.Search | core.ScheduleSearch
 
+# Where tasks are left out: the temperatures, in what a task costs, between which tasks are given away for others, and
+# the share of the run that this has; the rest is for the objective.
+_TRADING_HOT, _TRADING_COLD = 20.0, 0.1
+_TRADING_SHARE = 0.9
 _EXCHANGES = 20  # how often threads take over the best plan, in a whole run
 # Tasks and robots times steps, between two looks at the clock: some milliseconds.
 _BATCH = 400_000
@@ -52,10 +59,14 @@ class Parameters:
     threads: int = 1
     parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
     ray: str = "none"  # address of the Ray cluster that parts are worked on; none: threads of this process
-    hot: float = 0.0  # 0: 1 for the objectives `max` and, on a schedule, `makespan`, which few tasks decide; else 5
+    # 0: 1 for the objectives `max` and, on a schedule, `makespan`, which few tasks decide; else 5; where greedy leaves
+    # tasks out, and until all are in, 20 times what a task costs, so that tasks are given away for others
+    hot: float = 0.0
     cold: float = 0.02
-    removed: float = 0.0  # tasks that a ruin takes out, on average; 0: 5 for `makespan` on a schedule, else 10
-    longest_string: int = 10  # of tasks taken out of one route
+    # Tasks that a ruin takes out, on average; 0: 5 for `makespan` on a schedule, 12 where greedy leaves tasks out,
+    # else 10
+    removed: float = 0.0
+    longest_string: int = 0  # of tasks taken out of one route; 0: 12 where greedy leaves tasks out, else 10
     blink: float = 0.01  # how often a place is overlooked
     near: int = 12  # tasks beside which a task is tried, in large teams
 
@@ -66,13 +77,15 @@ class Parameters:
             raise ParameterError(f"ray: {self.ray}; expected the address of a Ray cluster, or none")
         if self.ray != "none" and self.threads > 1:
             raise ParameterError(f"threads: {self.threads}, with a Ray cluster; expected one of the two")
-        for name in ("threads", "longest_string", "near"):
+        for name in ("threads", "near"):
             if getattr(self, name) < 1:
                 raise ParameterError(f"{name}: {getattr(self, name)}; expected a whole number of at least 1")
         if not 0 < self.cold <= (self.hot or self.cold) < float("inf"):
             raise ParameterError(f"cold, hot: {self.cold:g}, {self.hot:g}; expected 0 < cold <= hot, or hot 0")
         if self.removed != 0 and not 1 <= self.removed < float("inf"):
             raise ParameterError(f"removed: {self.removed:g}; expected a number of at least 1, or 0")
+        if self.longest_string < 0:
+            raise ParameterError(f"longest_string: {self.longest_string}; expected a whole number of at least 0")
         if not 0 <= self.blink < 1:
             raise ParameterError(f"blink: {self.blink:g}; expected a number from 0 to below 1")
 
@@ -108,15 +121,16 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
     """From the greedy plan; several threads begin with other random numbers and take over the best now and then."""
     first = start if problem.core.is_timed else greedy.completed(problem, start)
     stop.improved(*problem.value(first))
-    searches = [_search(problem, first, seed + thread, params) for thread in range(params.threads)]
-    way = searches[0].mean_way or 1.0
-    few = problem.objective == "max" or (problem.objective == "makespan" and _on_schedule(problem))
-    hot = max(params.cold, params.hot or (1.0 if few else 5.0))
+    oversubscribed = _is_oversubscribed(problem, first)
+    searches = [_search(problem, first, seed + thread, params, oversubscribed) for thread in range(params.threads)]
+    cooling = _cooling(problem, params, searches[0])
+    trading = _trading(params, searches[0], cooling) if oversubscribed else cooling
     exchanged, weight = 0, 0.0
     known: tuple[float, float, float] | None = None
     with ThreadPoolExecutor(params.threads) as pool:
         for steps in stop.batches(_steps_at_once(problem)):
-            temperature = way * hot * (params.cold / hot) ** stop.share
+            leaves_out = _best(searches).best_weight_left_out > 0
+            temperature = (trading if leaves_out else cooling).temperature(stop.share)
             annealing = [pool.submit(search.anneal, steps, temperature, temperature) for search in searches]
             for one in annealing:
                 one.result()
@@ -146,7 +160,7 @@ class Variations:
     """
 
     def __init__(self, problem: Problem, routes: Routes, seed: int) -> None:
-        short, long = (_search(problem, routes, seed, params) for params in (_SHORT_STEP, _LONG_STEP))
+        short, long = (_search(problem, routes, seed, params, oversubscribed=False) for params in (_SHORT_STEP, _LONG_STEP))
         self._searches = cycle((short, short, long))
         self._temperature = _ACCEPTING * (short.mean_way or 1.0)
 
@@ -177,15 +191,52 @@ def _on_schedule(problem: Problem) -> bool:
     return problem.core.is_timed or (problem.objective == "makespan" and any(problem.prerequisites))
 
 
-def _search(problem: Problem, first: Routes, seed: int, params: Parameters) -> _Search:
-    on_schedule = _on_schedule(problem)
-    kind = core.ScheduleSearch if on_schedule else core.Search
+def _is_oversubscribed(problem: Problem, routes: Routes) -> bool:
+    """Whether routes leave out tasks that could be done by themselves; of a schedule that is not asked."""
+    left_out = len(problem.tasks) - sum(map(len, routes))
+    return not _on_schedule(problem) and left_out > 0 and left_out > len(lost_tasks(problem))
+
+
+@dataclass(frozen=True)
+class _Cooling:
+    """Temperatures at given shares of a run, in units of so much of the objective; they fall evenly by ratio."""
+
+    unit: float
+    points: tuple[tuple[float, float], ...]
+
+    def temperature(self, share: float) -> float:
+        (begin, hot), (end, cold) = next(span for span in pairwise(self.points) if share <= span[1][0])
+        return self.unit * hot * float((cold / hot) ** ((share - begin) / (end - begin)))
+
+
+def _cooling(problem: Problem, params: Parameters, search: _Search) -> _Cooling:
+    few = problem.objective == "max" or (problem.objective == "makespan" and _on_schedule(problem))
+    hot = max(params.cold, params.hot or (1.0 if few else 5.0))
+    return _Cooling(search.mean_way or 1.0, ((0.0, hot), (1.0, params.cold)))
+
+
+def _trading(params: Parameters, search: _Search, usual: _Cooling) -> _Cooling:
+    """The cooling where tasks are left out; the usual one if the first temperature is given."""
+    cost = search.task_cost if isinstance(search, core.Search) else 0.0
+    if params.hot or not cost:
+        return usual
+    hot, cold = (usual.temperature(share) / cost for share in (0.0, 1.0))
+    middle = _TRADING_SHARE, max(cold, _TRADING_COLD)
+    return _Cooling(cost, ((0.0, max(hot, _TRADING_HOT)), middle, (1.0, cold)))
+
+
+def _search(problem: Problem, first: Routes, seed: int, params: Parameters, oversubscribed: bool) -> _Search:
+    kind: Callable[..., _Search]
+    if _on_schedule(problem):
+        removed, kind = 5.0 if problem.objective == "makespan" else 10.0, core.ScheduleSearch
+    else:
+        removed, kind = 12.0 if oversubscribed else 10.0, partial(core.Search, oversubscribed=oversubscribed)
     return kind(
         problem.core,
         first,
         seed % 2**64,
-        removed=params.removed or (5.0 if on_schedule and problem.objective == "makespan" else 10.0),
-        longest_string=params.longest_string,
+        removed=params.removed or removed,
+        longest_string=params.longest_string or (12 if oversubscribed else 10),
         blink=params.blink,
         greatest_share=0.8 if problem.objective in ("max", "makespan") else 0.5,
         near=params.near,

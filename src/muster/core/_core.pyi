@@ -275,7 +275,7 @@ class Search:
     Ruin and recreate under simulated annealing (SISR). One thread at a time may use one.
     """
 
-    def __init__(self, problem: Problem, start: Sequence[Sequence[int]], seed: int, *, removed: float, longest_string: int, blink: float, greatest_share: float, near: int) -> None:
+    def __init__(self, problem: Problem, start: Sequence[Sequence[int]], seed: int, *, removed: float, longest_string: int, blink: float, greatest_share: float, near: int, oversubscribed: bool = False) -> None:
         """Raises ValueError if the routes are not admissible."""
 
     def anneal(self, steps: int, hot: float, cold: float) -> None:
@@ -301,6 +301,12 @@ class Search:
 
     @property
     def best_tie(self) -> float: ...
+
+    @property
+    def task_cost(self) -> float:
+        """
+        What a task costs at the start: the mean of usage, arrival or time, as the objective has it.
+        """
 
     @property
     def mean_way(self) -> float:

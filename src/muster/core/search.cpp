@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -13,11 +14,17 @@ namespace muster {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kTie = 1e-2;   // weight of the route's own growth where the objective does not see it
-constexpr int kAdjacent = 100;  // tasks that a ruin may spread to
-constexpr int kNearRobots = 4;  // robots whose starts are tried for a task
-constexpr int kFew = 200;       // tasks, up to which each is tried at every place, which costs little
-constexpr int kRetried = 20;    // tasks left out that a step tries again
+constexpr double kTie = 1e-2;    // weight of the route's own growth where the objective does not see it
+constexpr int kAdjacent = 100;   // tasks that a ruin may spread to
+constexpr int kNearRobots = 4;   // robots whose starts are tried for a task
+constexpr int kFew = 200;        // tasks, up to which each is tried at every place, which costs little
+constexpr int kRetried = 10;     // tasks left out that a step tries again
+constexpr int kRetriedNear = 3;  // of these near the ruin
+// Where not all tasks can be done:
+constexpr double kWorth = 10.0;         // what a task of mean weight counts, in what a task costs
+constexpr double kSettled = 0.1;        // temperature below which no weight is given away any more, in the same unit
+constexpr double kHeaviestFirst = 0.3;  // orders that put tasks in by weight
+constexpr double kSeedFirst = 0.5;      // orders that begin with the task left out that the ruin made room for
 
 // More than leaving out a task of weight 1 can ever save.
 double penalty_of(const Problem& problem, const Team& team) {
@@ -37,6 +44,12 @@ double penalty_of(const Problem& problem, const Team& team) {
   return (problem.objective() == Objective::average ? each + 2.0 * most : each) / (least > 0.0 ? least : 1.0);
 }
 
+double mean_weight(const Problem& problem) {
+  double sum = 0.0;
+  for (int task = 0; task < problem.tasks(); ++task) sum += problem.priority(task);
+  return problem.tasks() ? sum / problem.tasks() : 0.0;
+}
+
 }  // namespace
 
 Search::Search(const Problem& problem, const Routes& start, std::uint64_t seed, SearchSettings settings)
@@ -47,8 +60,12 @@ Search::Search(const Problem& problem, const Routes& start, std::uint64_t seed, 
       everywhere_(problem.tasks() <= kFew),
       penalty_(0.0),
       team_(problem, start),
-      ruined_(problem.robots(), 0) {
-  penalty_ = penalty_of(problem, team_);
+      is_ruined_(problem.robots(), 0),
+      where_ruined_(problem.tasks(), 0) {
+  forbidding_ = penalty_ = penalty_of(problem, team_);
+  task_cost_ = mean_cost();
+  const double weight = mean_weight(problem);
+  trading_ = weight > 0.0 ? std::min(forbidding_, kWorth * task_cost_ / weight) : forbidding_;
   current_ = cost();
   best_.resize(problem.robots());
   best_value_.weight = -kNever;
@@ -76,6 +93,7 @@ void Search::anneal(int steps, double hot, double cold) {
 }
 
 void Search::step(double temperature) {
+  weigh(temperature);
   ruin();
   recreate();
   drop_orphans();
@@ -89,34 +107,71 @@ void Search::step(double temperature) {
   }
 }
 
+// Where not all tasks can be done, weight is given away for other weight while it is hot: a penalty that forbids it
+// would let the first tasks that fill the routes stay for good.
+void Search::weigh(double temperature) {
+  const bool trading = settings_.oversubscribed && best_value_.weight < 0.0 && temperature > kSettled * task_cost_;
+  const double penalty = trading ? trading_ : forbidding_;
+  if (penalty == penalty_) return;
+  penalty_ = penalty;
+  current_ = cost();
+}
+
 // Strings of tasks are taken out of routes that pass near one task.
 void Search::ruin() {
   removed_.clear();
+  for (const int robot : ruined_) is_ruined_[robot] = 0;
+  for (const int task : again_) where_ruined_[task] = 0;
+  ruined_.clear();
+  again_.clear();
+  seed_left_out_ = false;
   int used = 0;
   for (int robot = 0; robot < problem_.robots(); ++robot) used += !team_.route(robot).empty();
-  if (used == 0) return;
-  const int seed = seed_task();
+  if (used == 0) {
+    again_ = team_.absent();
+    return;
+  }
+  seed_ = seed_task();
+  seed_left_out_ = !team_.present(seed_);
+  set_out_again();
   const double present = static_cast<double>(problem_.tasks()) - static_cast<double>(team_.absent().size());
   const double longest = std::min<double>(settings_.longest_string, std::max(1.0, present / used));
   const double most_strings = 4.0 * settings_.removed / (1.0 + longest) - 1.0;
   const int strings = std::max(1, static_cast<int>(1.0 + random_.uniform() * most_strings));
-  int taken = 0;
-  std::vector<int> ruined;
   const auto visit = [&](int task) {
     const int robot = team_.robot_of(task);
-    if (robot == Team::kAbsent || ruined_[robot] || team_.fixed(task)) return;
+    if (robot == Team::kAbsent || is_ruined_[robot] || team_.fixed(task)) return;
     const double most = std::min<double>(longest, static_cast<double>(team_.route(robot).size()));
     take_string(task, static_cast<int>(1.0 + random_.uniform() * most));
-    ruined_[robot] = 1;
-    ruined.push_back(robot);
-    ++taken;
+    is_ruined_[robot] = 1;
+    ruined_.push_back(robot);
   };
-  visit(seed);
-  for (const int task : neighbours_.of(seed)) {
-    if (taken >= strings) break;
+  visit(seed_);
+  for (const int task : neighbours_.of(seed_)) {
+    if (static_cast<int>(ruined_.size()) >= strings) break;
     visit(task);
   }
-  for (const int robot : ruined) ruined_[robot] = 0;
+}
+
+// Of the tasks left out, all if they are few; else the seed, some near it and some from anywhere, where the ruin makes
+// room.
+void Search::set_out_again() {
+  const auto& absent = team_.absent();
+  if (static_cast<int>(absent.size()) <= kRetried) {
+    again_ = absent;
+    return;
+  }
+  const auto set_out = [&](int task) {
+    if (team_.present(task) || task == seed_ || where_ruined_[task]) return;
+    again_.push_back(task);
+    where_ruined_[task] = 1;
+  };
+  if (seed_left_out_) again_.push_back(seed_);
+  for (const int task : neighbours_.of(seed_)) {
+    if (static_cast<int>(again_.size()) >= kRetriedNear) break;
+    set_out(task);
+  }
+  for (int k = static_cast<int>(again_.size()); k < kRetried; ++k) set_out(any_of(absent));
 }
 
 int Search::seed_task() {
@@ -145,14 +200,10 @@ void Search::take_string(int task, int length) {
 
 // Puts tasks back one by one, each where it costs least; those that wait for others after these.
 void Search::recreate() {
-  pending_ = removed_;
-  const auto& absent = team_.absent();
-  if (static_cast<int>(absent.size()) - static_cast<int>(removed_.size()) <= kRetried) {
-    pending_ = absent;
-  } else {
-    for (int k = 0; k < kRetried; ++k) pending_.push_back(absent[random_.below(static_cast<int>(absent.size()))]);
-  }
+  pending_ = again_;
+  pending_.insert(pending_.end(), removed_.begin(), removed_.end());
   order_pending();
+  if (settings_.oversubscribed && seed_left_out_ && random_.uniform() < kSeedFirst) begin_with(seed_);
   peak_ = load(greatest());
   const auto ready = [&](int task) {
     return std::ranges::all_of(problem_.prerequisites(task), [&](int before) { return team_.present(before); });
@@ -173,6 +224,10 @@ void Search::order_pending() {
   for (std::size_t k = pending_.size(); k > 1; --k) {
     std::swap(pending_[k - 1], pending_[random_.below(static_cast<int>(k))]);
   }
+  if (settings_.oversubscribed && random_.uniform() < kHeaviestFirst) {
+    std::ranges::stable_sort(pending_, std::greater{}, [&](int task) { return problem_.priority(task); });
+    return;
+  }
   const int kind = random_.below(8);
   if (kind < 4) return;
   const auto key = [&](int task) {
@@ -185,11 +240,20 @@ void Search::order_pending() {
   std::ranges::stable_sort(pending_, {}, key);
 }
 
+void Search::begin_with(int task) {
+  const auto at = std::ranges::find(pending_, task);
+  std::rotate(pending_.begin(), at, at + 1);
+}
+
 bool Search::insert(int task) {
   team_.bound(task);
   place_.robot = Team::kAbsent;
   place_score_ = kNever;
-  if (everywhere_) {
+  if (where_ruined_[task]) {
+    for (const int robot : ruined_) {
+      if (problem_.allowed(robot, task)) try_route(robot, task);
+    }
+  } else if (everywhere_) {
     for (const int robot : problem_.robots_allowed(task)) try_route(robot, task);
   } else {
     try_near(task);
@@ -230,11 +294,12 @@ void Search::try_route(int robot, int task) {
   const auto& route = team_.route(robot);
   const int first = team_.earliest(robot), last = team_.latest(robot), size = static_cast<int>(route.size());
   const bool every_place = problem_.objective() == Objective::average;
+  const double blink = where_ruined_[task] ? 0.0 : settings_.blink;  // what is tried so often may save the time
   const double work = problem_.work_usage(robot, task);
   double least = kNever;
   int best = -1;
   for (int at = first; at <= last; ++at) {
-    if (settings_.blink > 0.0 && random_.uniform() < settings_.blink) continue;
+    if (blink > 0.0 && random_.uniform() < blink) continue;
     const int before = at ? route[at - 1] : problem_.start(robot);
     const double there = problem_.travel_usage(robot, before, task) + work;
     const double on = at < size ? problem_.travel_usage(robot, task, route[at]) : problem_.end_usage(robot, task);
@@ -370,6 +435,19 @@ void Search::note_best() {
   if (!value.better_than(best_value_)) return;
   best_value_ = value;
   for (const int robot : team_.take_changed()) best_[robot] = team_.route(robot);
+}
+
+double Search::mean_cost() const {
+  double sum = 0.0;
+  std::size_t tasks = 0;
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    const RouteCost& cost = team_.cost(robot);
+    tasks += team_.route(robot).size();
+    sum += problem_.objective() == Objective::average    ? cost.arrivals
+           : problem_.objective() == Objective::makespan ? cost.done
+                                                         : cost.usage;
+  }
+  return tasks ? sum / static_cast<double>(tasks) : 0.0;
 }
 
 double Search::mean_way() const {

@@ -17,6 +17,7 @@ struct SearchSettings {
   double blink = 0.01;          // how often a place is overlooked
   double greatest_share = 0.5;  // of ruins that begin at the robot that does most
   int near = 30;                // tasks beside which a task is tried, where there are many
+  bool oversubscribed = false;  // whether to expect that not all tasks can be done
 };
 
 class Search {
@@ -35,15 +36,21 @@ class Search {
   const Value& best_value() const { return best_value_; }
   // The usual way from one task to the next.
   double mean_way() const;
+  // What a task costs at the start: the mean of usage, arrival or time, as the objective has it.
+  double task_cost() const { return task_cost_; }
 
  private:
   void step(double temperature);
+  double mean_cost() const;
+  void weigh(double temperature);
   void ruin();
   int seed_task();
   int any_of(const std::vector<int>& tasks);
   void take_string(int task, int longest);
+  void set_out_again();
   void recreate();
   void order_pending();
+  void begin_with(int task);
   bool insert(int task);
   void try_route(int robot, int task);
   void try_place(int robot, int task, int at);
@@ -65,16 +72,22 @@ class Search {
   Random random_;
   Neighbours neighbours_;
   bool everywhere_;  // whether a task is tried at every place
-  double penalty_;   // of a unit of weight left out
+  double penalty_;   // of a unit of weight left out: one of the next two
+  double forbidding_, trading_;
+  double task_cost_;
   Team team_;
   double current_;
   Routes best_;
   Value best_value_;
   double peak_ = 0.0;  // the greatest load, while tasks are put back
-  std::vector<int> pending_, removed_;
-  std::vector<double> keys_;
-  std::vector<char> ruined_;
-  Place place_;  // the best found for a task
+  int seed_ = 0;       // the task that a ruin begins at
+  bool seed_left_out_ = false;
+  std::vector<int> ruined_;             // robots
+  std::vector<int> again_;              // tasks left out before the step that it tries again
+  std::vector<int> pending_, removed_;  // tasks
+  std::vector<char> is_ruined_;
+  std::vector<char> where_ruined_;  // tasks that are tried on ruined routes alone
+  Place place_;                     // the best found for a task
   double place_score_ = 0.0;
 };
 
