@@ -32,6 +32,12 @@ class Problem:
     def robots(self) -> int: ...
 
     @property
+    def is_symmetric(self) -> bool:
+        """
+        Whether the way from a task to another costs what the way back does, for every robot.
+        """
+
+    @property
     def is_timed(self) -> bool:
         """
         Whether anything binds tasks to times, teams, relations or whole routes.
@@ -270,6 +276,11 @@ class Annealing:
     @property
     def routes(self) -> list[list[int]]: ...
 
+def improved(problem: Problem, routes: Sequence[Sequence[int]]) -> list[list[int]]:
+    """
+    Routes after local search alone; those given where no move is for the problem's rules.
+    """
+
 class Search:
     """
     Ruin and recreate under simulated annealing (SISR). One thread at a time may use one.
@@ -449,14 +460,14 @@ class Team:
     def longer(self, robot: int, task: int, at: int) -> float:
         """Seconds by which the route's last task ends later if nothing waits."""
 
-    def end_through(self, robot: int, task: int, at: int) -> float:
+    def reverse(self, first: int, last: int) -> None:
         """
-        Seconds after which the mission ends, as far as it waits for the task, put at a place.
+        Turn the part of a route from one task to another round; ways must be as long back as forth.
         """
 
-    def critical(self) -> list[int]:
+    def move(self, first: int, last: int, robot: int, at: int) -> None:
         """
-        The tasks that the end of the mission waits for one after the other, the last first.
+        Put the part of a route from one task to another at a place of the robot's route as it is now.
         """
 
     def bounds(self, task: int) -> list[tuple[int, int]]:
@@ -471,7 +482,7 @@ class Team:
         """Undo all changes since the last commit."""
 
     def makespan(self) -> float:
-        """Seconds, waiting included."""
+        """Seconds after which the last task ends if nothing waits."""
 
     @property
     def usages(self) -> list[float]: ...

@@ -153,6 +153,8 @@ void bind_problem(nb::module_& m) {
           "`waits` (m,) marks. Raises ValueError if shapes do not fit.")
       .def_prop_ro("tasks", &Problem::tasks)
       .def_prop_ro("robots", &Problem::robots)
+      .def_prop_ro("is_symmetric", &Problem::is_symmetric,
+                   "Whether the way from a task to another costs what the way back does, for every robot.")
       .def_prop_ro("is_timed", &Problem::is_timed,
                    "Whether anything binds tasks to times, teams, relations or whole routes.");
 }

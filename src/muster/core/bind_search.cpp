@@ -13,6 +13,8 @@ namespace {
 
 using Unlocked = nb::call_guard<nb::gil_scoped_release>;
 
+constexpr int kNear = 10;  // tasks beside which a task is tried
+
 SearchSettings settings_of(double removed, int longest_string, double blink, double greatest_share, int near,
                            bool oversubscribed) {
   return {removed, longest_string, blink, greatest_share, near, oversubscribed};
@@ -21,6 +23,20 @@ SearchSettings settings_of(double removed, int longest_string, double blink, dou
 }  // namespace
 
 void bind_search(nb::module_& m) {
+  m.def(
+      "improved",
+      [](const Problem& problem, const Routes& routes) {
+        static_cast<void>(draft_from(problem, routes));
+        const Neighbours neighbours(problem, kNear, 1);
+        Team team(problem, routes);
+        TeamCost cost(problem, team);
+        LocalSearch search(problem, neighbours, team, cost);
+        for (int task = 0; task < problem.tasks(); ++task) search.wake(task);
+        search.improve();
+        return team.routes();
+      },
+      "problem"_a, "routes"_a, Unlocked(),
+      "Routes after local search alone; those given where no move is for the problem's rules.");
   nb::class_<Search>(m, "Search",
                      "Ruin and recreate under simulated annealing (SISR). One thread at a time may use one.")
       .def(

@@ -83,6 +83,7 @@ Problem::Problem(ProblemData data)
   dependants_ = transposed(data_.prerequisites);
   find_robots_allowed();
   find_units();
+  symmetric_ = find_symmetric();
   if (data_.table.empty() && places_ <= kMostPlacesInTable) {
     std::vector<double> table(places * places);
     for (int from = 0; from < places_; ++from) {
@@ -90,6 +91,35 @@ Problem::Problem(ProblemData data)
     }
     data_.table = std::move(table);
   }
+}
+
+bool Problem::find_symmetric() const {
+  const auto same_back = [&](const double* table) {
+    for (std::size_t from = 0; from < static_cast<std::size_t>(tasks_); ++from) {
+      for (std::size_t to = 0; to < from; ++to) {
+        if (table[from * places_ + to] != table[to * places_ + from]) return false;
+      }
+    }
+    return true;
+  };
+  const auto places = static_cast<std::size_t>(places_);
+  if (!data_.waiting.empty() && !same_back(data_.waiting.data())) return false;
+  for (std::size_t at = 0; at < data_.table.size(); at += places * places) {
+    if (!same_back(&data_.table[at])) return false;
+  }
+  if (!data_.table.empty() && data_.turn.empty()) return true;
+  for (std::size_t first = 0; first < data_.entry.size(); first += 3 * places) {
+    const auto tasks = static_cast<std::ptrdiff_t>(3) * tasks_;
+    if (!std::equal(&data_.entry[first], &data_.entry[first] + tasks, &data_.exit[first])) return false;
+  }
+  return true;
+}
+
+bool Problem::alike(int robot, int other) const {
+  const auto same = [&](const auto& values) { return values.empty() || values[robot] == values[other]; };
+  return same(data_.kind) && same(data_.work_class) && same(data_.time_class) && same(data_.travel_class) &&
+         same(data_.place_class) && same(data_.speed) && same(data_.acceleration) && same(data_.climb) &&
+         same(data_.turn) && same(data_.waits);
 }
 
 void Problem::check_times() const {

@@ -178,6 +178,18 @@ class Problem {
 
   int start(int robot) const { return tasks_ + robot; }
   int end(int robot) const { return tasks_ + robots_ + robot; }
+  // Whether tasks wait for nothing, and the objective sees usage alone: what a change of routes adds is then known from
+  // where it is made.
+  bool moves_freely() const {
+    const Objective objective = data_.objective;
+    return !timed_ && !has_prerequisites() &&
+           (objective == Objective::total || objective == Objective::max || objective == Objective::total_max);
+  }
+  // Whether the way from a task to another costs what the way back does, for every robot.
+  bool is_symmetric() const { return symmetric_; }
+  // Whether two robots may do the same tasks, and one way costs both the same.
+  bool alike(int robot, int other) const;
+
   int travel_class(int robot) const { return data_.travel_class.empty() ? 0 : data_.travel_class[robot]; }
 
   // Whether the mission gives travel as tables.
@@ -233,6 +245,7 @@ class Problem {
  private:
   void find_robots_allowed();
   void find_units();
+  bool find_symmetric() const;
   void check_times() const;
   double leg_seconds(int robot, int from, int to, double metres) const;
   double profile_seconds(int robot, int from, int to, double metres) const;
@@ -258,6 +271,7 @@ class Problem {
   bool steady_;           // legs take their metres by the speed, and nothing else
   bool usage_is_metres_;  // and nothing else
   bool timed_;
+  bool symmetric_;
   Rows tasks_of_unit_;
   Rows dependants_;
   std::vector<int> like_;  // by task: a number that tasks share which the same robots may do

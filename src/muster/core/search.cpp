@@ -14,7 +14,6 @@ namespace muster {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kTie = 1e-2;    // weight of the route's own growth where the objective does not see it
 constexpr int kAdjacent = 100;   // tasks that a ruin may spread to
 constexpr int kNearRobots = 4;   // robots whose starts are tried for a task
 constexpr int kFew = 200;        // tasks, up to which each is tried at every place, which costs little
@@ -39,7 +38,7 @@ double penalty_of(const Problem& problem, const Team& team) {
     }
   }
   double most = 0.0;
-  for (int robot = 0; robot < problem.robots(); ++robot) most = std::max(most, team.cost(robot).usage);
+  for (int robot = 0; robot < problem.robots(); ++robot) most = std::max(most, team.usage(robot));
   const double each = 4.0 * way + 2.0 * work;
   return (problem.objective() == Objective::average ? each + 2.0 * most : each) / (least > 0.0 ? least : 1.0);
 }
@@ -60,6 +59,9 @@ Search::Search(const Problem& problem, const Routes& start, std::uint64_t seed, 
       everywhere_(problem.tasks() <= kFew),
       penalty_(0.0),
       team_(problem, start),
+      team_cost_(problem, team_),
+      local_search_(problem, neighbours_, team_, team_cost_),
+      spared_(problem.tasks(), 0),
       is_ruined_(problem.robots(), 0),
       where_ruined_(problem.tasks(), 0) {
   forbidding_ = penalty_ = penalty_of(problem, team_);
@@ -79,12 +81,6 @@ void Search::go_on_from(const Routes& routes) {
   note_best();
 }
 
-Routes Search::routes() const {
-  Routes routes;
-  for (int robot = 0; robot < problem_.robots(); ++robot) routes.push_back(team_.route(robot));
-  return routes;
-}
-
 void Search::anneal(int steps, double hot, double cold) {
   if (problem_.tasks() == 0) return;
   const double cooling = std::pow(cold / hot, 1.0 / steps);
@@ -97,14 +93,17 @@ void Search::step(double temperature) {
   ruin();
   recreate();
   drop_orphans();
-  const double next = cost();
-  if (team_.fits() && next < current_ - temperature * std::log(random_.uniform() + 1e-300)) {
-    current_ = next;
-    note_best();
-    team_.commit();
-  } else {
-    team_.rollback();
+  improve();
+  if (cost() < current_ - temperature * std::log(random_.uniform() + 1e-300)) {
+    team_.settle();
+    if (team_.fits()) {
+      current_ = cost();
+      note_best();
+      team_.commit();
+      return;
+    }
   }
+  team_.rollback();
 }
 
 // Where not all tasks can be done, weight is given away for other weight while it is hot: a penalty that forbids it
@@ -125,6 +124,8 @@ void Search::ruin() {
   ruined_.clear();
   again_.clear();
   seed_left_out_ = false;
+  gaps_.clear();
+  ++ruin_stamp_;
   int used = 0;
   for (int robot = 0; robot < problem_.robots(); ++robot) used += !team_.route(robot).empty();
   if (used == 0) {
@@ -135,22 +136,34 @@ void Search::ruin() {
   seed_left_out_ = !team_.present(seed_);
   set_out_again();
   const double present = static_cast<double>(problem_.tasks()) - static_cast<double>(team_.absent().size());
-  const double longest = std::min<double>(settings_.longest_string, std::max(1.0, present / used));
-  const double most_strings = 4.0 * settings_.removed / (1.0 + longest) - 1.0;
+  const double mean = std::max(1.0, present / used);
+  const double scale = scale_of_ruin(mean);
+  const double longest = std::min(scale * settings_.longest_string, mean);
+  const double most_strings = 4.0 * scale * settings_.removed / (1.0 + longest) - 1.0;
   const int strings = std::max(1, static_cast<int>(1.0 + random_.uniform() * most_strings));
+  int taken = 0;
   const auto visit = [&](int task) {
     const int robot = team_.robot_of(task);
-    if (robot == Team::kAbsent || is_ruined_[robot] || team_.fixed(task)) return;
-    const double most = std::min<double>(longest, static_cast<double>(team_.route(robot).size()));
+    if (robot == Team::kAbsent || spared_[task] == ruin_stamp_ || team_.fixed(task)) return;
+    const double most = std::min<double>(longest, static_cast<double>(team_.size(robot)));
     take_string(task, static_cast<int>(1.0 + random_.uniform() * most));
+    ++taken;
+    if (is_ruined_[robot]) return;
     is_ruined_[robot] = 1;
     ruined_.push_back(robot);
   };
   visit(seed_);
   for (const int task : neighbours_.of(seed_)) {
-    if (static_cast<int>(ruined_.size()) >= strings) break;
+    if (taken >= strings) break;
     visit(task);
   }
+}
+
+// Where routes are long, some ruins are larger: two times, or four times.
+double Search::scale_of_ruin(double tasks_of_route) {
+  double scale = static_cast<double>(1 << random_.below(3));
+  while (scale > 1.0 && scale * settings_.longest_string > tasks_of_route) scale /= 2.0;
+  return scale;
 }
 
 // Of the tasks left out, all if they are few; else the seed, some near it and some from anywhere, where the ruin makes
@@ -179,23 +192,36 @@ int Search::seed_task() {
   if (!absent.empty() && random_.uniform() < 0.5) return absent[random_.below(static_cast<int>(absent.size()))];
   const bool sees_greatest = problem_.objective() != Objective::total && problem_.objective() != Objective::average;
   if (sees_greatest && random_.uniform() < settings_.greatest_share) {
-    const int task = any_of(team_.route(greatest()));
-    if (task != Team::kAbsent) return task;
+    const int robot = team_cost_.greatest();
+    if (!team_.empty(robot)) return team_.task_at(robot, random_.below(team_.size(robot)));
   }
   return random_.below(problem_.tasks());
 }
 
-int Search::any_of(const std::vector<int>& tasks) {
-  return tasks.empty() ? Team::kAbsent : tasks[random_.below(static_cast<int>(tasks.size()))];
-}
+int Search::any_of(const std::vector<int>& tasks) { return tasks[random_.below(static_cast<int>(tasks.size()))]; }
 
 void Search::take_string(int task, int length) {
-  const int robot = team_.robot_of(task), from = problem_.fixed(robot);
-  const auto& route = team_.route(robot);
-  const std::size_t before = removed_.size();
-  string_around(team_.at(task), length, from, static_cast<int>(route.size()), random_,
-                [&](int at) { removed_.push_back(route[at]); });
-  for (std::size_t k = before; k < removed_.size(); ++k) team_.remove(removed_[k]);
+  constexpr int kLongestGap = 4;
+  const int around = length + kLongestGap;
+  window_.clear();
+  for (int each = task; team_.is_task(each) && !team_.fixed(each) && static_cast<int>(window_.size()) < around;
+       each = team_.prev(each)) {
+    window_.push_back(each);
+  }
+  std::ranges::reverse(window_);
+  const int at = static_cast<int>(window_.size()) - 1;
+  for (int each = team_.next(task); team_.is_task(each) && static_cast<int>(window_.size()) < at + around;
+       each = team_.next(each)) {
+    window_.push_back(each);
+  }
+  for (const int each : window_) spared_[each] = ruin_stamp_;
+  string_around(at, length, 0, static_cast<int>(window_.size()), random_, [&](int k) {
+    const int each = window_[k];
+    gaps_.push_back(team_.prev(each));
+    gaps_.push_back(team_.next(each));
+    team_.remove(each);
+    removed_.push_back(each);
+  });
 }
 
 // Puts tasks back one by one, each where it costs least; those that wait for others after these.
@@ -204,7 +230,7 @@ void Search::recreate() {
   pending_.insert(pending_.end(), removed_.begin(), removed_.end());
   order_pending();
   if (settings_.oversubscribed && seed_left_out_ && random_.uniform() < kSeedFirst) begin_with(seed_);
-  peak_ = load(greatest());
+  peak_ = team_cost_.load(team_cost_.greatest());
   const auto ready = [&](int task) {
     return std::ranges::all_of(problem_.prerequisites(task), [&](int before) { return team_.present(before); });
   };
@@ -261,8 +287,8 @@ bool Search::insert(int task) {
     if (place_.robot == Team::kAbsent) try_far(task);
   }
   if (place_.robot == Team::kAbsent) return false;
-  team_.insert(task, place_.robot, place_.at);
-  peak_ = std::max(peak_, load(place_.robot));
+  team_.insert(task, place_.after);
+  peak_ = std::max(peak_, team_cost_.load(place_.robot));
   return true;
 }
 
@@ -273,72 +299,68 @@ void Search::try_near(int task) {
     if (!team_.present(near)) continue;
     const int robot = team_.robot_of(near);
     if (problem_.allowed(robot, task)) {
-      try_place(robot, task, team_.at(near));
-      try_place(robot, task, team_.at(near) + 1);
+      try_place(robot, task, team_.prev(near));
+      try_place(robot, task, near);
     }
     if (++tried == settings_.near) break;
   }
-  for (const int robot : neighbours_.robots(task)) try_place(robot, task, problem_.fixed(robot));
+  for (const int robot : neighbours_.robots(task)) try_place(robot, task, team_.last_fixed(robot));
 }
 
 // Every place of the routes that may have room: where all near ones are full, there may be some far away.
 void Search::try_far(int task) {
   for (const int robot : problem_.robots_allowed(task)) {
-    const double least = team_.cost(robot).usage + problem_.work_usage(robot, task) - team_.longest_way(robot);
+    const double least = team_.usage(robot) + problem_.work_usage(robot, task) - team_.longest_way(robot);
     if (problem_.fits(robot, least)) try_route(robot, task);
   }
 }
 
 // The place where the route grows least; scores never fall with growth but for `average`.
 void Search::try_route(int robot, int task) {
-  const auto& route = team_.route(robot);
-  const int first = team_.earliest(robot), last = team_.latest(robot), size = static_cast<int>(route.size());
   const bool every_place = problem_.objective() == Objective::average;
   const double blink = where_ruined_[task] ? 0.0 : settings_.blink;  // what is tried so often may save the time
   const double work = problem_.work_usage(robot, task);
   double least = kNever;
-  int best = -1;
-  for (int at = first; at <= last; ++at) {
+  int best = Team::kAbsent;
+  for (int after = team_.earliest(robot), last = team_.latest(robot); team_.before(after, last);) {
+    const int before = after, on = after = team_.next(before);
     if (blink > 0.0 && random_.uniform() < blink) continue;
-    const int before = at ? route[at - 1] : problem_.start(robot);
-    const double there = problem_.travel_usage(robot, before, task) + work;
-    const double on = at < size ? problem_.travel_usage(robot, task, route[at]) : problem_.end_usage(robot, task);
-    const double growth = there + on - team_.way(robot, at);
+    const double growth = team_.way(robot, before, task) + work + team_.way(robot, task, on) - team_.way(on);
     if (every_place) {
-      propose(robot, task, at, growth);
+      propose(robot, task, before, growth);
     } else if (growth < least) {
       least = growth;
-      best = at;
+      best = before;
     }
   }
-  if (best >= 0) propose(robot, task, best, least);
+  if (best != Team::kAbsent) propose(robot, task, best, least);
 }
 
-void Search::try_place(int robot, int task, int at) {
-  if (at < team_.earliest(robot) || at > team_.latest(robot)) return;
+void Search::try_place(int robot, int task, int after) {
+  if (team_.before(after, team_.earliest(robot)) || !team_.before(after, team_.latest(robot))) return;
   if (random_.uniform() < settings_.blink) return;
-  propose(robot, task, at, team_.growth(robot, task, at));
+  propose(robot, task, after, team_.growth(robot, task, after));
 }
 
-void Search::propose(int robot, int task, int at, double growth) {
-  if (!problem_.fits(robot, team_.cost(robot).usage + growth)) return;
-  const double value = score(robot, task, at, growth);
+void Search::propose(int robot, int task, int after, double growth) {
+  if (!problem_.fits(robot, team_.usage(robot) + growth)) return;
+  const double value = team_cost_.score(robot, task, after, growth, peak_);
   if (value < place_score_) {
     place_score_ = value;
-    place_ = {robot, at, growth};
+    place_ = {robot, after, growth};
   }
 }
 
 // Whether the best place found makes the robot that does most do more, where nothing else counts.
 bool Search::raises_greatest() const {
   if (problem_.objective() != Objective::max) return false;
-  return place_.robot == Team::kAbsent || team_.cost(place_.robot).usage + place_.growth > peak_;
+  return place_.robot == Team::kAbsent || team_.usage(place_.robot) + place_.growth > peak_;
 }
 
 // The routes of the robots that do least, at every place: where all near ones are full, they may be far away.
 void Search::try_idlest(int task) {
   int least = Team::kAbsent, second = Team::kAbsent;
-  const auto idler = [&](int robot, int other) { return other == Team::kAbsent || load(robot) < load(other); };
+  const auto idler = [&](int robot, int other) { return other == Team::kAbsent || team_cost_.load(robot) < team_cost_.load(other); };
   for (const int robot : problem_.robots_allowed(task)) {
     if (idler(robot, least)) {
       second = std::exchange(least, robot);
@@ -348,27 +370,6 @@ void Search::try_idlest(int task) {
   }
   if (least != Team::kAbsent) try_route(least, task);
   if (second != Team::kAbsent) try_route(second, task);
-}
-
-// What the objective grows by.
-double Search::score(int robot, int task, int at, double growth) const {
-  switch (problem_.objective()) {
-    case Objective::total:
-      return growth;
-    case Objective::max:
-      return kTie * growth + std::max(0.0, team_.cost(robot).usage + growth - peak_);
-    case Objective::total_max:
-      return growth + std::max(0.0, team_.cost(robot).usage + growth - peak_);
-    case Objective::average:
-      return team_.later_arrivals(robot, task, at, growth);
-    case Objective::makespan: {
-      const double longer = team_.longer(robot, task, at);
-      return kTie * longer + std::max(0.0, team_.cost(robot).done + longer - peak_);
-    }
-    case Objective::lateness:
-      break;  // of timed problems alone, which `ScheduleSearch` is for
-  }
-  return growth;
 }
 
 // Tasks whose prerequisites found no place cannot stay.
@@ -384,68 +385,39 @@ void Search::drop_orphans() {
   }
 }
 
-double Search::load(int robot) const {
-  const RouteCost& cost = team_.cost(robot);
-  if (problem_.objective() != Objective::makespan) return cost.usage;
-  return team_.route(robot).empty() ? 0.0 : cost.done;
-}
-
-int Search::greatest() const {
-  int greatest = 0;
-  for (int robot = 1; robot < problem_.robots(); ++robot) {
-    if (load(robot) > load(greatest)) greatest = robot;
+// Routes are improved around where tasks were taken out, and where they were put.
+void Search::improve() {
+  if (!local_search_.applies()) return;
+  for (const int place : gaps_) local_search_.wake(place);
+  for (const auto* tasks : {&removed_, &again_}) {
+    for (const int task : *tasks) {
+      if (!team_.present(task)) continue;
+      local_search_.wake(team_.prev(task));
+      local_search_.wake(task);
+      local_search_.wake(team_.next(task));
+    }
   }
-  return greatest;
-}
-
-double Search::objective() {
-  if (problem_.objective() == Objective::makespan) return team_.makespan();
-  double total = 0.0, most = 0.0, arrivals = 0.0;
-  for (int robot = 0; robot < problem_.robots(); ++robot) {
-    const RouteCost& cost = team_.cost(robot);
-    total += cost.usage;
-    most = std::max(most, cost.usage);
-    arrivals += cost.arrivals;
-  }
-  switch (problem_.objective()) {
-    case Objective::total:
-      return total;
-    case Objective::max:
-      return most;
-    case Objective::average:
-      return arrivals;
-    default:
-      return total + most;
-  }
+  local_search_.improve();
 }
 
 // What annealing compares: the objective (`average` as a sum), and a penalty for what is left out.
-double Search::cost() {
-  double ties = 0.0;
-  if (problem_.objective() == Objective::max || problem_.objective() == Objective::makespan) {
-    for (int robot = 0; robot < problem_.robots(); ++robot) ties += team_.cost(robot).usage;
-  }
-  return objective() + kTie * ties + penalty_ * team_.absent_weight();
-}
+double Search::cost() const { return team_cost_.cost() + penalty_ * team_.absent_weight(); }
 
 void Search::note_best() {
   const double done = static_cast<double>(problem_.tasks()) - static_cast<double>(team_.absent().size());
-  Value value{-team_.absent_weight(), objective()};
+  Value value{-team_.absent_weight(), team_cost_.objective()};
   if (problem_.objective() == Objective::average && done > 0.0) value.objective /= done;
   if (!value.better_than(best_value_)) return;
   best_value_ = value;
   for (const int robot : team_.take_changed()) best_[robot] = team_.route(robot);
 }
 
-double Search::mean_cost() const {
+double Search::mean_cost() {
   double sum = 0.0;
   std::size_t tasks = 0;
   for (int robot = 0; robot < problem_.robots(); ++robot) {
-    const RouteCost& cost = team_.cost(robot);
-    tasks += team_.route(robot).size();
-    sum += problem_.objective() == Objective::average    ? cost.arrivals
-           : problem_.objective() == Objective::makespan ? cost.done
-                                                         : cost.usage;
+    tasks += team_.size(robot);
+    sum += problem_.objective() == Objective::average ? team_.arrivals(robot) : team_cost_.load(robot);
   }
   return tasks ? sum / static_cast<double>(tasks) : 0.0;
 }
@@ -453,9 +425,10 @@ double Search::mean_cost() const {
 double Search::mean_way() const {
   double sum = 0.0;
   int ways = 0;
-  for (int robot = 0; robot < problem_.robots(); ++robot) {
-    for (std::size_t at = 0; at < team_.route(robot).size(); ++at, ++ways)
-      sum += team_.way(robot, static_cast<int>(at));
+  for (int task = 0; task < problem_.tasks(); ++task) {
+    if (!team_.present(task)) continue;
+    sum += team_.way(task);
+    ++ways;
   }
   return ways ? sum / ways : 0.0;
 }

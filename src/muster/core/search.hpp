@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "draft.hpp"
+#include "local_search.hpp"
 #include "neighbours.hpp"
 #include "random.hpp"
 #include "team.hpp"
+#include "team_cost.hpp"
 
 namespace muster {
 
@@ -31,7 +33,7 @@ class Search {
   void go_on_from(const Routes& routes);
 
   // With which it goes on.
-  Routes routes() const;
+  Routes routes() const { return team_.routes(); }
   const Routes& best() const { return best_; }
   const Value& best_value() const { return best_value_; }
   // The usual way from one task to the next.
@@ -41,30 +43,28 @@ class Search {
 
  private:
   void step(double temperature);
-  double mean_cost() const;
+  double mean_cost();
   void weigh(double temperature);
   void ruin();
+  double scale_of_ruin(double tasks_of_route);
   int seed_task();
   int any_of(const std::vector<int>& tasks);
   void take_string(int task, int longest);
   void set_out_again();
   void recreate();
+  void improve();
   void order_pending();
   void begin_with(int task);
   bool insert(int task);
   void try_route(int robot, int task);
-  void try_place(int robot, int task, int at);
+  void try_place(int robot, int task, int after);
   void try_near(int task);
   void try_far(int task);
   bool raises_greatest() const;
   void try_idlest(int task);
-  void propose(int robot, int task, int at, double growth);
-  double score(int robot, int task, int at, double growth) const;
+  void propose(int robot, int task, int after, double growth);
   void drop_orphans();
-  int greatest() const;
-  double load(int robot) const;
-  double objective();
-  double cost();
+  double cost() const;
   void note_best();
 
   const Problem& problem_;
@@ -76,6 +76,8 @@ class Search {
   double forbidding_, trading_;
   double task_cost_;
   Team team_;
+  TeamCost team_cost_;
+  LocalSearch local_search_;
   double current_;
   Routes best_;
   Value best_value_;
@@ -83,6 +85,10 @@ class Search {
   int seed_ = 0;       // the task that a ruin begins at
   bool seed_left_out_ = false;
   std::vector<int> ruined_;             // robots
+  std::vector<int> window_;             // places of a route around a task that a string is taken from
+  std::vector<int> gaps_;               // places beside which tasks were taken out
+  int ruin_stamp_ = 0;
+  std::vector<int> spared_;             // by task: the ruin that leaves it, beside a string
   std::vector<int> again_;              // tasks left out before the step that it tries again
   std::vector<int> pending_, removed_;  // tasks
   std::vector<char> is_ruined_;
