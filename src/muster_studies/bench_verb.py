@@ -1,4 +1,4 @@
-"""`muster bench`: speed on this machine; `muster bench peers` and `peers-timed`: quality against other solvers."""
+"""`muster bench`: speed on this machine; its `peers`, `peers-timed`, `peers-routes`: quality against other solvers."""
 
 from __future__ import annotations
 
@@ -93,6 +93,23 @@ def peers_timed(ctx: click.Context, /, **options: Any) -> int:
     OR-Tools; teams beside the best plans known. This is `muster study peers-timed`; it needs the extra `studies`.
     """
     return int(ctx.invoke(study_verb.command, name="peers-timed", **options))
+
+
+@command.command("peers-routes")
+@click.option("--tables", metavar="N,N", help="Only these tables: orienteering, longest, depots, tour.")
+@_seeds_option
+@click.option("--quick", is_flag=True, help="One small mission a table and short time limits.")
+@format_option
+@_output_option
+@quiet_option
+@click.pass_context
+def peers_routes(ctx: click.Context, /, **options: Any) -> int:
+    """Compare search with PyVRP and OR-Tools on routes, beside the best known.
+
+    Team orienteering (more tasks than the team can do), the shortest longest route, clusters of tasks among many
+    depots, one long tour. This is `muster study peers-routes`; it needs the extra `studies`.
+    """
+    return int(ctx.invoke(study_verb.command, name="peers-routes", **options))
 
 
 def _figure(value: float) -> str:

@@ -41,6 +41,7 @@ HELP = [
     *([verb, "--help"] for verb in (*VERBS, *other_verbs())),
     ["bench", "peers", "--help"],
     ["bench", "peers-timed", "--help"],
+    ["bench", "peers-routes", "--help"],
     ["study", "--list"],
 ]
 LACKING = {"physics": ["study", "thesis-6.1"], "plot": ["solve", "6T-2R", "--plot", "plan.png", "-q"]}

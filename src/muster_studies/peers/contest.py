@@ -15,6 +15,8 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.verification import verify
 from muster_studies.instances.coalitions import SKILL_SETS, counted_teams
+from muster_studies.instances.orienteering import orienteering_instance
+from muster_studies.instances.routing import clustered_mission, routing_instance, uniform_tour
 from muster_studies.instances.solomon import solomon_instance
 from muster_studies.instances.waiting import windows_mission
 from muster_studies.peers.cp_sat import CpSat
@@ -39,6 +41,10 @@ GENERATED: Mapping[str, Callable[[Sequence[str]], Mission]] = {
     "windows": lambda words: windows_mission(int(words[0])),
     "skills": lambda words: SKILL_SETS[words[0]].instance(int(words[1])),
     "counted": lambda words: counted_teams(int(words[0])),
+    "orienteering": lambda words: orienteering_instance(words[0]),
+    "routes": lambda words: routing_instance(words[0], int(words[1])),
+    "clustered": lambda words: clustered_mission(*map(int, words)),
+    "tour": lambda words: uniform_tour(*map(int, words)),
 }
 """Missions by the first word of their name, from the words that follow."""
 

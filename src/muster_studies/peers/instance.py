@@ -19,6 +19,7 @@ Routes = Sequence[Sequence[int]]
 """For each robot the tasks of the instance, in order."""
 
 _PRIORITY_STEPS = 100
+"""Priorities that are not whole numbers, or above this, are rounded to so many steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +87,8 @@ class Instance:
         priorities = [self.problem.tasks[j].priority for j in self.tasks]
         if len({*priorities}) <= 1:
             return [1] * len(priorities)
+        if all(priority.is_integer() for priority in priorities) and max(priorities) <= _PRIORITY_STEPS:
+            return list(map(int, priorities))
         return [max(1, round(_PRIORITY_STEPS * priority / max(priorities))) for priority in priorities]
 
     @cached_property
@@ -183,6 +186,15 @@ class Instance:
     def capacity(self) -> list[int | None]:
         """The most usage of each robot, rounded down; None where unlimited."""
         return [int(c * self.usage.scale) if np.isfinite(c) else None for c in self.problem.capacity.tolist()]
+
+    @property
+    def prize(self) -> int:
+        """More than all routes of any plan together use: what a task of weight 1 is worth, but no more than it must be.
+
+        A solver that weighs prizes against penalties for routes that are too long finds no plan where prizes are huge.
+        """
+        limits = [limit for limit in self.capacity if limit is not None]
+        return sum(limits) + 1 if len(limits) == self.robot_count else self.usage.bound
 
     @property
     def horizon(self) -> int:

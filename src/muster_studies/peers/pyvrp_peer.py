@@ -68,7 +68,7 @@ class _Model:
     def _make_data(self) -> Any:
         instance, pyvrp = self.instance, self._pyvrp
         required = instance.complete or not instance.optional
-        prize = 0 if required else instance.usage.bound
+        prize = 0 if required else instance.prize
         tables = [self._table(kind, row) for kind, _, row in self._profile_of]
         nodes = range(instance.node_count + 1)
         return pyvrp.ProblemData(

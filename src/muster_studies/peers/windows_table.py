@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from statistics import fmean
 
 from muster_studies.effort import Effort
 from muster_studies.instances.solomon import REFERENCES
-from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, Standing, runs_of, standings_of
+from muster_studies.peers.contest import OWN, Match, Result, Run, runs_of, standings_of
+from muster_studies.peers.gaps import above, gap_cells, gap_columns, mean_cells
 from muster_studies.peers.timed_effort import QUICK_S, seeds_of
 from muster_studies.tables import Cell, Notes, Table
 
 _SOLVERS = (OWN, "PyVRP", "OR-Tools", "VROOM")
-_RANDOM = tuple(solver for solver in _SOLVERS if solver == OWN or PEERS[solver].random)
 
 
 @dataclass(frozen=True)
@@ -32,15 +31,19 @@ class Windows:
         for seconds in self._limits(effort):
             standings = standings_of(found[run] for run in self.jobs(effort) if run.seconds == seconds)
             own = [
-                (_name(match), seconds, distance, *_cells([standings[match, s] for s in _SOLVERS], distance, notes))
+                (
+                    _name(match),
+                    seconds,
+                    distance,
+                    *gap_cells([standings[match, s] for s in _SOLVERS], distance, above, notes),
+                )
                 for match, distance in _distances(effort).items()
             ]
             rows += [*own, _mean_row(seconds, own)]
-        columns = [column for s in _SOLVERS for column in ((s, f"{s}, worst") if s in _RANDOM else (s,))]
         return Table(
             self.number,
             "Solomon's instances without loads, total distance: per cent above the reference",
-            ("instance-robots", "limit [s]", "reference", *columns),
+            ("instance-robots", "limit [s]", "reference", *gap_columns(_SOLVERS)),
             tuple(rows),
             (
                 "reference: the distance of the best plan known with loads and so many robots; without loads there are "
@@ -66,29 +69,6 @@ def _name(match: Match) -> str:
     return match.mission.partition("-")[2]
 
 
-def _cells(standings: Sequence[Standing], distance: float, notes: Notes) -> list[Cell]:
-    """The mean gap of each solver, and of one that is random the worst too."""
-    cells: list[Cell] = []
-    for solver, standing in zip(_SOLVERS, standings, strict=True):
-        fault, worst = standing.fault, standing.worst
-        if fault is not None:
-            cells.append(f"{fault.split(':')[0]} {notes.number(fault)}" if ":" in fault else fault)
-        elif worst.tasks < worst.tasks_total:
-            cells.append(f"{worst.tasks} tasks")
-        else:
-            cells.append(_gap(standing.mean, distance))
-        if solver in _RANDOM:
-            cells.append(_gap(worst.value, distance) if isinstance(cells[-1], float) else None)
-    return cells
-
-
-def _gap(value: float, known: float) -> float:
-    """Per cent above a known value."""
-    return 100 * (value / known - 1)
-
-
 def _mean_row(seconds: float, rows: Sequence[tuple[Cell, ...]]) -> tuple[Cell, ...]:
     """The mean of each column, over the rows in which each has a value."""
-    whole = [row[3:] for row in rows if all(isinstance(cell, float) for cell in row[3:])]
-    means: list[Cell] = [fmean(c for c in column if isinstance(c, float)) for column in zip(*whole, strict=True)]
-    return "mean", seconds, None, *(means or [None] * len(rows[0][3:]))
+    return "mean", seconds, None, *mean_cells([row[3:] for row in rows])

@@ -1,0 +1,102 @@
+"""Closed routes from one depot or several: published instances, and missions of the same kinds by a seed.
+
+A file of `routing_instances` has a line `x y` for each depot, an empty line, and such a line for each task. Robots
+return to where they start; tasks take no work. Missions are compared by the longest route or by the total: their own
+objective is max for the instances of He and Hao [he2022] [he2023], total for the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from types import MappingProxyType
+
+import numpy as np
+
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Robot, Rules, Task
+
+_FOLDER = "routing_instances"
+_SIDE_M = 1000.0
+_CLUSTERS = 7
+_SPREAD_M = 45.0
+
+Places = Sequence[tuple[float, float]]
+
+LONGEST_ROUTES: Mapping[tuple[str, int], float] = MappingProxyType(
+    {
+        ("mtsp100", 3): 8509.1625,
+        ("rand100", 5): 2409.6335,
+        ("mtsp150", 5): 8417.0232,
+        ("kroa200", 3): 10691.0260,
+        ("kroa200", 5): 7412.1231,
+        ("rat783", 5): 1941.8964,
+        ("rat783", 10): 1313.0089,
+        ("md2", 10): 124.0668,
+        ("md4", 5): 438.0390,
+        ("md12", 15): 72.9210,
+        ("md24", 8): 195.9919,
+    }
+)
+"""By instance and number of robots: the least longest route known, recomputed from the published routes [he2026]."""
+
+
+def routing_instance(name: str, robots: int, objective: str = "max") -> Mission:
+    """A shipped instance: kroa200, mtsp100, mtsp150, rand100, rat783, md2, md4, md12, md24 or cc64.
+
+    Parameters
+    ----------
+    robots
+        all at the depot; where there are several depots, as many: one at each.
+
+    Raises
+    ------
+    ParameterError
+        for any other name or number.
+    """
+    file = files("muster_studies.instances") / _FOLDER / f"{name}.txt"
+    if not file.is_file():
+        names = sorted(
+            path.name.removesuffix(".txt") for path in (files("muster_studies.instances") / _FOLDER).iterdir()
+        )
+        raise ParameterError(f"instance: {name}; expected {' or '.join(names)}")
+    depots, tasks = (_places(part) for part in file.read_text(encoding="utf-8").split("\n\n"))
+    if len(depots) == 1:
+        depots *= robots
+    if not 1 <= len(depots) == robots:
+        raise ParameterError(f"robots: {robots}; expected {len(depots) or 'one at least'}, the depots of {name}")
+    return routing_mission(depots, tasks, objective, f"{name}-{robots}")
+
+
+def clustered_mission(robots: int, tasks: int, seed: int) -> Mission:
+    """Depots all over a square of 1000 m, and tasks in seven clusters of 45 m (one sigma): cc64 is of this kind."""
+    draw = np.random.default_rng(seed)
+    centres = draw.uniform(0, _SIDE_M, (_CLUSTERS, 2))
+    places = centres[draw.integers(0, _CLUSTERS, tasks)] + draw.normal(0, _SPREAD_M, (tasks, 2))
+    depots = draw.uniform(0, _SIDE_M, (robots, 2))
+    return routing_mission(_pairs(depots), _pairs(places), "total", f"clustered-{robots}-{tasks}-{seed}")
+
+
+def uniform_tour(places: int, seed: int) -> Mission:
+    """One robot at the first of so many random places of a square of 1000 m; the others are its tasks."""
+    depot, *tasks = _pairs(np.random.default_rng(seed).uniform(0, _SIDE_M, (places, 2)))
+    return routing_mission([depot], tasks, "total", f"tour-{places}-{seed}")
+
+
+def routing_mission(depots: Places, tasks: Places, objective: str, name: str) -> Mission:
+    """A robot r_0, r_1, ... at each depot, to which it returns; tasks 1, 2, ..."""
+    return Mission(
+        name=name,
+        rules=Rules(objective=objective, return_to_start=True),
+        robots=tuple(Robot(id=f"r_{k}", position=depot) for k, depot in enumerate(depots)),
+        tasks=tuple(Task(id=str(j), position=place) for j, place in enumerate(tasks, start=1)),
+    )
+
+
+def _places(text: str) -> list[tuple[float, float]]:
+    return [(float(x), float(y)) for x, y in map(str.split, text.strip().splitlines())]
+
+
+def _pairs(places: np.typing.NDArray[np.float64]) -> list[tuple[float, float]]:
+    """Places to the millimetre."""
+    return [(float(x), float(y)) for x, y in places.round(3)]
