@@ -58,4 +58,4 @@ def _mean_and_worst(standing: Standing, reference: float, gap: Gap, notes: Notes
 
 
 def _is_random(solver: str) -> bool:
-    return solver == OWN or PEERS[solver].random
+    return solver == OWN or (solver in PEERS and PEERS[solver].random)

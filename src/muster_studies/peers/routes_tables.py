@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from muster_studies.effort import Effort
 from muster_studies.instances.orienteering import BEST_SCORES
 from muster_studies.instances.routing import LONGEST_ROUTES
-from muster_studies.peers.contest import OWN, Match, Result, Run, Standings, runs_of, standings_of
+from muster_studies.peers.contest import OWN, OWN_OTHERS, Match, Result, Run, Standings, runs_of, standings_of
 from muster_studies.peers.gaps import Gap, above, below, gap_cells, gap_columns, mean_cells
 from muster_studies.peers.timed_effort import QUICK_S, seeds_of
 from muster_studies.tables import Cell, Notes, Table
@@ -101,10 +101,10 @@ FAMILIES = (
         objective=_TOTAL,
         missions=tuple(_SCORES),
         quick="orienteering-p2.3.g",
-        solvers=_TOTAL_SOLVERS,
+        solvers=(OWN, *OWN_OTHERS, "PyVRP", "OR-Tools"),
         remark="orienteering-pSET.ROBOTS.LETTER: instances of Chao, Golden and Wasil; a score is a priority, a limit "
-        "on a path a work capacity. reference: the greatest score known. Tasks that may be left out are optional clients "
-        "with prizes to PyVRP, disjunctions with penalties to OR-Tools.",
+        "on a path a work capacity. reference: the greatest score known. Tasks that may be left out are optional "
+        "clients with prizes to PyVRP, disjunctions with penalties to OR-Tools.",
         known=_SCORES,
         gap=below,
     ),
