@@ -1,5 +1,7 @@
 """The cases of `muster bench --only search`, in short."""
 
+from dataclasses import replace
+
 import pytest
 
 from muster_studies.benches.search_quality import CASES, Case, Quality, quality
@@ -12,8 +14,14 @@ def test_the_best_known_plans_of_a_small_mission_are_found(case):
     assert found.gaps == pytest.approx([0, 0], abs=0.01)
 
 
+def test_what_the_best_known_plan_leaves_out_may_be_left_out():
+    case = next(case for case in CASES if case.mission == "flood")
+    assert quality(case, seeds=1, iterations=20_000).reached == 1
+    assert quality(replace(case, weight=125.0), seeds=1, iterations=100).values == (float("inf"),)
+
+
 def test_no_two_cases_are_the_same():
-    assert len({case.name for case in CASES}) == len(CASES) == 34
+    assert len({case.name for case in CASES}) == len(CASES) == 35
 
 
 def test_a_plan_that_leaves_something_out_reaches_nothing():

@@ -89,9 +89,10 @@ def _cases(mission: str, effort: Effort) -> dict[tuple[str, str], Case]:
 
 def _cell(outcome: Outcome) -> Cell:
     verdict = outcome.verdict
-    if verdict.tasks_completed == verdict.tasks_total:
+    tasks, weight = verdict.tasks_completed, verdict.weight_completed
+    if tasks == verdict.tasks_total:
         return outcome.value
-    return f"{outcome.value:.2f} ({verdict.tasks_completed})"
+    return f"{outcome.value:.2f} ({tasks})" if weight == tasks else f"{outcome.value:.2f} ({tasks}; {weight:g})"
 
 
 def _summary(missions: tuple[str, ...], effort: Effort, samples: Samples) -> Table:
@@ -115,18 +116,20 @@ def _summary(missions: tuple[str, ...], effort: Effort, samples: Samples) -> Tab
                     excesses.append(100 * (found.value / best.value - 1))
             cells.append(fmean(excesses) if excesses else None)
         rows.append((*cells, fewer, fmean(seconds)))
-    columns = ("allocator", *OBJECTIVES, "fewer tasks", "s")
+    columns = ("allocator", *OBJECTIVES, "less done", "s")
     notes = (
-        f"Per cent above the best value found, the mean over {len(missions)} missions. fewer tasks: of the "
-        f"{len(missions) * len(OBJECTIVES)} plans, those that do less than the best; they do not count in the means.",
+        f"Per cent above the best value found, the mean over {len(missions)} missions. less done: of the "
+        f"{len(missions) * len(OBJECTIVES)} plans, those that do less weight than the best; they do not count in the "
+        "means.",
     )
     return Table(SUMMARY, "Mean excess over the best plan found [%]", columns, tuple(rows), notes)
 
 
 def _remarks(effort: Effort, found: Samples) -> tuple[str, ...]:
     return (
-        "Values of each objective by muster.verify, lower is better; (n): only n tasks are done, and more tasks come "
-        "before a lower value. Of several seeds the best counts.",
+        "Values of each objective by muster.verify, lower is better; (n): only n tasks are done, (n; w): n tasks of "
+        "weight w, the sum of their priorities. More weight comes before a lower value. Of several seeds the best "
+        "counts.",
         f"Anytime allocators have {_limit(effort)} for each plan. s: when the plan was found, the mean over the "
         "objectives.",
     )

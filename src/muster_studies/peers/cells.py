@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from muster_studies.peers.contest import Standing
+from muster_studies.peers.contest import Result, Standing
 from muster_studies.tables import Cell, Notes
 
 
@@ -12,8 +12,7 @@ def mean_cell(standing: Standing, notes: Notes) -> Cell:
         return fault_cell(standing.fault, notes)
     if not standing.same_tasks:
         return worst_cell(standing)
-    result = standing.results[0]
-    return standing.mean if result.tasks == result.tasks_total else f"{standing.mean:.3f} ({result.tasks} tasks)"
+    return _cell(standing.mean, standing.results[0])
 
 
 def fault_cell(fault: str, notes: Notes) -> Cell:
@@ -26,13 +25,20 @@ def fault_cell(fault: str, notes: Notes) -> Cell:
 def worst_cell(standing: Standing) -> Cell:
     if standing.fault is not None:
         return None
-    worst = standing.worst
-    return worst.value if worst.tasks == worst.tasks_total else f"{worst.value:.3f} ({worst.tasks} tasks)"
+    return _cell(standing.worst.value, standing.worst)
+
+
+def _cell(value: float, result: Result) -> Cell:
+    """The value; with what is done where that is not all."""
+    if result.tasks == result.tasks_total:
+        return value
+    weight = "" if result.weight == result.tasks else f", weight {result.weight:g}"
+    return f"{value:.3f} ({result.tasks} tasks{weight})"
 
 
 def ratio_cell(standing: Standing, own: Standing) -> Cell:
     if standing.fault is not None or own.fault is not None or own.mean == 0:
         return None
     if not (standing.same_tasks and own.same_tasks) or standing.worst.weight != own.worst.weight:
-        return "fewer tasks" if standing.worst.weight < own.worst.weight else "more tasks"
+        return "less done" if standing.worst.weight < own.worst.weight else "more done"
     return standing.mean / own.mean

@@ -29,7 +29,7 @@ LARGE = "large"
 IGNORED = ("prerequisites", "suitability")
 _FREE = "free"
 _TEAMS = ("31T-6R", "31T-6R-as-run", "31T-6R50", "31T-3R44-3R26", "16T-3R", "24T-5R")
-_OTHERS = ("eil51-3", "eil51-5", "eil51-7", "berlin52-5", "eil76-7", "market-rescue-20")
+_OTHERS = ("eil51-3", "eil51-5", "eil51-7", "berlin52-5", "eil76-7", "market-rescue-20", "flood")
 _LARGE = ("uniform-1000-50", "uniform-5000-200")
 _QUICK = ("6T-2R", "uniform-12-3")
 _QUICK_LARGE = ("uniform-40-5",)
@@ -142,8 +142,8 @@ def _legend(limits: Limits, seeds: int) -> list[str]:
         f"Every solver has {limits.all:g} s of processor time for each plan (VROOM: of wall time) and one thread, and "
         "runs alone; handing over the model comes on top (milliseconds; in the table of large missions it is a "
         "column). Whole numbers that solvers want are rounded at 1e-7 of the longest way. All values are by "
-        "muster.verify, lower is better; where tasks are left out their number done is told, and more tasks come "
-        "before a lower value.",
+        "muster.verify, lower is better; where tasks are left out their number done is told, and their weight "
+        "where priorities differ; more weight comes before a lower value.",
         f"search and PyVRP are random: mean and worst of {'seed 0' if seeds == 1 else f'seeds 0 to {seeds - 1}'}. The "
         "others are not, and run once. Columns with / hold the mean of a solver by the mean of search: above 1, search "
         "is better.",
