@@ -22,10 +22,12 @@ from muster_studies.instances.routing import (
     uniform_tour,
 )
 from muster_studies.peers import peers_routes_study
-from muster_studies.peers.contest import OWN, PEERS, Result, mission_of
+from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
+from muster_studies.peers.contest import OWN, PEERS, Result, Standing, mission_of
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.routes_tables import FAMILIES
 from muster_studies.repetition import Repetition
+from muster_studies.tables import Notes
 
 BY_NUMBER = {family.number: family for family in FAMILIES}
 TASKS = {"mtsp100": 99, "rand100": 99, "mtsp150": 149, "kroa200": 199, "rat783": 782}
@@ -182,6 +184,16 @@ def test_scores_are_told_as_what_is_missing():
     found = {run: replace(result, weight=145 if run.solver == OWN else 116.0) for run, result in found.items()}
     row, _ = family.table(effort, found).records()
     assert (row["search"], row["PyVRP"], row["greedy"]) == (0, pytest.approx(20), pytest.approx(20))
+
+
+def test_what_is_done_is_told_by_weight_where_priorities_differ():
+    run = next(iter(BY_NUMBER["orienteering"].jobs(Effort(quick=True))))
+    plan = Result(run=run, value=10.0, weight=3, tasks=3, tasks_total=4)
+    assert worst_cell(Standing((plan,))) == "10.000 (3 tasks)"
+    heavier = replace(plan, value=20.0, weight=7.5)
+    assert mean_cell(Standing((heavier,)), Notes()) == "20.000 (3 tasks, weight 7.5)"
+    assert ratio_cell(Standing((plan,)), Standing((heavier,))) == "less done"
+    assert ratio_cell(Standing((heavier,)), Standing((plan,))) == "more done"
 
 
 def test_a_solver_without_a_plan_is_told():
