@@ -46,10 +46,13 @@ class Parameters:
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Event by event, until all that robots can do is done; they go on from the ends of a start plan's routes."""
     team = Team(problem, params.patience, start or [[] for _ in problem.robots])
-    while not stop.interrupted:
+    while True:
         willing = team.next_willing(params.acquiescence)
         ending = team.next_end()
         if willing is None and ending is None:
+            break
+        if stop.due():
+            stop.cut()
             break
         if ending is not None and (willing is None or team.ends[ending] <= willing[0]):
             team.finish(ending)

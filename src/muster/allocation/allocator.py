@@ -93,6 +93,8 @@ class Allocator:
         """What the algorithm arrives at from the routes of `start`; its routes are checked."""
         returned = self.algorithm(problem, stop, seed, params, start)
         if isinstance(returned, Outcome):
+            if stop.best is not None:  # an algorithm that ran out of time may not have noted its last plan
+                stop.improved(*problem.value(returned.routes))
             return returned
         outcome = Outcome(checked_routes(problem, returned, self.name))
         stop.improved(*problem.value(outcome.routes))

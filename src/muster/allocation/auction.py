@@ -43,11 +43,12 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 def _to_coalitions(problem: Problem, stop: Stop, params: Parameters, start: Routes | None) -> Outcome:
     """Sell units of work to coalitions of robots."""
 
-    def hold_again(on_bids: OnBids) -> None:
-        CoalitionAuction(problem, params, start).sell(Stop(), on_bids)
+    def hold_again(until: Stop, on_bids: OnBids) -> None:
+        CoalitionAuction(problem, params, start).sell(until, on_bids)
 
     auction = CoalitionAuction(problem, params, start)
-    auction.sell(stop)
+    if not auction.sell(stop):
+        stop.cut()
     stop.improved(*problem.value(auction.routes))
     return Outcome(auction.routes, coalition_book(problem, auction.sales, hold_again))
 

@@ -47,8 +47,10 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
         auctioneer = Auctioneer(problem, params, start, on_round)
-        while not until.interrupted and sell_one_to_each(problem, auctioneer, params.precision, until):
-            pass
+        while not until.due():
+            if not sell_one_to_each(problem, auctioneer, params.precision, until) and not until.due():
+                return auctioneer
+        until.cut()
         return auctioneer
 
     held = hold(stop)
@@ -67,7 +69,7 @@ def sell_one_to_each(problem: Problem, auctioneer: Auctioneer, precision: float,
     bids = np.array([auctioneer.bids(i) for i in range(len(problem.robots))])
     sold = False
     for robot, task in assignment(bids, precision):
-        if until.interrupted:
+        if until.due():
             break
         price = float(auctioneer.bids_for(task)[robot])
         if np.isfinite(price):

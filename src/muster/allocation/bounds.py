@@ -9,8 +9,8 @@ rounding, some 1e-12 relative.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from muster.allocation.earliest_times import EarliestTimes, in_time, kth_least, 
 from muster.allocation.feasibility import least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.rule import ROUNDING
-from muster.allocation.spanning import Ways, route_bounds
+from muster.allocation.spanning import Ways, never, route_bounds
 from muster.allocation.team_copies import with_copies
 from muster.mission.errors import MusterError
 
@@ -48,15 +48,20 @@ WHY = {
 
 @dataclass(frozen=True)
 class Bound:
-    """A lower bound of the objective, and the arguments that gave it; inf where no plan does every task."""
+    """A lower bound of the objective, and the arguments that gave it; inf where no plan does every task.
+
+    `cut_short`: whether it was worked out as far as there was time, and might be better.
+    """
 
     value: float
     arguments: tuple[str, ...]
+    cut_short: bool = False
 
     @property
     def why(self) -> str:
         """The arguments in words, with their sources."""
-        return "; ".join(f"{name}: {WHY[name]}" for name in self.arguments)
+        words = "; ".join(f"{name}: {WHY[name]}" for name in self.arguments)
+        return f"{words}; cut short by the time limit" if self.cut_short else words
 
 
 def sound_bound(bound: float, value: float, why: str) -> float:
@@ -77,8 +82,13 @@ def lower_bound(problem: Problem) -> float:
     return best_bound(problem).value
 
 
-def best_bound(problem: Problem) -> Bound:
-    """The best of the bounds of the problem's objective, with its arguments."""
+def best_bound(problem: Problem, due: Callable[[], bool] = never) -> Bound:
+    """The best of the bounds of the problem's objective, with its arguments, as far as found when `due` says stop."""
+    bound = _best_bound(problem, due)
+    return replace(bound, cut_short=due())
+
+
+def _best_bound(problem: Problem, due: Callable[[], bool]) -> Bound:
     if not problem.tasks:
         return Bound(0.0, (_NO_TASKS,))
     least = least_usages(problem)
@@ -88,13 +98,13 @@ def best_bound(problem: Problem) -> Bound:
     if problem.objective == "average":
         return _average(problem, usable)
     if problem.objective == "makespan":
-        return _makespan(problem, usable)
+        return _makespan(problem, usable, due)
     if problem.objective == "lateness":
         return _lateness(problem, usable)
-    return _usage(problem, usable, least)
+    return _usage(problem, usable, least, due)
 
 
-def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
+def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], bool]) -> Bound:
     """Bound `total`, `max` and `total+max`.
 
     Theorem. Let L_k bound the total cost of the plans with k routes that do every task. Then (1) the greatest usage of
@@ -110,7 +120,7 @@ def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
     if copied is None:
         return _by_tasks_alone(problem, np.where(usable, least, math.inf), members)
     problem, usable = copied.problem, copied.usable
-    crowded = _crowding(problem, usable) if problem.objective != "total" else 0.0
+    crowded = _crowding(problem, usable, due) if problem.objective != "total" else 0.0
     capacity = np.sort(problem.capacity[usable.any(axis=1)])[::-1]
 
     def worth(totals: Floats) -> Floats:
@@ -118,7 +128,7 @@ def _usage(problem: Problem, usable: Bools, least: Floats) -> Bound:
         values = {"total": totals, "max": greatest, "total+max": totals + greatest}[problem.objective]
         return np.where(np.isfinite(greatest), values, math.inf)
 
-    totals = route_bounds(Ways.of(problem, usable), worth)
+    totals = route_bounds(Ways.of(problem, usable), worth, due)
     values = worth(totals)
     k = int(values.argmin())
     greatest = {
@@ -156,7 +166,7 @@ def _evened(totals: Floats, capacity: Floats) -> Floats:
     return np.array(evened)
 
 
-def _crowding(problem: Problem, usable: Bools) -> float:
+def _crowding(problem: Problem, usable: Bools, due: Callable[[], bool]) -> float:
     """Bound the greatest usage by the tasks that few robots can do.
 
     Theorem. The greatest usage is at least the mean over any set S of robots, and so at least a bound of the total cost
@@ -167,7 +177,7 @@ def _crowding(problem: Problem, usable: Bools) -> float:
     if len(kinds) == 1 or len(kinds) > _MOST_KINDS or usable.shape[1] > _MOST_CROWDED:
         return 0.0
     weights = [kind / kind.sum() for kind in kinds]
-    return max(float(route_bounds(Ways.of(problem, usable, w), np.asarray).min()) for w in weights)
+    return max(float(route_bounds(Ways.of(problem, usable, w), np.asarray, due).min()) for w in weights)
 
 
 def _average(problem: Problem, usable: Bools) -> Bound:
@@ -191,7 +201,7 @@ def _average(problem: Problem, usable: Bools) -> Bound:
     return max(Bound(alone, (_LEAST_WAYS,)), Bound(in_turn, (_IN_TURN,)), key=lambda b: b.value)
 
 
-def _makespan(problem: Problem, usable: Bools) -> Bound:
+def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     """Bound the time at which the last task ends.
 
     Theorem. (1) Critical path: no task begins earlier than `EarliestTimes` tells, by its robots, its prerequisites and
@@ -213,7 +223,7 @@ def _makespan(problem: Problem, usable: Bools) -> Bound:
         routes = len(totals)
         return np.asarray(np.maximum((totals + waits[:routes]) / np.arange(1, routes + 1), critical))
 
-    shared = float(worth(route_bounds(Ways.of(copied.problem, copied.usable), worth)).min())
+    shared = float(worth(route_bounds(Ways.of(copied.problem, copied.usable), worth, due)).min())
     if shared > critical:
         return Bound(shared, (_SHARE,))
     return Bound(critical, (_CRITICAL,))

@@ -102,16 +102,26 @@ class CoalitionAuction:
         """The units that can be sold: in no route, and all that they wait for is in routes."""
         return self._roster.ready()
 
-    def sell(self, stop: Stop, on_bids: OnBids | None = None) -> None:
-        """Sell until nobody bids any more."""
-        while not stop.interrupted:
-            offers = [CoalitionSale(len(self.sales) + 1, bids) for unit in self.ready() if (bids := self.bids(unit))]
+    def sell(self, stop: Stop, on_bids: OnBids | None = None) -> bool:
+        """Sell until nobody bids any more; whether it came so far before it was time to stop."""
+        while (offers := self._offers(stop)) is not None:
             sale = self._sold(offers)
             if sale is None:
-                break
+                return True
             if on_bids is not None:
                 on_bids(len(self.sales), [sale if offer.won.unit == sale.won.unit else offer for offer in offers])
             self.sales.append(sale)
+        return False
+
+    def _offers(self, stop: Stop) -> list[CoalitionSale] | None:
+        """All bids of a round, by unit; None if it is time to stop before all have bid."""
+        offers: list[CoalitionSale] = []
+        for unit in self.ready():
+            if stop.due():
+                return None
+            if bids := self.bids(unit):
+                offers.append(CoalitionSale(len(self.sales) + 1, bids))
+        return offers
 
     def _sold(self, offers: Sequence[CoalitionSale]) -> CoalitionSale | None:
         """Assign the first unit that can be, by the winner rule's choice.
@@ -254,15 +264,20 @@ def rank(keys: Sequence[tuple[bool, float]], terms: Terms) -> tuple[bool, float]
     return leaves_no_time, best - contesting[0] if contesting else -math.inf
 
 
-def coalition_book(problem: Problem, sales: list[CoalitionSale], hold: Callable[[OnBids], None]) -> Book:
+def coalition_book(problem: Problem, sales: list[CoalitionSale], hold: Callable[[Stop, OnBids], None]) -> Book:
     """The book of the auction; to tell every bid it is held again."""
 
     def for_each_bid(take: TakeBid) -> None:
+        stop = Stop()
+
         def tell(number: int, offers: list[CoalitionSale]) -> None:
             for bid in bids_of_round(problem, offers, sales[number].won.unit):
                 take(bid)
+            if number == len(sales) - 1:
+                stop.interrupt()
 
-        hold(tell)
+        if sales:
+            hold(stop, tell)
 
     awards = tuple(award for sale in sales for award in awards_of(problem, sale))
     return Book(rounds=len(sales), awards=awards, for_each_bid=for_each_bid)

@@ -57,10 +57,10 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
         auctioneer = Auctioneer(problem, params, start, on_round)
-        while not until.interrupted:
-            winners = clear(bundle_bids(problem, auctioneer, params), params.combinations).winners
-            if not award(auctioneer, winners, until):
-                break
+        while (bids := bundle_bids(problem, auctioneer, params, until)) is not None:
+            if not award(auctioneer, clear(bids, params.combinations).winners, until) and not until.due():
+                return auctioneer
+        until.cut()
         return auctioneer
 
     held = hold(stop)
@@ -77,15 +77,15 @@ def award(auctioneer: Auctioneer, winners: tuple[BundleBid, ...], until: Stop) -
     for bid in winners:
         for task in bid.tasks:
             price = float(auctioneer.bids_for(task)[bid.robot])
-            if until.interrupted or not np.isfinite(price):
+            if until.due() or not np.isfinite(price):
                 break
             auctioneer.assign(Sale(bid.robot, task, price))
             sold = True
     return sold
 
 
-def bundle_bids(problem: Problem, auctioneer: Auctioneer, params: Parameters) -> list[BundleBid]:
-    """The bids of all robots in a round."""
+def bundle_bids(problem: Problem, auctioneer: Auctioneer, params: Parameters, until: Stop) -> list[BundleBid] | None:
+    """The bids of all robots in a round; None if it is time to stop before all have bid."""
     if not problem.tasks:
         return []
     single = np.array([auctioneer.bids(i) for i in range(len(problem.robots))])
@@ -97,6 +97,8 @@ def bundle_bids(problem: Problem, auctioneer: Auctioneer, params: Parameters) ->
     worth = np.where(finite.any(axis=0), params.worth * highest * priority, -np.inf)
     bids: list[BundleBid] = []
     for i, own in enumerate(single):
+        if until.due():
+            return None
         seeds = np.argsort(own, kind="stable")[: params.seeds]
         for task in seeds[np.isfinite(own[seeds])].tolist():
             bids += grown(auctioneer.trial(), i, task, worth, params.bundle_size)

@@ -48,10 +48,11 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
         manager.restore(start or [[] for _ in problem.robots], {}, closed=range(len(problem.tasks)))
         done = {j for route in start or () for j in route}
         for task in announcements(problem, params.order):
-            if until.interrupted:
-                break
             if task in done:
                 continue
+            if until.due():
+                until.cut()
+                break
             manager.announce([task])
             sale = manager.select()
             if sale is not None:

@@ -22,16 +22,22 @@ def unassigned(
 
     From when `hurried` says so tasks come without reasons.
     """
-    plan = in_plan(problem, routes)
+    done = {j for route in routes for j in route}
     order = {task.id: k for k, task in enumerate(problem.mission.tasks)}
-    missing = (j for j in range(len(problem.tasks)) if j not in plan.done)
+    missing = (j for j in range(len(problem.tasks)) if j not in done)
     left_out = sorted(missing, key=lambda j: order[problem.tasks[j].id])
-    robots = [problem.robot_index[robot.id] for robot in problem.mission.robots]
+    plan = in_plan(problem, routes) if left_out and not hurried() else None
+    return tuple(Unassigned(problem.tasks[j].id, _reasons(problem, plan, j, hurried)) for j in left_out)
 
-    def reasons(j: int) -> tuple[Reason, ...]:
-        return () if hurried() else tuple(_reason(problem, plan, i, j) for i in robots)
 
-    return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in left_out)
+def _reasons(problem: Problem, plan: InPlan | None, j: int, hurried: Callable[[], bool]) -> tuple[Reason, ...]:
+    """Why no robot does a task; nothing where there is no time to ask all of them."""
+    reasons: list[Reason] = []
+    for robot in problem.mission.robots:
+        if plan is None or hurried():
+            return ()
+        reasons.append(_reason(problem, plan, problem.robot_index[robot.id], j))
+    return tuple(reasons)
 
 
 def unassigned_of_plan(

@@ -30,9 +30,9 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     for robot, route in enumerate(start or ()):
         for task in route:
             greedy.assign(robot, task)
-    while not stop.interrupted:  # a time limit is for what comes after: half a greedy plan is of no use
-        matching = greedy.select()  # steps 2 to 5
-        if matching is None:
+    while (matching := greedy.select()) is not None:  # steps 2 to 5
+        if stop.due():
+            stop.cut()
             break
         greedy.assign(matching.robot, matching.task)  # steps 6 to 8
     stop.improved(*problem.value(greedy.routes))

@@ -24,6 +24,7 @@ from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.allocation.waiting import NO_WAITING, Waiting
 from muster.allocation.work_times import work_times
 from muster.mission.errors import ParameterError
+from muster.mission.garbage import collector_paused
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Task
 from muster.mission.plan import tie_order
@@ -96,6 +97,7 @@ class Problem:
             tasks=tuple(mission.tasks[k] for k in tie_order([t.id for t in mission.tasks])),
         )
 
+    @collector_paused()
     def ready(self) -> Problem:
         """The problem itself with its arrays computed, so that the time of an allocator does not include it."""
         assert self.core is not None

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from muster import core
 from muster.allocation.allocator import Outcome, Routes, finished_plan, routes_of
-from muster.allocation.bounds import best_bound, sound_bound
+from muster.allocation.bounds import Bound, best_bound, sound_bound
 from muster.allocation.exact import require_ortools, solve_exactly
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -16,6 +16,7 @@ from muster.mission.plan import Plan
 PROOFS = ("quick", "exact")
 EXACT_TIME_LIMIT_S = 30.0
 MOST_TASKS_EXACT = 40
+MOST_PAIRS = 20_000_000
 _SOLVER = "OR-Tools CP-SAT (Perron, Didier and Gay, CP 2023)"
 
 
@@ -45,7 +46,19 @@ def require_provable(problem: Problem, proof: str) -> None:
         require_ortools()
 
 
-def prove(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit: float | None = None) -> Proof:
+def is_small_enough(problem: Problem) -> bool:
+    """Whether quick bounds are worked out for a problem: they need tables of all pairs of robot and task."""
+    return len(problem.robots) * len(problem.tasks) <= MOST_PAIRS
+
+
+def prove(
+    problem: Problem,
+    plan: Plan,
+    proof: str,
+    stop: Stop,
+    time_limit: float | None = None,
+    quick: Bound | None = None,
+) -> Proof:
     """Bound the objective of a plan; an exact solver may find a better plan on the way.
 
     Parameters
@@ -55,6 +68,8 @@ def prove(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit: floa
         15 tasks and 5 robots, for `time_limit` seconds (30 by default).
     stop
         of the run that made the plan.
+    quick
+        the quick bound, where it is known already.
 
     Raises
     ------
@@ -64,19 +79,23 @@ def prove(problem: Problem, plan: Plan, proof: str, stop: Stop, time_limit: floa
         if a bound is above the value of a plan: an internal error.
     """
     require_provable(problem, proof)
-    return _quick(problem, plan) if proof == "quick" else _exact(problem, plan, stop, time_limit)
+    return _quick(problem, plan, quick) if proof == "quick" else _exact(problem, plan, stop, time_limit)
 
 
-def _quick(problem: Problem, plan: Plan) -> Proof:
+def _quick(problem: Problem, plan: Plan, known: Bound | None) -> Proof:
     value = plan.objective_value
     if not plan.complete or value is None:
         return Proof(plan, "quick bounds are of plans that do all tasks, and this one leaves some out")
-    bound = best_bound(problem)
+    if not is_small_enough(problem):
+        return Proof(
+            plan, f"quick bounds are of at most {MOST_PAIRS:,} pairs of robot and task, and this mission has more"
+        )
+    bound = known or best_bound(problem)
     return Proof(replace(plan, lower_bound=sound_bound(bound.value, value, bound.why)), bound.why)
 
 
 def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -> Proof:
-    seconds = time_limit or EXACT_TIME_LIMIT_S
+    seconds = EXACT_TIME_LIMIT_S if time_limit is None else time_limit
     start = routes_of(problem, plan)
     result = solve_exactly(problem, seconds, start, plan.seed or 0, interrupted=lambda: stop.interrupted)
     weight, objective = problem.value(result.routes)

@@ -149,7 +149,12 @@ def _times(weight: float, legs: Floats) -> Floats:
     return np.where(np.isfinite(legs), weight * np.where(np.isfinite(legs), legs, 0.0), math.inf)
 
 
-def route_bounds(ways: Ways, worth: Callable[[Floats], Floats]) -> Floats:
+def never() -> bool:
+    """It is never time to stop."""
+    return False
+
+
+def route_bounds(ways: Ways, worth: Callable[[Floats], Floats], due: Callable[[], bool] = never) -> Floats:
     """(K,) lower bounds of the total cost of plans that do every task with 1, 2, ..., K routes; inf: no such plan.
 
     Theorem. Let a plan with k routes do every task. A leg between tasks costs no less than the lesser of both
@@ -165,7 +170,8 @@ def route_bounds(ways: Ways, worth: Callable[[Floats], Floats]) -> Floats:
     where w_j is the least work, and c(d, j) holds what the robot's work on j is above it. This is the bound of
     [held-karp1970], for several paths from several depots. No triangle inequality is used. The multipliers ascend by
     the subgradients of the k that is worth least, with the memory of [volgenant1982]; for every k the best bound is
-    kept. Where travel is asymmetric the sums of the least legs into tasks, and out of them, can be better.
+    kept. Where travel is asymmetric the sums of the least legs into tasks, and out of them, can be better. From when
+    it is `due` no more multipliers are tried.
     """
     n, count = len(ways.work), min(len(ways.work), int(ways.robots.sum()))
     best = _by_degrees(ways, count)
@@ -175,7 +181,9 @@ def route_bounds(ways: Ways, worth: Callable[[Floats], Floats]) -> Floats:
     for _ in range(rounds):
         first, group = _least_rows(ways.starts + ways.surplus + (a - b)[:, None])
         last, end_group = _least_rows(ways.ends + b[:, None])
-        tree, parent = spanning_tree(ways.legs.rows_plus(p), first + p, p)
+        tree, parent = spanning_tree(ways.legs.rows_plus(p), first + p, p, due)
+        if due():
+            break
         if math.isinf(tree):
             return np.full(count, math.inf)
         roots = np.flatnonzero(parent < 0)
@@ -211,7 +219,9 @@ def _least_rows(costs: Floats) -> tuple[Floats, Indices]:
     return costs[row, np.arange(costs.shape[1])], row
 
 
-def spanning_tree(row: Callable[[int], Floats], root: Floats, p: Floats | None = None) -> tuple[float, Indices]:
+def spanning_tree(
+    row: Callable[[int], Floats], root: Floats, p: Floats | None = None, due: Callable[[], bool] = never
+) -> tuple[float, Indices]:
     """The least spanning tree of a root and all tasks [prim1957]: its cost, and each task's parent, -1 for the root.
 
     Parameters
@@ -222,11 +232,15 @@ def spanning_tree(row: Callable[[int], Floats], root: Floats, p: Floats | None =
         (n,) the legs from the root, with p.
     p
         (n,) multipliers of the tasks; 0 by default.
+    due
+        from when it says so the tree is not finished.
     """
     n = len(root)
     reach, outside, parent = root.copy(), np.ones(n, np.bool_), np.full(n, -1)
     total = 0.0
     for _ in range(n):
+        if due():
+            break
         task = int(reach.argmin())
         own = 0.0 if p is None else float(p[task])
         total += float(reach[task])

@@ -21,7 +21,7 @@ _IN_TIME = ("makespan", "lateness")
 
 
 def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
-    """Append one unit after the other to routes, until none can follow."""
+    """Append one unit after the other to routes, until none can follow or it is time to stop."""
     roster = WorkingRoster(problem, start)
     robots = list(range(len(problem.robots)))
     while True:
@@ -37,10 +37,7 @@ def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
 
 def _append_units(problem: Problem, roster: WorkingRoster, robots: Sequence[int], stop: Stop) -> None:
     refused: set[int] = set()
-    while not stop.interrupted:
-        chosen = _select(problem, roster, robots, refused)
-        if chosen is None:
-            return
+    while (chosen := _select(problem, roster, robots, refused, stop)) is not None:
         if roster.put(chosen):
             refused.clear()
         else:
@@ -48,11 +45,14 @@ def _append_units(problem: Problem, roster: WorkingRoster, robots: Sequence[int]
 
 
 def _select(
-    problem: Problem, roster: WorkingRoster, robots: Sequence[int], refused: set[int]
+    problem: Problem, roster: WorkingRoster, robots: Sequence[int], refused: set[int], stop: Stop
 ) -> core.UnitInsertion | None:
-    """The matching of the least debit; of equal ones that of the first unit."""
+    """The matching of the least debit; of equal ones that of the first unit. None if it is time to stop, too."""
     chosen, least = None, math.inf
     for unit in roster.ready():
+        if stop.due():
+            stop.cut()
+            return None
         insertion = None if unit in refused else roster.best(unit, robots)
         if insertion is not None and (debit := _debit(problem, roster, insertion)) < least:
             chosen, least = insertion, debit

@@ -108,6 +108,8 @@ class TimedRules:
 
     @staticmethod
     def _both_ways(named: list[list[int]]) -> list[list[int]]:
+        if not any(named):
+            return named
         both: list[set[int]] = [set(others) for others in named]
         for j, others in enumerate(named):
             for k in others:
@@ -116,8 +118,10 @@ class TimedRules:
 
     def _related(self, names: Sequence[str]) -> list[int]:
         """The named tasks that are in the problem: of a part of a mission not all are, and then nothing is tied."""
+        if not names or not self.problem.holds("relation"):
+            return []
         index = self.problem.task_index
-        return [index[name] for name in names if name in index] if self.problem.holds("relation") else []
+        return [index[name] for name in names if name in index]
 
     @cached_property
     def with_teams(self) -> bool:

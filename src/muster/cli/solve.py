@@ -64,6 +64,7 @@ def command(
     from muster.allocation.stop import Stop
     from muster.cli.progress import progress_bar
 
+    interrupt = Stop()  # its clock is that of the time limit
     require_writable(output, (book, plot, gantt), mission.files, (start, fixed))
     require_csv(book)
     require_drawable(plot, gantt)
@@ -71,7 +72,7 @@ def command(
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)
     loaded = mission.load(verbose=verbose)
-    request, interrupt = request_of(options, loaded, start, fixed), Stop()
+    request = request_of(options, loaded, start, fixed)
     with ctrl_c_interrupts(interrupt):
         with progress_bar(not quiet, loaded) as on_progress:
             solution = backend.plan(request, on_progress, interrupt)

@@ -15,6 +15,8 @@ Greedy::Greedy(const Problem& problem, bool balanced)
       place_in_list_(problem.tasks()),
       surroundings_(problem.classes()),
       coefficients_(problem.classes()),
+      least_coefficient_(problem.classes(), 1.0),
+      nearby_(problem.robots()),
       preferred_(problem.robots()),
       stale_(problem.robots(), 1),
       usage_(problem.robots(), 0.0),
@@ -35,15 +37,13 @@ namespace {
 // A sum that subtraction has brought below this share of its first value is added up anew: what is left of it may be
 // rounding alone.
 constexpr double kRounding = 1e-6;
+constexpr std::size_t kNearby = 16;  // tasks with dependants that a robot keeps
 }  // namespace
 
 std::optional<Matching> Greedy::select() {
   std::optional<Matching> chosen;
   double lowest = 0.0;
-  for (int c = 0; c < problem_.classes(); ++c) {
-    coefficients_[c].clear();
-    for (const int task : needed_ready_) coefficients_[c].push_back(dependency_coefficient(c, task));
-  }
+  weigh_dependants();
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     if (balanced_ && chosen && usage_[robot] > lowest) continue;  // f is at least the usage
     if (stale_[robot]) {
@@ -51,8 +51,7 @@ std::optional<Matching> Greedy::select() {
       stale_[robot] = 0;
     }
     Preference best = preferred_[robot];
-    const auto& coefficients = coefficients_[problem_.travel_class(robot)];
-    for (std::size_t k = 0; k < needed_ready_.size(); ++k) consider(robot, needed_ready_[k], coefficients[k], best);
+    consider_needed(robot, best);
     if (best.task == Draft::kNobody) continue;
     const double f = balanced_ ? best.cost + usage_[robot] : best.cost;
     if (!chosen || f < lowest || (f == lowest && best.task < chosen->task)) {
@@ -74,6 +73,7 @@ void Greedy::assign(int robot, int task) {
   position_[robot] = task;
   routes_[robot].push_back(task);
   stale_[robot] = 1;
+  nearby_[robot].known = false;
   const bool plain = problem_.dependants(task).empty();
   if (waiting_[task] == 0) drop(plain ? plain_ready_ : needed_ready_, task);
   if (!plain) std::erase(needed_, task);
@@ -102,9 +102,10 @@ void Greedy::make_ready(int task) {
   auto& list = plain ? plain_ready_ : needed_ready_;
   place_in_list_[task] = static_cast<int>(list.size());
   list.push_back(task);
-  if (!plain) return;
   for (int robot = 0; robot < problem_.robots(); ++robot) {
-    if (!stale_[robot]) consider(robot, task, 1.0, preferred_[robot]);
+    if (plain && !stale_[robot]) consider(robot, task, 1.0, preferred_[robot]);
+    Nearby& nearby = nearby_[robot];
+    if (!plain && nearby.known && cost(robot, task) < nearby.beyond) nearby.tasks.push_back(task);
   }
 }
 
@@ -123,12 +124,54 @@ Greedy::Preference Greedy::plain_preference(int robot) const {
 // Steps 3 and 4 for one matching: it is dropped if inadmissible, and kept if its debit is the least so far.
 void Greedy::consider(int robot, int task, double coefficient, Preference& best) const {
   if (!problem_.allowed(robot, task)) return;
-  const double cost = problem_.travel_usage(robot, position_[robot], task) + problem_.work_usage(robot, task);
-  const double debit = coefficient * cost;
-  if (!best.after(debit, task)) return;
+  const double own_cost = cost(robot, task), debit = coefficient * own_cost;
+  if (best.after(debit, task) && admissible(robot, task)) best = {debit, own_cost, task};
+}
+
+double Greedy::cost(int robot, int task) const {
+  return problem_.travel_usage(robot, position_[robot], task) + problem_.work_usage(robot, task);
+}
+
+bool Greedy::admissible(int robot, int task) const {
   const double usage = problem_.on_to(robot, usage_[robot], position_[robot], task);
-  if (!problem_.fits(robot, usage + problem_.end_usage(robot, task))) return;
-  best = {debit, cost, task};
+  return problem_.allowed(robot, task) && problem_.fits(robot, usage + problem_.end_usage(robot, task));
+}
+
+void Greedy::weigh_dependants() {
+  for (int c = 0; c < problem_.classes(); ++c) {
+    coefficients_[c].clear();
+    for (const int task : needed_ready_) coefficients_[c].push_back(dependency_coefficient(c, task));
+    least_coefficient_[c] = needed_ready_.empty() ? 1.0 : std::ranges::min(coefficients_[c]);
+  }
+}
+
+// Step 3 and 4 for the tasks with dependants.
+void Greedy::consider_needed(int robot, Preference& best) {
+  Nearby& nearby = nearby_[robot];
+  const int travel_class = problem_.travel_class(robot);
+  const auto& coefficients = coefficients_[travel_class];
+  if (!nearby.known) look_around(robot);
+  std::erase_if(nearby.tasks, [&](int task) { return allocated_[task] != 0; });
+  for (const int task : nearby.tasks) consider(robot, task, coefficients[place_in_list_[task]], best);
+  if (std::isinf(nearby.beyond) || least_coefficient_[travel_class] * nearby.beyond > best.debit) return;
+  for (std::size_t k = 0; k < needed_ready_.size(); ++k) consider(robot, needed_ready_[k], coefficients[k], best);
+  nearby.known = nearby.tasks.size() >= kNearby / 2;
+}
+
+// What a robot cannot do next it cannot do later either, until it moves: its usage stays.
+void Greedy::look_around(int robot) {
+  costs_.clear();
+  for (const int task : needed_ready_) {
+    if (admissible(robot, task)) costs_.emplace_back(cost(robot, task), task);
+  }
+  Nearby& nearby = nearby_[robot];
+  nearby = {true, Problem::kInfinity, {}};
+  if (costs_.size() > kNearby) {
+    std::ranges::nth_element(costs_, costs_.begin() + kNearby);
+    nearby.beyond = costs_[kNearby].first;
+    costs_.resize(kNearby);
+  }
+  for (const auto& [_, task] : costs_) nearby.tasks.push_back(task);
 }
 
 void Greedy::survey(int task) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "draft.hpp"
@@ -18,7 +19,8 @@ struct Matching {
 
 // Tasks that nothing depends on have the dependency coefficient 1, so their debit for a robot changes only when that
 // robot moves: each robot keeps its best one. The debit of a task with dependants changes at every step, because its
-// coefficient does.
+// coefficient does: each robot keeps those that cost it least, and looks at the others only where one of them could
+// have a lower debit by its coefficient.
 class Greedy {
  public:
   // `balanced`: a matching is chosen by c_ij + u_i (3.17), else by c_ij alone (3.27).
@@ -50,10 +52,22 @@ class Greedy {
     int others = 0;
   };
 
+  // Tasks with dependants that a robot can do next, all those that cost it less than `beyond`; others cost no less.
+  struct Nearby {
+    bool known = false;
+    double beyond = 0.0;
+    std::vector<int> tasks;
+  };
+
   void make_ready(int task);
   void drop(std::vector<int>& tasks, int task);
   void survey(int task);
   Preference plain_preference(int robot) const;
+  void weigh_dependants();
+  void consider_needed(int robot, Preference& best);
+  void look_around(int robot);
+  double cost(int robot, int task) const;
+  bool admissible(int robot, int task) const;
   void consider(int robot, int task, double coefficient, Preference& best) const;
   double sum_to_others(int travel_class, int task) const;
   double dependency_coefficient(int travel_class, int task) const;
@@ -69,6 +83,9 @@ class Greedy {
   std::vector<int> place_in_list_;
   std::vector<std::vector<Surroundings>> surroundings_;  // by travel class and task
   std::vector<std::vector<double>> coefficients_;        // Kp by travel class, in the order of needed_ready_
+  std::vector<double> least_coefficient_;                // of them, by travel class
+  std::vector<Nearby> nearby_;                           // by robot
+  std::vector<std::pair<double, int>> costs_;            // reused
   std::vector<Preference> preferred_;                    // each robot's best plain task
   std::vector<char> stale_;                              // whether it must be found anew
   std::vector<int> position_;

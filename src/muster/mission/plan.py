@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -50,7 +50,7 @@ class Route:
     def as_dict(self) -> dict[str, Any]:
         """The route as plan files hold it."""
         data: dict[str, Any] = {"robot": self.robot, "tasks": list(self.tasks), "usage": self.usage}
-        return data | ({"stops": [asdict(stop) for stop in self.stops]} if self.stops else {})
+        return data | ({"stops": [dict(vars(stop)) for stop in self.stops]} if self.stops else {})
 
 
 @dataclass(frozen=True)
@@ -121,11 +121,13 @@ class Plan:
     def as_dict(self) -> dict[str, Any]:
         """The plan as its file holds it."""
         data: dict[str, Any] = {"schema": PLAN_SCHEMA}
-        for name, value in asdict(replace(self, book=None)).items():
+        for name, value in ((f.name, getattr(self, f.name)) for f in fields(self)):
             if name == "objective":
                 data["objective"] = {"name": self.objective, "value": self.objective_value}
             elif name == "routes":
                 data[name] = [route.as_dict() for route in self.routes]
+            elif name == "unassigned":
+                data[name] = tuple(asdict(left_out) for left_out in self.unassigned)
             elif name in _TRAFFIC_TIMES and value is None:
                 continue
             elif name not in ("objective_value", "book"):

@@ -22,8 +22,10 @@ def relation_faults(mission: MissionData) -> Iterator[Fault]:
 
 def tied_by(relation: str, tasks: Sequence[Task]) -> list[int]:
     """By task the number of the first task that a relation ties it to, directly or through others; else its own."""
-    index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
     first = list(range(len(tasks)))
+    if not any(map(attrgetter(relation), tasks)):
+        return first
+    index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
 
     def found(k: int) -> int:
         while first[k] != k:

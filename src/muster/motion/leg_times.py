@@ -69,7 +69,8 @@ class LegTimes:
     @property
     def is_constant(self) -> bool:
         """Whether the time is proportional to the length."""
-        return self == LegTimes(self.speed_mps)
+        unlimited = self.acceleration_mps2 == math.inf and self.climb_mps == math.inf
+        return unlimited and self.turn_s == 0.0 and not self.over_map
 
     def seconds(self, metres: Any, rise_m: Any = 0.0, apart_m: Any = math.inf) -> Any:
         """The time of legs; shapes as NumPy's.

@@ -14,8 +14,10 @@ from muster.traffic.names import may_reserve
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator, Outcome, Routes
+    from muster.allocation.bounds import Bound
     from muster.allocation.problem import Problem
     from muster.allocation.stop import Progress, Stop
+    from muster.planning.budget import Budget
     from muster.planning.congestion import SharedPassages
     from muster.verification import Verdict
 
@@ -56,7 +58,8 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     on_progress
         called when the best plan improves, and every now and then between.
     interrupt
-        its `interrupt()`, from another thread or a signal, ends planning with the best plan so far.
+        its `interrupt()`, from another thread or a signal, ends planning with the best plan so far. The time limit
+        counts from when it was made.
 
     Raises
     ------
@@ -69,21 +72,26 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     from muster.allocation.proofs import require_provable
     from muster.allocation.registry import allocator_of
     from muster.allocation.stop import Stop, usual_time_limit
+    from muster.planning.budget import Budget
 
+    whole = interrupt or Stop()
     allocator = allocator_of(request.allocator)
     params = make_parameters(allocator, dict(request.parameters))
     problem = _compiled(request)
     if request.bound is not None:
         require_provable(problem, request.bound)
     limit = usual_time_limit(allocator.anytime, request.time_limit, request.iterations)
-    report = None if on_progress is None else _with_bound(request, problem, on_progress)
-    stop = Stop(iterations=request.iterations, time_limit=limit, on_progress=report, whole=interrupt)
+    proof_follows = request.bound == "exact" and request.time_limit is not None
+    budget = Budget(limit, whole, len(problem.tasks), proof_follows=proof_follows)
+    quick = _quick_bound(request, problem, budget)
+    report = None if on_progress is None else _with_bound(request, problem, on_progress, quick)
+    stop = Stop(iterations=request.iterations, time_limit=budget.algorithm_s, on_progress=report, whole=whole)
     shared = _shared_passages(request)
     if shared is not None and allocator.anytime:
         plan = _spread(request, allocator, params, problem, shared, stop, report)
     else:
         plan = allocator.solve(problem, stop, seed=request.seed, params=params, start=request.start)
-    plan, why = _improved(request, problem, plan, stop)
+    plan, why = _improved(request, problem, plan, stop, quick, budget)
     if shared is not None and plan.time_without_traffic_s is None and not stop.interrupted:
         plan = shared.told(plan)
     verdict = judged(request.mission, plan, request.ignore, request.objective)
@@ -136,7 +144,20 @@ def _compiled(request: Request) -> Problem:
     return (problem if request.fixed is None else with_fixed_routes(problem, request.fixed)).ready()
 
 
-def _improved(request: Request, problem: Problem, plan: Plan, stop: Stop) -> tuple[Plan, str]:
+def _quick_bound(request: Request, problem: Problem, budget: Budget) -> Bound | None:
+    """The quick bound, where one is asked for."""
+    from muster.allocation.bounds import best_bound
+    from muster.allocation.proofs import is_small_enough
+    from muster.allocation.stop import Stop
+
+    if request.bound is None or not is_small_enough(problem):
+        return None
+    return best_bound(problem, Stop(time_limit=budget.bound_s).due)
+
+
+def _improved(
+    request: Request, problem: Problem, plan: Plan, stop: Stop, quick: Bound | None, budget: Budget
+) -> tuple[Plan, str]:
     """The plan rewired and with its bound, as far as that is asked for, and why the bound holds or is missing."""
     from muster.allocation.proofs import prove
     from muster.allocation.rewiring import rewire
@@ -147,16 +168,15 @@ def _improved(request: Request, problem: Problem, plan: Plan, stop: Stop) -> tup
         return plan, ""
     if stop.interrupted:
         return plan, "planning was stopped before a bound was proven"
-    proof = prove(problem, plan, request.bound, stop, request.time_limit)
+    proof = prove(problem, plan, request.bound, stop, budget.proof_s, quick)
     return proof.plan, proof.why
 
 
-def _with_bound(request: Request, problem: Problem, on_progress: OnProgress) -> OnProgress:
+def _with_bound(request: Request, problem: Problem, on_progress: OnProgress, quick: Bound | None) -> OnProgress:
     """A function that adds the bound to progress, and the time of an exact proof to its share."""
-    from muster.allocation.bounds import lower_bound
     from muster.allocation.proofs import EXACT_TIME_LIMIT_S
 
-    bound = math.inf if request.bound is None else lower_bound(problem)
+    bound = math.inf if quick is None else quick.value
     proof_s = (request.time_limit or EXACT_TIME_LIMIT_S) if request.bound == "exact" else 0.0
     all_weight = sum(task.priority for task in problem.tasks)
 

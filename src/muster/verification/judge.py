@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 
 from muster.mission.errors import ParameterError
+from muster.mission.garbage import collector_paused
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Task
 from muster.mission.objectives import lateness, objective_values
@@ -27,6 +28,7 @@ TimesOf = Mapping[tuple[str, str], Times]
 """By robot and task."""
 
 
+@collector_paused()
 def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
     """Judge a plan: recompute its figures and find everything that is wrong with it (docs/design.md, Meaning).
 

@@ -35,6 +35,8 @@ def team_fault(task: Task, members: Sequence[Robot], *, skills: bool) -> str | N
     """Why robots are not the team that a task asks for; None: they are. `skills`: whether these matter."""
     if task.needs is not None:
         return _short(task, members)
+    if not task.is_for_team and len(members) == 1:
+        return None
     parts = task.team or (TeamPart(count=task.robots_needed or 1),)
     needed = sum(part.count for part in parts)
     names = ", ".join(robot.id for robot in members)

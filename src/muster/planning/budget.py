@@ -1,0 +1,56 @@
+"""How the time limit of a request is shared out: to a quick bound, the algorithm, a proof, and judging the plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from muster.allocation.stop import Stop
+
+_JUDGED_S = 6e-5  # a task, to put the plan together, judge and write it
+_LEAST_SHARE = 0.1  # of the time limit, which each part has at least
+_BOUND_SHARE = 0.2  # of what is left, for a quick bound
+_SEARCHED_SHARE = 0.5  # of what is left, where an exact proof follows
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The seconds that each part of the work has; None where there is no limit.
+
+    Parameters
+    ----------
+    limit_s
+        of all the work, from when `whole` was made.
+    whole
+        ends all the work when it is interrupted; its clock counts.
+    tasks
+        of the mission.
+    proof_follows
+        whether an exact proof comes after the algorithm, within the same limit.
+    """
+
+    limit_s: float | None
+    whole: Stop
+    tasks: int
+    proof_follows: bool = False
+
+    @property
+    def bound_s(self) -> float | None:
+        """For a quick bound before the algorithm."""
+        return self._share(_BOUND_SHARE)
+
+    @property
+    def algorithm_s(self) -> float | None:
+        """For the algorithm."""
+        return self._share(_SEARCHED_SHARE if self.proof_follows else 1.0)
+
+    @property
+    def proof_s(self) -> float | None:
+        """For an exact proof after the algorithm."""
+        return self._share(1.0) if self.proof_follows else None
+
+    def _share(self, share: float) -> float | None:
+        """A share of what is left beside judging."""
+        if self.limit_s is None:
+            return None
+        left_s = self.limit_s - self.whole.elapsed_s - _JUDGED_S * self.tasks
+        return max(share * left_s, _LEAST_SHARE * self.limit_s)

@@ -1,0 +1,86 @@
+"""Allocators look at the clock, and what the time limit cuts short says so."""
+
+import dataclasses
+
+import pytest
+
+from muster.allocation.problem import Problem
+from muster.allocation.registry import allocator_of
+from muster.allocation.stop import Stop
+from muster.mission.model import Mission, Robot, Task
+from muster.planning.budget import Budget
+from muster.planning.request import Request
+from muster.planning.solving import answer
+
+CONSTRUCTIVE = ("greedy", "auction", "contract-net", "alliance", "combinatorial-auction", "bertsekas-auction")
+
+
+class Ticking:
+    """A clock that goes on by a second whenever somebody looks at it."""
+
+    def __init__(self):
+        self.looks = 0
+
+    def now(self):
+        self.looks += 1
+        return float(self.looks)
+
+
+def mission(*, team=False):
+    tasks = [Task(id=str(k), position=(7.0 * k % 11, 5.0 * k % 13)) for k in range(30)]
+    if team:
+        tasks[0] = dataclasses.replace(tasks[0], robots_needed=2)
+    robots = tuple(Robot(id=f"r{k}", position=(float(k), 0.0)) for k in range(3))
+    return Mission(name="limit", robots=robots, tasks=tuple(tasks))
+
+
+@pytest.mark.parametrize(
+    ("name", "team"), [*((name, False) for name in CONSTRUCTIVE), ("greedy", True), ("auction", True)]
+)
+def test_an_allocator_that_runs_out_of_time_says_so(name, team):
+    problem = Problem.compile(mission(team=team))
+    some, whole = Stop(time_limit=12.0, clock=Ticking()), Stop()
+    plan = allocator_of(name).solve(problem, some)
+    assert some.cut_short
+    assert not plan.complete
+    assert allocator_of(name).solve(problem, whole).complete
+    assert not whole.cut_short
+
+
+@pytest.mark.parametrize(("name", "team"), [("auction", True), ("combinatorial-auction", False)])
+def test_the_book_of_an_auction_that_was_cut_short_has_its_bids(name, team):
+    limit = 70.0 if team else 12.0
+    plan = allocator_of(name).solve(Problem.compile(mission(team=team)), Stop(time_limit=limit, clock=Ticking()))
+    bids = []
+    plan.book.for_each_bid(bids.append)
+    assert not plan.complete
+    assert plan.book.rounds > 0
+    assert {bid.round for bid in bids} == set(range(1, plan.book.rounds + 1))
+
+
+def test_a_time_limit_counts_what_was_spent_before():
+    spent = Stop(clock=Ticking())
+    assert Budget(100.0, spent, 0).algorithm_s == pytest.approx(100.0 - 1.0)
+    assert Budget(100.0, spent, 100_000).algorithm_s < 100.0 - 2.0 - 1.0
+    assert Budget(1.0, spent, 0).algorithm_s == pytest.approx(0.1)  # never nothing
+    assert Budget(None, spent, 0).algorithm_s is None
+
+
+def test_an_exact_proof_shares_the_time_limit_with_the_algorithm():
+    budget = Budget(100.0, Stop(), 0, proof_follows=True)
+    assert budget.algorithm_s == pytest.approx(50.0, rel=0.01)
+    assert budget.proof_s == pytest.approx(100.0, rel=0.01)
+
+
+def test_a_plan_without_time_is_judged_and_cut_short():
+    solution = answer(Request(mission=mission(), allocator="auction", time_limit=0.0))
+    assert solution.cut_short
+    assert solution.verdict.valid
+
+
+def test_a_quick_bound_without_time_holds_and_says_that_it_was_cut_short():
+    late = answer(Request(mission=mission(), allocator="search", time_limit=0.0, bound="quick"))
+    usual = answer(Request(mission=mission(), allocator="search", iterations=10, bound="quick"))
+    assert late.plan.lower_bound <= usual.plan.lower_bound
+    assert "cut short by the time limit" in late.why
+    assert "cut short" not in usual.why
