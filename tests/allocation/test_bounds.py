@@ -12,7 +12,9 @@ from tests.random_missions import TYPES, random_mission
 
 import muster
 from muster import Mission, Robot, Rules, Task, core
+from muster.allocation.arrival_bounds import least_arrivals
 from muster.allocation.bounds import WHY, best_bound, lower_bound
+from muster.allocation.earliest_times import opened
 from muster.allocation.problem import Problem
 from muster.allocation.spanning import Ways, route_bounds
 from muster.mission.model import OBJECTIVES, TravelTable
@@ -83,6 +85,63 @@ def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(see
         used = sum(bool(route) for route in routes)
         if np.isfinite(usages).all():
             assert bounds[used - 1] <= usages @ weights * (1 + ROUNDING) + ROUNDING
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_routes_have_a_lower_sum_of_arrivals_than_their_forests(seed):
+    random = Random(seed)
+    ignored = ("capacity", "prerequisites")
+    mission = random_mission(seed, tasks=9, robots=3, return_to_start=False) if seed % 2 else by_table(seed)
+    problem = opened(Problem.compile(mission, "average", ignored))
+    if not problem.allowed.any(axis=0).all():
+        return
+    robots, tasks = problem.allowed.any(axis=1).sum(), list(range(len(problem.tasks)))
+    least = least_arrivals(Ways.of(problem, problem.allowed), robots)
+    for _ in range(200):
+        routes = [[] for _ in problem.robots]
+        for j in random.sample(tasks, len(tasks)):
+            routes[random.choice(np.flatnonzero(problem.allowed[:, j]).tolist())].append(j)
+        arrivals = problem.value(routes)[1] * len(tasks)
+        assert least <= arrivals * (1 + ROUNDING) + ROUNDING
+
+
+def test_forests_tell_what_nearest_neighbours_do_not():
+    """Pairs of tasks that are close, and far from the next pair: a forest has to join the pairs, too."""
+    places = [(10.0 * pair + off, 0.0) for pair in range(1, 6) for off in (0.0, 1.0)]
+    mission = Mission(
+        rules=Rules(objective="average"),
+        robots=(Robot(id="r", position=(0, 0)),),
+        tasks=tuple(Task(id=str(k), position=place) for k, place in enumerate(places)),
+    )
+    problem = Problem.compile(mission)
+    bound, best = best_bound(problem), problem.value([list(range(10))])[1]
+    assert bound.arguments == ("the least way to each task",)
+    assert bound.value == pytest.approx(best)  # all lie on one line
+    ways = Ways.of(problem, problem.allowed)
+    nearest = np.sort(ways.entering(after_work=True))[::-1] @ np.arange(1, 11)
+    assert 1.2 * nearest < least_arrivals(ways, 1) <= 10 * best * (1 + ROUNDING)
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_a_bound_that_was_cut_short_holds_and_says_so(objective):
+    problem = Problem.compile(muster.load("31T-6R50"), objective)
+    whole, looks = best_bound(problem), iter(range(10**9))
+    cut = best_bound(problem, lambda: next(looks) > 40)
+    assert (whole.cut_short, cut.cut_short) == (False, objective != "lateness")
+    assert 0 <= cut.value <= whole.value
+
+
+def test_where_every_robot_has_a_route_its_start_is_left():
+    """One robot far away: for the greatest usage it has to have a route, or the other one does all."""
+    mission = Mission(
+        rules=Rules(objective="max"),
+        robots=(Robot(id="near", position=(0, 0)), Robot(id="far", position=(60, 0))),
+        tasks=tuple(Task(id=str(k), position=(float(k), 0.0), actuation_cost=20.0) for k in range(1, 9)),
+    )
+    problem = Problem.compile(mission)
+    bounds = route_bounds(Ways.of(problem, problem.allowed), lambda totals: totals / (1, 2))
+    assert bounds[0] == pytest.approx(168.0)
+    assert bounds[1] == pytest.approx(160.0 + 52.0 + 7.0 - 1.0, abs=2.0)
 
 
 def test_every_argument_says_why_it_holds():

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from muster.allocation.arrival_bounds import least_arrivals
 from muster.allocation.earliest_times import EarliestTimes, in_time, kth_least, opened
 from muster.allocation.feasibility import least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
@@ -24,11 +25,13 @@ from muster.mission.errors import MusterError
 
 _MOST_KINDS = 10  # kinds of task, by the robots that can do them, that are looked at for crowding
 _MOST_CROWDED = 300  # tasks up to which crowding is looked at
+_CROWDING_EFFORT = 4e7  # as in `route_bounds`, for each kind
 
 _HELD_KARP = "Held and Karp, Operations Research 18, 1970"
 _TREES, _FARTHEST = "spanning trees with multipliers", "the farthest task"
 _CROWDED, _SHARE = "crowded tasks", "an even share"
 _LEAST_WAYS, _IN_TURN, _CRITICAL = "the least way to each task", "tasks in turn", "the critical path"
+_FORESTS = "forests of beginnings"
 _NO_TASKS, _NOBODY = "no tasks", "a task that nobody can do"
 WHY = {
     _TREES: f"starts and tasks joined by routes are spanning trees, and every task has two neighbours ({_HELD_KARP})",
@@ -38,6 +41,8 @@ WHY = {
     _LEAST_WAYS: "no robot arrives anywhere with less usage than by the shortest way (Dijkstra, Num. Math. 1, 1959)",
     _IN_TURN: "robots do one task after the other, at best the shortest first"
     " (Conway, Maxwell and Miller, Theory of Scheduling, 1967)",
+    _FORESTS: "the beginnings of routes that have a number of tasks behind them are forests, at best the least"
+    " (Kruskal, Proceedings of the American Mathematical Society 7, 1956)",
     _CRITICAL: "a task waits for its robots, its prerequisites and its windows, and they for theirs"
     " (Kelley and Walker, Eastern Joint Computer Conference, 1959)",
     _NO_TASKS: "there is nothing to do",
@@ -96,7 +101,7 @@ def _best_bound(problem: Problem, due: Callable[[], bool]) -> Bound:
     if not usable.any(axis=0).all():
         return Bound(math.inf, (_NOBODY,))
     if problem.objective == "average":
-        return _average(problem, usable)
+        return _average(problem, usable, due)
     if problem.objective == "makespan":
         return _makespan(problem, usable, due)
     if problem.objective == "lateness":
@@ -177,10 +182,12 @@ def _crowding(problem: Problem, usable: Bools, due: Callable[[], bool]) -> float
     if len(kinds) == 1 or len(kinds) > _MOST_KINDS or usable.shape[1] > _MOST_CROWDED:
         return 0.0
     weights = [kind / kind.sum() for kind in kinds]
-    return max(float(route_bounds(Ways.of(problem, usable, w), np.asarray, due).min()) for w in weights)
+    return max(
+        float(route_bounds(Ways.of(problem, usable, w), np.asarray, due, _CROWDING_EFFORT).min()) for w in weights
+    )
 
 
-def _average(problem: Problem, usable: Bools) -> Bound:
+def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     """Bound the mean usage on arrival.
 
     Theorem. (1) A robot arrives at a task with no less than the least way there, over all ways. (2) Let e_j be the
@@ -189,16 +196,21 @@ def _average(problem: Problem, usable: Bools) -> Bound:
     the end of its route; no more than m tasks have the same number. So it is at least the sum of the e in descending
     order times 1 (m of them), 2 (m of them), and so on, by the rearrangement inequality: the rule of the shortest
     processing time first on parallel machines [conway1967]. A team arrives with the last of its k robots: in (1) no
-    earlier than the k-th least, in (2) no earlier than any one of them, whose route may go through more tasks.
+    earlier than the k-th least, in (2) no earlier than any one of them, whose route may go through more tasks. (3)
+    Without teams, see `least_arrivals`.
     """
     n, m = usable.shape[1], int(usable.any(axis=1).sum())
     open_ended = opened(problem)
     work = np.array([problem.work_usage(i) for i in range(len(problem.robots))])
     arrivals = np.where(usable, least_usages(open_ended) - work, math.inf)
     alone = float(kth_least(arrivals, [problem.timed_rules.least_members(j) for j in range(len(problem.tasks))]).mean())
-    steps = np.sort(Ways.of(open_ended, usable).entering(after_work=True))[::-1]
+    ways = Ways.of(open_ended, usable)
+    steps = np.sort(ways.entering(after_work=True))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
-    return max(Bound(alone, (_LEAST_WAYS,)), Bound(in_turn, (_IN_TURN,)), key=lambda b: b.value)
+    forests = 0.0 if problem.timed_rules.with_teams else least_arrivals(ways, m, due) / n
+    named = {_LEAST_WAYS: alone, _IN_TURN: in_turn, _FORESTS: forests}
+    best = max(named, key=lambda name: named[name])
+    return Bound(named[best], (best,))
 
 
 def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:

@@ -11,8 +11,9 @@ import numpy as np
 from muster.allocation.problem import Bools, Floats, Indices, Problem
 
 _DENSE = 1500  # tasks up to which all legs are held at once
-_EFFORT = 4e7  # of all trees: nodes times nodes and calls
+_EFFORT = 2e8  # of all trees: nodes times nodes and calls
 _CALLS = 2000  # how many nodes of a row cost as much as calling NumPy
+_MOST_ROUNDS = 300
 _FIRST_STEP = 0.3  # of multipliers, in legs of the first tree
 _LAST_STEP = 0.003  # in first steps
 _MOST_KINDS = 600  # kinds of task, by the robots that can do them, up to which legs know who can do both ends
@@ -154,7 +155,12 @@ def never() -> bool:
     return False
 
 
-def route_bounds(ways: Ways, worth: Callable[[Floats], Floats], due: Callable[[], bool] = never) -> Floats:
+def route_bounds(
+    ways: Ways,
+    worth: Callable[[Floats], Floats],
+    due: Callable[[], bool] = never,
+    effort: float = _EFFORT,
+) -> Floats:
     """(K,) lower bounds of the total cost of plans that do every task with 1, 2, ..., K routes; inf: no such plan.
 
     Theorem. Let a plan with k routes do every task. A leg between tasks costs no less than the lesser of both
@@ -171,19 +177,42 @@ def route_bounds(ways: Ways, worth: Callable[[Floats], Floats], due: Callable[[]
     [held-karp1970], for several paths from several depots. No triangle inequality is used. The multipliers ascend by
     the subgradients of the k that is worth least, with the memory of [volgenant1982]; for every k the best bound is
     kept. Where travel is asymmetric the sums of the least legs into tasks, and out of them, can be better. From when
-    it is `due` no more multipliers are tried.
+    it is `due` no more multipliers are tried. `effort` is that of all trees: nodes times nodes and calls.
+
+    Where each robot has a route every start is left just r_d times, and the a_d of either sign will do. If such plans
+    are worth least the multipliers ascend for them once more.
     """
     n, count = len(ways.work), min(len(ways.work), int(ways.robots.sum()))
-    best = _by_degrees(ways, count)
+    rounds = int(min(_MOST_ROUNDS, max(2, effort / (n * (n + _CALLS)))))
+    best = _ascended(ways, worth, due, _by_degrees(ways, count), rounds)
+    if count == ways.robots.sum() and int(worth(best).argmin()) == count - 1 and not due():
+        best[-1] = max(best[-1], _ascended(ways, worth, due, best, rounds, all_leave=True)[-1])
+    return best
+
+
+def _ascended(
+    ways: Ways,
+    worth: Callable[[Floats], Floats],
+    due: Callable[[], bool],
+    best: Floats,
+    rounds: int,
+    *,
+    all_leave: bool = False,
+) -> Floats:
+    """The bounds of `route_bounds` after so many steps; `all_leave`: of plans in which each robot has a route alone."""
+    n, count = len(ways.work), len(best)
     p, a, b = np.zeros(n), np.zeros(len(ways.robots)), np.zeros(len(ways.robots))
+    least = np.full(len(a), -math.inf if all_leave else 0.0)
+    if all_leave:
+        a -= (ways.starts + ways.surplus).min(axis=1)  # the way out of each start then costs nothing
     step, memory = math.nan, np.zeros(0)
-    rounds = int(min(300, max(2, _EFFORT / (n * (n + _CALLS)))))
     for _ in range(rounds):
         first, group = _least_rows(ways.starts + ways.surplus + (a - b)[:, None])
         last, end_group = _least_rows(ways.ends + b[:, None])
-        tree, parent = spanning_tree(ways.legs.rows_plus(p), first + p, p, due)
+        joined, parent = spanning_tree(ways.legs.rows_plus(p), first + p, p, due)
         if due():
             break
+        tree = float(joined.sum())
         if math.isinf(tree):
             return np.full(count, math.inf)
         roots = np.flatnonzero(parent < 0)
@@ -191,7 +220,7 @@ def route_bounds(ways: Ways, worth: Callable[[Floats], Floats], due: Callable[[]
         order = np.argsort(last + p, kind="stable")[:count]
         fixed = (ways.work - 2 * p).sum() - (ways.robots * a).sum()
         best = np.maximum(best, tree + fixed + np.cumsum((last + p)[order]))
-        k = int(worth(best).argmin()) + 1
+        k = count if all_leave else int(worth(best).argmin()) + 1
         degree[order[:k]] += 1
         left = np.bincount(group[roots], minlength=len(a))
         reached = np.bincount(end_group[order[:k]], minlength=len(a))
@@ -199,7 +228,7 @@ def route_bounds(ways: Ways, worth: Callable[[Floats], Floats], due: Callable[[]
         memory = 0.6 * slope + 0.4 * (memory if len(memory) else slope)
         step = _FIRST_STEP * tree / n if math.isnan(step) else step * _LAST_STEP ** (1 / rounds)
         move = step * memory
-        p, a, b = p + move[:n], np.maximum(0.0, a + move[n : n + len(a)]), b + move[n + len(a) :]
+        p, a, b = p + move[:n], np.maximum(least, a + move[n : n + len(a)]), b + move[n + len(a) :]
     return best
 
 
@@ -221,8 +250,10 @@ def _least_rows(costs: Floats) -> tuple[Floats, Indices]:
 
 def spanning_tree(
     row: Callable[[int], Floats], root: Floats, p: Floats | None = None, due: Callable[[], bool] = never
-) -> tuple[float, Indices]:
-    """The least spanning tree of a root and all tasks [prim1957]: its cost, and each task's parent, -1 for the root.
+) -> tuple[Floats, Indices]:
+    """The least spanning tree of a root and all tasks [prim1957].
+
+    For each task the cost of the edge that joins it to its parent, multipliers included, and the parent, -1: the root.
 
     Parameters
     ----------
@@ -237,16 +268,16 @@ def spanning_tree(
     """
     n = len(root)
     reach, outside, parent = root.copy(), np.ones(n, np.bool_), np.full(n, -1)
-    total = 0.0
+    joined = np.zeros(n)
     for _ in range(n):
         if due():
             break
         task = int(reach.argmin())
         own = 0.0 if p is None else float(p[task])
-        total += float(reach[task])
+        joined[task] = reach[task]
         reach[task], outside[task] = math.inf, False
         legs = row(task)
         nearer = (legs < reach - own) & outside
         np.copyto(reach, legs + own, where=nearer)
         parent[nearer] = task
-    return total, parent
+    return joined, parent

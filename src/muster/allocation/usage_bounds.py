@@ -155,8 +155,8 @@ class UsageBounds:
         root, near = self._from_start[robots][:, tasks].min(axis=0), self._near[np.ix_(tasks, tasks)]
         allowed = self.problem.allowed[np.ix_(robots, tasks)]
         work = np.array([self.problem.work_usage(i)[list(tasks)] for i in robots])
-        forest, _ = spanning_tree(near.__getitem__, root)
-        return forest + float(np.where(allowed, work, math.inf).min(axis=0).sum())
+        joined, _ = spanning_tree(near.__getitem__, root)
+        return float(joined.sum()) + float(np.where(allowed, work, math.inf).min(axis=0).sum())
 
     @cached_property
     def _near(self) -> Floats | None:
