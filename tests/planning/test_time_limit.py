@@ -2,8 +2,13 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 
+from muster import core
+from muster.allocation.ant_colony import built
+from muster.allocation.auction_terms import Terms
+from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_of
 from muster.allocation.stop import Stop
@@ -56,6 +61,25 @@ def test_the_book_of_an_auction_that_was_cut_short_has_its_bids(name, team):
     assert not plan.complete
     assert plan.book.rounds > 0
     assert {bid.round for bid in bids} == set(range(1, plan.book.rounds + 1))
+
+
+def test_an_auction_announces_a_large_mission_piece_by_piece(monkeypatch):
+    """So that no time limit passes while all robots look at all tasks."""
+    monkeypatch.setattr("muster.allocation.auctioneer._PAIRS_AT_ONCE", 3)
+    problem = Problem.compile(mission())
+    cut = Stop(time_limit=12.0, clock=Ticking())
+    auctioneer = Auctioneer(problem, Terms(), until=cut)
+    assert 0 < np.isfinite(auctioneer.bids(0)).sum() < 30
+    assert np.isfinite(Auctioneer(problem, Terms(), until=Stop()).bids(0)).all()
+    assert Auctioneer(problem, Terms(), closed=range(30)).select() is None
+
+
+def test_ants_build_no_more_plans_than_there_is_time_for():
+    problem = Problem.compile(mission())
+    assert allocator_of("ant-colony").solve(problem, Stop(time_limit=0.0, clock=Ticking())).complete
+    colony = core.Colony(problem.core, 5.0, 0)
+    figures, plans = built(colony, np.ones((33, 30)), 20, Stop(time_limit=2.5, clock=Ticking()))
+    assert len(figures) == len(plans) == 3
 
 
 def test_a_time_limit_counts_what_was_spent_before():

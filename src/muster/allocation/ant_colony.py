@@ -57,17 +57,27 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     best = Best(problem, stop, start)
     n, m = len(problem.tasks), len(problem.robots)
     pheromone = np.ones((n + m, n))
-    figures = colony.build(pheromone, params.population_size)
-    best.note(figures, colony.routes)
+    figures, plans = built(colony, pheromone, params.population_size, stop)
+    best.note(figures, plans.__getitem__)
     for _ in stop.iterations():
         increment = np.zeros_like(pheromone)
         for k in np.flatnonzero(figures[:, 0] == figures[:, 0].max()).tolist():
-            leave(increment, colony.routes(k), best.objective / (figures[k, 1] or 1.0) / params.population_size)
+            leave(increment, plans[k], best.objective / (figures[k, 1] or 1.0) / params.population_size)
         leave(increment, best.routes, params.elite / params.population_size)
         pheromone = np.maximum((1.0 - params.evaporation) * pheromone + increment, _LEAST_PHEROMONE)
-        figures = colony.build(pheromone**params.alpha, params.population_size)
-        best.note(figures, colony.routes)
+        figures, plans = built(colony, pheromone**params.alpha, params.population_size, stop)
+        best.note(figures, plans.__getitem__)
     return Outcome(best.routes)
+
+
+def built(colony: core.Colony, trail: Floats, count: int, stop: Stop) -> tuple[Floats, list[Routes]]:
+    """The figures of so many plans, or of those that there is time for, one at least; and their routes."""
+    figures: list[Floats] = []
+    plans: list[Routes] = []
+    while len(plans) < count and not (plans and stop.due()):
+        figures.append(colony.build(trail, 1))
+        plans.append(colony.routes(0))
+    return np.concatenate(figures), plans
 
 
 def leave(increment: Floats, routes: Routes, amount: float) -> None:

@@ -30,7 +30,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
         return _to_coalitions(problem, stop, params, start)
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
-        auctioneer = Auctioneer(problem, params, start, on_round)
+        auctioneer = Auctioneer(problem, params, start, on_round, until)
         if not auctioneer.sell(until):
             until.cut()
         return auctioneer

@@ -21,10 +21,14 @@ Sales = dict[int, tuple[int, Sale, Floats]]
 OnRound = Callable[["Auctioneer", Sale], None]
 
 
+_PAIRS_AT_ONCE = 2_000_000  # of robot and task, announced between two looks at the clock
+
+
 class Auctioneer:
     """Sells tasks one by one to the robots of a team: announce, then select and assign round by round.
 
-    Tasks are sold only when their prerequisites are. `on_round` is told of every sale before the task is assigned.
+    Tasks are sold only when their prerequisites are. `on_round` is told of every sale before the task is assigned. All
+    tasks but those `closed` are announced at first, as far as there is time `until` that stops.
     """
 
     def __init__(
@@ -33,6 +37,8 @@ class Auctioneer:
         terms: BidTerms,
         routes: Routes | None = None,
         on_round: OnRound | None = None,
+        until: Stop | None = None,
+        closed: Collection[int] = (),
     ) -> None:
         self._problem = problem
         self._terms = terms
@@ -46,23 +52,27 @@ class Auctioneer:
         self._robots = range(len(problem.robots))
         self._linked = any(problem.prerequisites)
         self.round = 0
-        self.restore(routes or [list(problem.beginning(i)) for i in self._robots], {})
+        self.restore(routes or [list(problem.beginning(i)) for i in self._robots], {}, closed, until)
 
     @property
     def routes(self) -> Routes:
         return self._bidders.routes
 
-    def restore(self, routes: Routes, sales: Sales, closed: Collection[int] = ()) -> None:
+    def restore(self, routes: Routes, sales: Sales, closed: Collection[int] = (), until: Stop | None = None) -> None:
         """Go back to these routes and the sales that led to them; all other tasks but those `closed` are announced."""
         self.sales = dict(sales)
         self._bidders.set_routes(routes)
         self._look_at_team()
         sold = {j for route in routes for j in route}
-        self.announce([j for j in range(len(self._problem.tasks)) if j not in sold and j not in closed])
+        self.announce([j for j in range(len(self._problem.tasks)) if j not in sold and j not in closed], until)
 
-    def announce(self, tasks: Sequence[int]) -> None:
-        """Offer tasks."""
-        self._bidders.announce(list(tasks))
+    def announce(self, tasks: Sequence[int], until: Stop | None = None) -> None:
+        """Offer tasks; those to which it comes before it is time to stop."""
+        at_once = max(1, _PAIRS_AT_ONCE // len(self._robots))
+        for first in range(0, len(tasks), at_once):
+            if until is not None and until.due():
+                break
+            self._bidders.announce(list(tasks[first : first + at_once]))
         self._winner_rule.note(self._robots)
 
     def sell(self, stop: Stop) -> bool:

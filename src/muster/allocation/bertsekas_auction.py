@@ -46,7 +46,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     """Assign a task to each robot until nobody can do another; tasks in the start plan's routes stay there."""
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
-        auctioneer = Auctioneer(problem, params, start, on_round)
+        auctioneer = Auctioneer(problem, params, start, on_round, until)
         while not until.due():
             if not sell_one_to_each(problem, auctioneer, params.precision, until) and not until.due():
                 return auctioneer

@@ -56,7 +56,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     """Round by round until nobody bids; tasks in the start plan's routes stay there."""
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
-        auctioneer = Auctioneer(problem, params, start, on_round)
+        auctioneer = Auctioneer(problem, params, start, on_round, until)
         while (bids := bundle_bids(problem, auctioneer, params, until)) is not None:
             if not award(auctioneer, clear(bids, params.combinations).winners, until) and not until.due():
                 return auctioneer

@@ -28,8 +28,9 @@ better one comes free when its holder releases it; neither Algorithm 3 nor Table
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 
 import numpy as np
 
@@ -107,7 +108,7 @@ def _agree(
     limit = params.bundle_size or first_limit(len(offered), m)
     most_rounds = _PATIENCE * len(offered) * diameter(params.topology, m)
     last_round = ledger.rounds + most_rounds
-    for bidder in team:
+    for bidder in until_due(team, stop):
         bidder.offer(offered)
     while not stop.due():
         added = [bidder.build_bundle(beliefs, limit, ledger, stop) for bidder in team]  # phase 1
@@ -120,9 +121,14 @@ def _agree(
         if ledger.rounds == last_round:
             raise MusterError(f"consensus-bundle: the robots do not agree within {most_rounds} rounds")
         beliefs.exchange(network, ledger.end_round(), stop)  # phase 2
-        for bidder in team:
+        for bidder in until_due(team, stop):  # what is not released is not settled
             bidder.release(beliefs)
     return beliefs.agreed_winners()
+
+
+def until_due(team: Iterable[Bidder], stop: Stop) -> Iterator[Bidder]:
+    """The bidders one after the other, as far as there is time."""
+    return takewhile(lambda _: not stop.due(), team)
 
 
 def first_limit(tasks: int, robots: int) -> int:

@@ -44,8 +44,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
     """Announce, collect bids, award; tasks in the start plan's routes stay there."""
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
-        manager = Auctioneer(problem, params, start, on_round)
-        manager.restore(start or [[] for _ in problem.robots], {}, closed=range(len(problem.tasks)))
+        manager = Auctioneer(problem, params, start, on_round, closed=range(len(problem.tasks)))
         done = {j for route in start or () for j in route}
         for task in announcements(problem, params.order):
             if task in done:

@@ -75,7 +75,7 @@ def trade(
 ) -> Allocation:
     """Lines 8 to 23; the best allocation."""
     random = Random(seed)
-    auctioneer = Auctioneer(problem, params, start, on_round)
+    auctioneer = Auctioneer(problem, params, start, on_round, stop)
     before = _allocation(problem, auctioneer)
     if not auctioneer.sell(stop):
         stop.cut()
