@@ -13,7 +13,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_of
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Robot, Task
-from muster.planning.budget import Budget
+from muster.planning.budget import Budget, Pace
 from muster.planning.request import Request
 from muster.planning.solving import answer
 
@@ -88,6 +88,15 @@ def test_a_time_limit_counts_what_was_spent_before():
     assert Budget(100.0, spent, 100_000).algorithm_s < 100.0 - 2.0 - 1.0
     assert Budget(1.0, spent, 0).algorithm_s == pytest.approx(0.1)  # never nothing
     assert Budget(None, spent, 0).algorithm_s is None
+
+
+def test_on_a_busy_machine_more_time_is_kept_for_judging(monkeypatch):
+    free = Budget(100.0, Stop(), 100_000)
+    assert Budget(100.0, Stop(), 100_000, slowness=3.0).algorithm_s < free.algorithm_s - 10.0
+    wall, worked = iter((0.0, 6.0)), iter((1.0, 3.0))
+    monkeypatch.setattr("time.monotonic", lambda: next(wall))
+    monkeypatch.setattr("time.process_time", lambda: next(worked))
+    assert Pace().slowness == 3.0
 
 
 def test_an_exact_proof_shares_the_time_limit_with_the_algorithm():

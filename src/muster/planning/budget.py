@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 from muster.allocation.stop import Stop
@@ -10,6 +11,25 @@ _JUDGED_S = 8e-5  # a task, to put the plan together, judge and write it
 _LEAST_SHARE = 0.1  # of the time limit, which each part has at least
 _BOUND_SHARE = 0.2  # of what is left, for a quick bound
 _SEARCHED_SHARE = 0.5  # of what is left, where an exact proof follows
+
+
+_SLOWEST = 4.0  # by which a busy machine is reckoned with at most
+
+
+class Pace:
+    """How much longer work takes than the processor is at it, as other processes have it in between.
+
+    Measured from when this is made.
+    """
+
+    def __init__(self) -> None:
+        self._began_s, self._worked_s = time.monotonic(), time.process_time()
+
+    @property
+    def slowness(self) -> float:
+        """Seconds for a second of the processor, at least 1."""
+        took_s, worked_s = time.monotonic() - self._began_s, time.process_time() - self._worked_s
+        return min(_SLOWEST, max(1.0, took_s / worked_s)) if worked_s > 0 else 1.0
 
 
 @dataclass(frozen=True)
@@ -24,6 +44,8 @@ class Budget:
         ends all the work when it is interrupted; its clock counts.
     tasks
         of the mission.
+    slowness
+        how much longer judging takes than on a machine that does nothing else.
     proof_follows
         whether an exact proof comes after the algorithm, within the same limit.
     """
@@ -31,6 +53,7 @@ class Budget:
     limit_s: float | None
     whole: Stop
     tasks: int
+    slowness: float = 1.0
     proof_follows: bool = False
 
     @property
@@ -52,5 +75,5 @@ class Budget:
         """A share of what is left beside judging."""
         if self.limit_s is None:
             return None
-        left_s = self.limit_s - self.whole.elapsed_s - _JUDGED_S * self.tasks
+        left_s = self.limit_s - self.whole.elapsed_s - _JUDGED_S * self.slowness * self.tasks
         return max(share * left_s, _LEAST_SHARE * self.limit_s)

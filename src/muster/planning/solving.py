@@ -72,17 +72,18 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     from muster.allocation.proofs import require_provable
     from muster.allocation.registry import allocator_of
     from muster.allocation.stop import Stop, usual_time_limit
-    from muster.planning.budget import Budget
+    from muster.planning.budget import Budget, Pace
 
     whole = interrupt or Stop()
     allocator = allocator_of(request.allocator)
     params = make_parameters(allocator, dict(request.parameters))
+    pace = Pace()
     problem = _compiled(request)
     if request.bound is not None:
         require_provable(problem, request.bound)
     limit = usual_time_limit(allocator.anytime, request.time_limit, request.iterations)
     proof_follows = request.bound == "exact" and request.time_limit is not None
-    budget = Budget(limit, whole, len(problem.tasks), proof_follows=proof_follows)
+    budget = Budget(limit, whole, len(problem.tasks), pace.slowness, proof_follows)
     quick = _quick_bound(request, problem, budget)
     report = None if on_progress is None else _with_bound(request, problem, on_progress, quick)
     stop = Stop(iterations=request.iterations, time_limit=budget.algorithm_s, on_progress=report, whole=whole)
