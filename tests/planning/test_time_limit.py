@@ -117,3 +117,12 @@ def test_a_quick_bound_without_time_holds_and_says_that_it_was_cut_short():
     assert late.plan.lower_bound <= usual.plan.lower_bound
     assert "cut short by the time limit" in late.why
     assert "cut short" not in usual.why
+
+
+@pytest.mark.parametrize("name", ["combinatorial-auction", "bertsekas-auction", "contract-net", "auction"])
+def test_the_book_of_a_whole_auction_ends(name):
+    """To tell every bid the auction is held again, and stopped in the round in which nothing is left."""
+    plan = allocator_of(name).solve(Problem.compile(mission()), Stop())
+    bids = []
+    plan.book.for_each_bid(bids.append)
+    assert max(bid.round for bid in bids) == plan.book.rounds == 30

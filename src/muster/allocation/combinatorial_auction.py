@@ -57,7 +57,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
     def hold(until: Stop, on_round: OnRound | None = None) -> Auctioneer:
         auctioneer = Auctioneer(problem, params, start, on_round, until)
-        while (bids := bundle_bids(problem, auctioneer, params, until)) is not None:
+        while not until.due() and (bids := bundle_bids(problem, auctioneer, params, until)) is not None:
             if not award(auctioneer, clear(bids, params.combinations).winners, until) and not until.due():
                 return auctioneer
         until.cut()
