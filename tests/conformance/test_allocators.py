@@ -100,7 +100,7 @@ def test_a_time_limit_is_kept_on_the_given_clock(allocator):
     stop = Stop(time_limit=1.0, clock=VirtualClock(step_s=0.01))
     plan = ALLOCATORS[allocator].solve(problem, stop)
     assert 0.9 <= plan.elapsed_s < 1.1
-    assert stop.iterations_done > 10
+    assert stop.iterations_done > (3 if allocator == "ant-colony" else 10)  # ants look after each of 20 plans
 
 
 @pytest.mark.parametrize("allocator", ["auction", "market", "consensus-bundle"])
