@@ -93,7 +93,7 @@ void Search::step(double temperature) {
   ruin();
   recreate();
   drop_orphans();
-  improve();
+  if (!settings_.oversubscribed || cost() < current_ + temperature) improve();
   if (cost() < current_ - temperature * std::log(random_.uniform() + 1e-300)) {
     team_.settle();
     if (team_.fits()) {
@@ -145,6 +145,7 @@ void Search::ruin() {
   const auto visit = [&](int task) {
     const int robot = team_.robot_of(task);
     if (robot == Team::kAbsent || spared_[task] == ruin_stamp_ || team_.fixed(task)) return;
+    if (is_ruined_[robot] && settings_.oversubscribed) return;
     const double most = std::min<double>(longest, static_cast<double>(team_.size(robot)));
     take_string(task, static_cast<int>(1.0 + random_.uniform() * most));
     ++taken;
@@ -322,16 +323,24 @@ void Search::try_route(int robot, int task) {
   const double work = problem_.work_usage(robot, task);
   double least = kNever;
   int best = Team::kAbsent;
-  for (int after = team_.earliest(robot), last = team_.latest(robot); team_.before(after, last);) {
-    const int before = after, on = after = team_.next(before);
-    if (blink > 0.0 && random_.uniform() < blink) continue;
-    const double growth = team_.way(robot, before, task) + work + team_.way(robot, task, on) - team_.way(on);
-    if (every_place) {
-      propose(robot, task, before, growth);
-    } else if (growth < least) {
-      least = growth;
-      best = before;
+  int before = team_.earliest(robot);
+  const int last = team_.latest(robot);
+  if (!team_.before(before, last)) return;
+  double there = team_.way(robot, before, task);
+  while (before != last) {
+    const int on = team_.next(before);
+    const double further = team_.way(robot, task, on);
+    if (blink == 0.0 || random_.uniform() >= blink) {
+      const double growth = there + work + further - team_.way(on);
+      if (every_place) {
+        propose(robot, task, before, growth);
+      } else if (growth < least) {
+        least = growth;
+        best = before;
+      }
     }
+    before = on;
+    if (before != last) there = problem_.is_symmetric() ? further : team_.way(robot, before, task);
   }
   if (best != Team::kAbsent) propose(robot, task, best, least);
 }
