@@ -18,11 +18,12 @@ from muster.allocation.problem import Problem
 
 def tour(seed, tasks, robots=1, objective="total", **robot):
     random = Random(seed)
+    points = [(random.uniform(0, 100), random.uniform(0, 100)) for _ in range(tasks)]
     return muster.Mission(
         name="tour",
         rules=muster.Rules(objective=objective, return_to_start=True),
         robots=tuple(muster.Robot(id=f"r{k}", position=(50, 50), **robot) for k in range(robots)),
-        tasks=tuple(muster.Task(id=f"t{k}", position=(random.uniform(0, 100), random.uniform(0, 100))) for k in range(tasks)),
+        tasks=tuple(muster.Task(id=f"t{k}", position=point) for k, point in enumerate(points)),
     )
 
 

@@ -283,16 +283,27 @@ class Problem:
         return np.array([rows[r.type or ""] for r in self.robots]).reshape(len(self.robots), len(self.tasks))
 
     @cached_property
-    def core(self) -> core.Problem:
-        """The problem as the core holds it."""
+    def core_of_greatest_usage(self) -> core.Problem | None:
+        """The problem with objective `max` that has the same plans and values, where its own is `makespan`.
+
+        None where it is another, or something else decides too: prerequisites, times, capacities, robots that come
+        later.
+        """
+        free = not self.has_timed_rules and not self._makespan_includes_ways_to_ends and not any(self.prerequisites)
+        begins = all(robot.available_from_s == 0 for robot in self.robots)
+        if self.objective != "makespan" or not free or not begins or np.isfinite(self.capacity).any():
+            return None
+        return self._core("max", in_time=True, must_end=np.zeros(len(self.robots), dtype=np.bool_))
+
+    def _core(self, objective: str, in_time: bool, must_end: Bools) -> core.Problem:
         measured = self.measured
         return core.Problem(
-            objective=self.objective,
-            usage_is_time=self.in_time,
+            objective=objective,
+            usage_is_time=in_time,
             capacity=self.capacity,
             speed=_floats(r.speed_mps for r in self.robots),
             available_from=_floats(r.available_from_s for r in self.robots),
-            must_end=np.array([r.place_at_end(self.mission.rules) is not None for r in self.robots], dtype=np.bool_),
+            must_end=must_end,
             fixed=np.array([len(self.beginning(i)) for i in range(len(self.robots))], dtype=np.int32),
             actuation_cost=measured.costs,
             work_class=measured.work_classes,
@@ -311,6 +322,12 @@ class Problem:
             waiting=self.waiting.seconds,
             waits=self.waiting.robots,
         )
+
+    @cached_property
+    def core(self) -> core.Problem:
+        """The problem as the core holds it."""
+        must_end = np.array([r.place_at_end(self.mission.rules) is not None for r in self.robots], dtype=np.bool_)
+        return self._core(self.objective, self.in_time, must_end)
 
     @cached_property
     def travel(self) -> tuple[Floats, npt.NDArray[np.int32]]:

@@ -56,7 +56,7 @@ class Parameters:
         if one is out of range.
     """
 
-    threads: int = 1
+    threads: int = 0  # 0: one for each processor under a time limit, else 1
     parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
     ray: str = "none"  # address of the Ray cluster that parts are worked on; none: threads of this process
     # 0: 1 for the objectives `max` and, on a schedule, `makespan`, which few tasks decide; else 5; where greedy leaves
@@ -77,9 +77,10 @@ class Parameters:
             raise ParameterError(f"ray: {self.ray}; expected the address of a Ray cluster, or none")
         if self.ray != "none" and self.threads > 1:
             raise ParameterError(f"threads: {self.threads}, with a Ray cluster; expected one of the two")
-        for name in ("threads", "near"):
-            if getattr(self, name) < 1:
-                raise ParameterError(f"{name}: {getattr(self, name)}; expected a whole number of at least 1")
+        if self.threads < 0:
+            raise ParameterError(f"threads: {self.threads}; expected a whole number of at least 0")
+        if self.near < 1:
+            raise ParameterError(f"near: {self.near}; expected a whole number of at least 1")
         if not 0 < self.cold <= (self.hot or self.cold) < float("inf"):
             raise ParameterError(f"cold, hot: {self.cold:g}, {self.hot:g}; expected 0 < cold <= hot, or hot 0")
         if self.removed != 0 and not 1 <= self.removed < float("inf"):
@@ -113,8 +114,13 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
 def _workers(params: Parameters) -> AbstractContextManager[Workers]:
     if params.ray == "none":
-        return nullcontext(Threads(max(params.threads, os.cpu_count() or 1)))
+        return nullcontext(Threads(max(params.threads, _processors())))
     return joined(params.ray)
+
+
+def _processors() -> int:
+    """The processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes) -> Routes:
@@ -122,12 +128,13 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
     first = start if problem.core.is_timed else greedy.completed(problem, start)
     stop.improved(*problem.value(first))
     oversubscribed = _is_oversubscribed(problem, first)
-    searches = [_search(problem, first, seed + thread, params, oversubscribed) for thread in range(params.threads)]
+    threads = params.threads or (_processors() if stop.is_a_time_alone else 1)
+    searches = [_search(problem, first, seed + thread, params, oversubscribed) for thread in range(threads)]
     cooling = _cooling(problem, params, searches[0])
     trading = _trading(params, searches[0], cooling) if oversubscribed else cooling
     exchanged, weight = 0, 0.0
     known: tuple[float, float, float] | None = None
-    with ThreadPoolExecutor(params.threads) as pool:
+    with ThreadPoolExecutor(threads) as pool:
         for steps in stop.batches(_steps_at_once(problem)):
             leaves_out = _best(searches).best_weight_left_out > 0
             temperature = (trading if leaves_out else cooling).temperature(stop.share)
@@ -160,7 +167,8 @@ class Variations:
     """
 
     def __init__(self, problem: Problem, routes: Routes, seed: int) -> None:
-        short, long = (_search(problem, routes, seed, params, oversubscribed=False) for params in (_SHORT_STEP, _LONG_STEP))
+        steps = (_SHORT_STEP, _LONG_STEP)
+        short, long = (_search(problem, routes, seed, params, oversubscribed=False) for params in steps)
         self._searches = cycle((short, short, long))
         self._temperature = _ACCEPTING * (short.mean_way or 1.0)
 
@@ -232,7 +240,7 @@ def _search(problem: Problem, first: Routes, seed: int, params: Parameters, over
     else:
         removed, kind = 12.0 if oversubscribed else 10.0, partial(core.Search, oversubscribed=oversubscribed)
     return kind(
-        problem.core,
+        problem.core_of_greatest_usage or problem.core,
         first,
         seed % 2**64,
         removed=params.removed or removed,

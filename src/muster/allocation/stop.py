@@ -145,6 +145,11 @@ class Stop:
         )
 
     @property
+    def is_a_time_alone(self) -> bool:
+        """Whether nothing but a time on the system's clock ends it: then all processors may be used until then."""
+        return self._time_limit is not None and self._iterations is None and isinstance(self._clock, SystemClock)
+
+    @property
     def time_left_s(self) -> float | None:
         """Seconds until the time limit, at least 0; None where there is none."""
         return None if self._time_limit is None else max(0.0, self._time_limit - self.elapsed_s)

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from muster.allocation.stop import Stop
 
 _FILE = click.Path(path_type=Path)
+_THREADS_HELP = "Searches side by side.  [default: one for each processor; with --iterations 1]"
 _PARAMETERS = ("threads", "ray", "bid", "placement", "winner")  # of allocators, with options of their own
 _TRAFFIC_OF_PLAN = click.option(
     "--traffic", default=DEFAULT, show_default=True, metavar=f"[{'|'.join(TRAFFIC)}]", help=HELP["traffic"]
@@ -96,7 +97,7 @@ def _declared(time_limit_s: float | None) -> tuple[Callable[[Any], Any], ...]:
             help=f"{HELP['time_limit']}  [default: {seconds:g}, without --iterations]",
         ),
         click.option("--iterations", type=int, metavar="N", help=HELP["iterations"]),
-        click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Searches side by side.  [default: 1]"),
+        click.option("--threads", type=click.IntRange(min=1), metavar="N", help=_THREADS_HELP),
         click.option(
             "--ray", metavar="ADDRESS", help="Work on the parts of a large team on a Ray cluster (docs/search.md)."
         ),

@@ -12,7 +12,7 @@ namespace muster {
 
 namespace {
 
-constexpr int kNear = 10;           // tasks beside which a task is tried
+constexpr int kNear = 10;            // tasks beside which a task is tried
 constexpr double kLeastGain = 1e-9;  // in the usual way: less may be rounding
 
 template <class Kind>

@@ -26,9 +26,7 @@ class Surroundings {
   double way(int robot, int from, int to) const { return team.way(robot, from, to); }
   bool gains(double change) const { return change < -least_gain_; }
   // Whether one route may grow so much, or two.
-  bool fits(int robot, double growth) const {
-    return growth <= 0.0 || problem.fits(robot, team.usage(robot) + growth);
-  }
+  bool fits(int robot, double growth) const { return growth <= 0.0 || problem.fits(robot, team.usage(robot) + growth); }
 
   void wake(int place);
   // A task around which something has changed, or `Team::kAbsent`.

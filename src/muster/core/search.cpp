@@ -369,7 +369,9 @@ bool Search::raises_greatest() const {
 // The routes of the robots that do least, at every place: where all near ones are full, they may be far away.
 void Search::try_idlest(int task) {
   int least = Team::kAbsent, second = Team::kAbsent;
-  const auto idler = [&](int robot, int other) { return other == Team::kAbsent || team_cost_.load(robot) < team_cost_.load(other); };
+  const auto idler = [&](int robot, int other) {
+    return other == Team::kAbsent || team_cost_.load(robot) < team_cost_.load(other);
+  };
   for (const int robot : problem_.robots_allowed(task)) {
     if (idler(robot, least)) {
       second = std::exchange(least, robot);

@@ -84,9 +84,9 @@ class Search {
   double peak_ = 0.0;  // the greatest load, while tasks are put back
   int seed_ = 0;       // the task that a ruin begins at
   bool seed_left_out_ = false;
-  std::vector<int> ruined_;             // robots
-  std::vector<int> window_;             // places of a route around a task that a string is taken from
-  std::vector<int> gaps_;               // places beside which tasks were taken out
+  std::vector<int> ruined_;  // robots
+  std::vector<int> window_;  // places of a route around a task that a string is taken from
+  std::vector<int> gaps_;    // places beside which tasks were taken out
   int ruin_stamp_ = 0;
   std::vector<int> spared_;             // by task: the ruin that leaves it, beside a string
   std::vector<int> again_;              // tasks left out before the step that it tries again

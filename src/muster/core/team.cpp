@@ -309,7 +309,8 @@ void Team::settle() {
 }
 
 bool Team::fits() const {
-  return std::ranges::all_of(saved_, [&](const Saved& saved) { return problem_.fits(saved.robot, usage_[saved.robot]); });
+  return std::ranges::all_of(saved_,
+                             [&](const Saved& saved) { return problem_.fits(saved.robot, usage_[saved.robot]); });
 }
 
 void Team::commit() {
