@@ -19,6 +19,9 @@ constexpr int kNearRobots = 4;   // robots whose starts are tried for a task
 constexpr int kFew = 200;        // tasks, up to which each is tried at every place, which costs little
 constexpr int kRetried = 10;     // tasks left out that a step tries again
 constexpr int kRetriedNear = 3;  // of these near the ruin
+// Where the greatest load counts alone: what a unit of usage counts at a temperature of a usual way, and the power of
+// the temperature with which that falls.
+constexpr double kTotalWhenHot = 0.05, kTotalCools = 0.4;
 // Where not all tasks can be done:
 constexpr double kWorth = 10.0;         // what a task of mean weight counts, in what a task costs
 constexpr double kSettled = 0.1;        // temperature below which no weight is given away any more, in the same unit
@@ -68,6 +71,7 @@ Search::Search(const Problem& problem, const Routes& start, std::uint64_t seed, 
   task_cost_ = mean_cost();
   const double weight = mean_weight(problem);
   trading_ = weight > 0.0 ? std::min(forbidding_, kWorth * task_cost_ / weight) : forbidding_;
+  usual_way_ = mean_way();
   current_ = cost();
   best_.resize(problem.robots());
   best_value_.weight = -kNever;
@@ -107,12 +111,15 @@ void Search::step(double temperature) {
 }
 
 // Where not all tasks can be done, weight is given away for other weight while it is hot: a penalty that forbids it
-// would let the first tasks that fill the routes stay for good.
+// would let the first tasks that fill the routes stay for good. Where the greatest load counts alone, the others count
+// a little, and less when it is cold: short routes leave room, until the longest can be no shorter.
 void Search::weigh(double temperature) {
   const bool trading = settings_.oversubscribed && best_value_.weight < 0.0 && temperature > kSettled * task_cost_;
   const double penalty = trading ? trading_ : forbidding_;
-  if (penalty == penalty_) return;
+  if (temperature == weighed_for_ && penalty == penalty_) return;
+  weighed_for_ = temperature;
   penalty_ = penalty;
+  team_cost_.weigh_total(kTotalWhenHot * std::pow(std::min(1.0, temperature / usual_way_), kTotalCools));
   current_ = cost();
 }
 

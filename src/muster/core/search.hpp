@@ -74,6 +74,7 @@ class Search {
   bool everywhere_;  // whether a task is tried at every place
   double penalty_;   // of a unit of weight left out: one of the next two
   double forbidding_, trading_;
+  double usual_way_ = 0.0, weighed_for_ = -1.0;
   double task_cost_;
   Team team_;
   TeamCost team_cost_;

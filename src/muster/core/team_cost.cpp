@@ -4,17 +4,14 @@
 
 namespace muster {
 
-namespace {
-
-constexpr double kTie = 0.1;  // weight of the usage where the objective does not see it
-
-}  // namespace
-
 TeamCost::TeamCost(const Problem& problem, Team& team)
     : problem_(problem),
       team_(team),
       sees_greatest_(problem.objective() != Objective::total && problem.objective() != Objective::average),
-      total_weight_(problem.objective() == Objective::max || problem.objective() == Objective::makespan ? kTie : 1.0) {}
+      sees_total_(problem.objective() != Objective::max && problem.objective() != Objective::makespan),
+      tie_(0.01) {}
+
+void TeamCost::weigh_total(double weight) { tie_ = weight; }
 
 double TeamCost::load(int robot) const {
   if (problem_.objective() != Objective::makespan) return team_.usage(robot);
@@ -51,24 +48,23 @@ double TeamCost::objective() const {
 }
 
 double TeamCost::cost() const {
-  double ties = 0.0;
-  if (problem_.objective() == Objective::max || problem_.objective() == Objective::makespan) {
-    for (int robot = 0; robot < problem_.robots(); ++robot) ties += team_.usage(robot);
-  }
-  return objective() + kTie * ties;
+  if (sees_total_) return objective();
+  double total = 0.0;
+  for (int robot = 0; robot < problem_.robots(); ++robot) total += team_.usage(robot);
+  return objective() + tie_ * total;
 }
 
 double TeamCost::score(int robot, int task, int after, double growth, double peak) const {
   switch (problem_.objective()) {
     case Objective::max:
-      return kTie * growth + std::max(0.0, team_.usage(robot) + growth - peak);
+      return tie_ * growth + std::max(0.0, team_.usage(robot) + growth - peak);
     case Objective::total_max:
       return growth + std::max(0.0, team_.usage(robot) + growth - peak);
     case Objective::average:
       return team_.later_arrivals(robot, task, after, growth);
     case Objective::makespan: {
       const double longer = team_.longer(robot, task, after);
-      return kTie * longer + std::max(0.0, team_.done(robot) + longer - peak);
+      return tie_ * longer + std::max(0.0, team_.done(robot) + longer - peak);
     }
     case Objective::total:
     case Objective::lateness:  // of timed problems alone, which `ScheduleSearch` is for
@@ -90,7 +86,7 @@ void TeamCost::look() {
 }
 
 double TeamCost::change(int robot, double growth, int other, double growth_of_other) const {
-  double change = total_weight_ * (growth + growth_of_other);
+  double change = (sees_total_ ? 1.0 : tie_) * (growth + growth_of_other);
   if (!sees_greatest_) return change;
   double most = 0.0;
   for (const int each : most_) {

@@ -26,6 +26,8 @@ class TeamCost {
   bool is_greatest(int robot) const { return robot == most_[0]; }
   // What `cost` grows by if the usage of two robots does, since `look`; not for `average` or `makespan`.
   double change(int robot, double growth, int other, double growth_of_other) const;
+  // What a unit of the whole usage counts where the objective sees the greatest load alone.
+  void weigh_total(double weight);
   // Whether the greatest load counts.
   bool sees_greatest() const { return sees_greatest_; }
 
@@ -33,7 +35,8 @@ class TeamCost {
   const Problem& problem_;
   Team& team_;
   bool sees_greatest_;
-  double total_weight_;
+  bool sees_total_;
+  double tie_;                  // weight of the usage where the objective does not see it
   int most_[3] = {-1, -1, -1};  // the robots that do most, the first first
 };
 
