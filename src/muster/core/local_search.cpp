@@ -6,6 +6,7 @@
 #include "part_exchange.hpp"
 #include "swap_tasks.hpp"
 #include "tail_exchange.hpp"
+#include "trade_tasks.hpp"
 #include "two_opt.hpp"
 
 namespace muster {
@@ -57,12 +58,15 @@ LocalSearch::LocalSearch(const Problem& problem, const Neighbours& neighbours, T
   add<SwapTasks>(moves_, around_);
   add<TailExchange>(moves_, around_);
   add<PartExchange>(moves_, around_);
+  add<TradeTasks>(moves_, around_);
 }
 
 void LocalSearch::improve() {
   around_.cost.look();
   for (int task = around_.next_awake(); task != Team::kAbsent; task = around_.next_awake()) {
-    for (std::size_t k = 0; k < moves_.size();) k = moves_[k]->improve(task) ? 0 : k + 1;
+    for (std::size_t k = 0; k < moves_.size() && around_.team.present(task);) {
+      k = moves_[k]->improve(task) ? 0 : k + 1;
+    }
   }
 }
 

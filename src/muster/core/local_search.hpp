@@ -16,6 +16,8 @@ class LocalSearch {
 
   // Whether there is a move for these rules.
   bool applies() const { return !moves_.empty(); }
+  // What a unit of weight left out counts as cost.
+  void weigh(double penalty) { around_.penalty = penalty; }
   // Around this place something has changed.
   void wake(int place) { around_.wake(place); }
   // Improves the routes around all places that are awake; they are asleep then.

@@ -28,6 +28,10 @@ class Surroundings {
   // Whether one route may grow so much, or two.
   bool fits(int robot, double growth) const { return growth <= 0.0 || problem.fits(robot, team.usage(robot) + growth); }
 
+  // What a weight of tasks left out counts as cost.
+  double worth(double weight) const { return penalty * weight; }
+  double penalty = 0.0;
+
   void wake(int place);
   // A task around which something has changed, or `Team::kAbsent`.
   int next_awake();
@@ -56,6 +60,12 @@ class Move {
 
  protected:
   double way(int robot, int from, int to) const { return team_.way(robot, from, to); }
+  // What a route grows by with another task in the place of this.
+  double growth_with(int task, int other) const {
+    const int robot = team_.robot_of(task), before = team_.prev(task), on = team_.next(task);
+    return way(robot, before, other) + problem_.work_usage(robot, other) + way(robot, other, on) - team_.way(task) -
+           problem_.work_usage(robot, task) - team_.way(on);
+  }
 
   Surroundings& around_;
   const Problem& problem_;

@@ -119,6 +119,7 @@ void Search::weigh(double temperature) {
   if (temperature == weighed_for_ && penalty == penalty_) return;
   weighed_for_ = temperature;
   penalty_ = penalty;
+  local_search_.weigh(penalty);
   team_cost_.weigh_total(kTotalWhenHot * std::pow(std::min(1.0, temperature / usual_way_), kTotalCools));
   current_ = cost();
 }

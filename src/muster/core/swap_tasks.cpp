@@ -16,7 +16,7 @@ bool SwapTasks::swap(int task, int other) {
   if (!team_.is_task(other) || team_.fixed(other)) return false;
   const int robot = team_.robot_of(task), others = team_.robot_of(other);
   if (!problem_.allowed(others, task) || !problem_.allowed(robot, other)) return false;
-  const double here = growth(robot, task, other), there = growth(others, other, task);
+  const double here = growth_with(task, other), there = growth_with(other, task);
   if (!around_.gains(around_.cost.change(robot, here, others, there))) return false;
   if (!around_.fits(robot, here) || !around_.fits(others, there)) return false;
   const int before = team_.prev(task), on = team_.next(task);
@@ -24,13 +24,6 @@ bool SwapTasks::swap(int task, int other) {
   team_.move(task, task, other);
   team_.move(other, other, before);
   return around_.changed(task, other, before, on, before_other, on_other);
-}
-
-// With another task in the place of this.
-double SwapTasks::growth(int robot, int task, int other) const {
-  const int before = team_.prev(task), on = team_.next(task);
-  return way(robot, before, other) + problem_.work_usage(robot, other) + way(robot, other, on) - team_.way(task) -
-         problem_.work_usage(robot, task) - team_.way(on);
 }
 
 }  // namespace muster

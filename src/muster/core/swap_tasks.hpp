@@ -14,7 +14,6 @@ class SwapTasks : public Move {
 
  private:
   bool swap(int task, int other);
-  double growth(int robot, int task, int other) const;
 };
 
 }  // namespace muster
