@@ -114,7 +114,7 @@ def test_it_goes_on_from_a_start_plan_and_completes_it():
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("threads", 0), ("near", 0), ("longest_string", -1), ("hot", -1), ("cold", 0), ("removed", 0.5), ("blink", 1.0)],
+    [("threads", -1), ("near", 0), ("longest_string", -1), ("hot", -1), ("cold", 0), ("removed", 0.5), ("blink", 1.0)],
 )
 def test_parameters_out_of_range_are_refused(name, value):
     with pytest.raises(muster.ParameterError, match=name):

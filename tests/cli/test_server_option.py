@@ -46,8 +46,9 @@ def test_a_plan_is_as_here(folder, muster, url):
 def test_rewire_fixed_and_bound_are_as_here(folder, muster, url):
     assert muster("solve", "31T-6R50", "--iterations", 300, "-o", "first.json")[0] == 0
     fixed = json.loads(Path("first.json").read_text(encoding="utf-8"))
+    waiting = {task.id for task in load("31T-6R50").tasks if task.prerequisites}
     for route in fixed["routes"]:
-        route["tasks"] = route["tasks"][:1]
+        route["tasks"] = [name for name in route["tasks"][:1] if name not in waiting]
     Path("fixed.json").write_text(json.dumps({"schema": fixed["schema"], "routes": fixed["routes"]}), encoding="utf-8")
     for more in (["--rewire"], ["--fixed", "fixed.json"], ["--start", "first.json", "--bound=quick", "-v"]):
         call = ("solve", "31T-6R50", "--iterations", 300, *more)

@@ -1,4 +1,4 @@
-"""Local search alone: what it makes of routes is admissible, does the same tasks, and costs no more."""
+"""Local search alone: what it makes of routes is admissible, does no less, and costs no more."""
 
 from dataclasses import replace
 from itertools import pairwise, permutations
@@ -37,9 +37,10 @@ def test_routes_stay_admissible_and_cost_no_more(seed, objective):
     problem = compiled(replace(mission, tasks=tuple(replace(task, prerequisites=()) for task in mission.tasks)))
     routes = greedy.completed(problem, [[] for _ in problem.robots])
     better = core.improved(problem.core, routes)
-    assert sorted(j for route in better for j in route) == sorted(j for route in routes for j in route)
     assert core.Inspection(problem.core, better).admissible
-    assert problem.value(better)[1] <= problem.value(routes)[1] + 1e-9
+    (weight, cost), (weight_before, cost_before) = problem.value(better), problem.value(routes)
+    assert weight >= weight_before
+    assert weight > weight_before or cost <= cost_before + 1e-9
 
 
 @pytest.mark.parametrize("objective", ["average", "makespan"])

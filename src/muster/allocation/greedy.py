@@ -31,7 +31,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
         for task in route:
             greedy.assign(robot, task)
     while (matching := greedy.select()) is not None:  # steps 2 to 5
-        if stop.due():
+        if stop.ends_first_plans():
             stop.cut()
             break
         greedy.assign(matching.robot, matching.task)  # steps 6 to 8

@@ -3,9 +3,8 @@
 Slack induction by string removals (SISR): [christiaens2020]. Beyond it: a task is put back where the team's objective
 grows least, the robot that does most included; many ruins begin at that robot, or for `makespan` at the tasks that its
 end waits for; places are those that no prerequisite forbids, through all routes; tasks left out are tried again in
-every step. After each ruin routes are improved around it by local search ([croes1958], [or1976], [potvin1995]). Where not
-all tasks can be done, as in team orienteering ([chao1996]), tasks are given away for others while
-it is hot.
+every step. After each ruin routes are improved around it by local search ([croes1958], [or1976], [potvin1995]). Where
+not all tasks can be done, as in team orienteering ([chao1996]), tasks are given away for others while it is hot.
 
 Where tasks are bound to times, teams or relations, and for `makespan` with prerequisites, the search works on a
 schedule that is propagated through the part that a change affects ([pearce2006]); a team is chosen at a cut through

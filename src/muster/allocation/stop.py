@@ -119,6 +119,10 @@ class Stop:
         limit = self._time_limit
         return self.hurried or (limit is not None and self.elapsed_s > limit * (1 + _OVERTIME) + _OVERTIME_S)
 
+    def ends_first_plans(self) -> bool:
+        """Whether a first plan is not worth waiting for either: it was interrupted, or the time limit passed by far."""
+        return self.interrupted or self.overdue
+
     def due(self) -> bool:
         """Whether time is up or the algorithm was interrupted."""
         now = self._clock.now()

@@ -278,7 +278,7 @@ class Annealing:
 
 def improved(problem: Problem, routes: Sequence[Sequence[int]]) -> list[list[int]]:
     """
-    Routes after local search alone; those given where no move is for the problem's rules.
+    Routes after local search alone, with no less weight of tasks; those given where no move is for the problem's rules.
     """
 
 class Search:
