@@ -42,22 +42,19 @@ bool OrOpt::put(const Row& row, int after, bool turned) {
   if (turned && !problem_.is_symmetric()) return false;
   const int to = team_.robot_of(after), on = team_.next(after);
   const int head = turned ? row.last : row.first, tail = turned ? row.first : row.last;
-  double growth = way(to, after, head) + way(to, tail, on) - team_.way(on), less = -row.saved;
-  if (to == row.robot) {
-    growth += less;
-    less = growth;
-    if (!around_.gains(growth)) return false;
-  } else {
-    if (!allowed(row, to)) return false;
-    less -= row.inside;
-    growth += inside(row, to, turned);
-    if (!around_.fits(to, growth)) return false;
-    if (!around_.gains(around_.cost.change(row.robot, less, to, growth))) return false;
-  }
+  const double added = way(to, after, head) + way(to, tail, on) - team_.way(on);
+  if (to == row.robot ? !around_.gains(added - row.saved) : !gains(row, to, turned, added)) return false;
   const int before = team_.prev(row.first), behind = team_.next(row.last);
   if (turned) team_.reverse(row.first, row.last);
   team_.move(head, tail, after);
   return around_.changed(before, behind, head, tail, after, on);
+}
+
+// Whether it pays that another robot does the row.
+bool OrOpt::gains(const Row& row, int robot, bool turned, double added) const {
+  if (!allowed(row, robot)) return false;
+  const double growth = added + inside(row, robot, turned), less = -row.saved - row.inside;
+  return around_.fits(robot, growth) && around_.gains(around_.cost.change(row.robot, less, robot, growth));
 }
 
 bool OrOpt::contains(const Row& row, int place) const {

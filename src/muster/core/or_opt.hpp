@@ -23,6 +23,7 @@ class OrOpt : public Move {
 
   bool improve(int task, const Row& row);
   bool put(const Row& row, int after, bool turned);
+  bool gains(const Row& row, int robot, bool turned, double added) const;
   bool contains(const Row& row, int place) const;
   double inside(const Row& row, int robot, bool turned) const;
   bool allowed(const Row& row, int robot) const;

@@ -135,7 +135,7 @@ void Search::ruin() {
   gaps_.clear();
   ++ruin_stamp_;
   int used = 0;
-  for (int robot = 0; robot < problem_.robots(); ++robot) used += !team_.route(robot).empty();
+  for (int robot = 0; robot < problem_.robots(); ++robot) used += !team_.empty(robot);
   if (used == 0) {
     again_ = team_.absent();
     return;
