@@ -16,7 +16,7 @@ def test_the_best_known_plans_of_a_small_mission_are_found(case):
 
 def test_what_the_best_known_plan_leaves_out_may_be_left_out():
     case = next(case for case in CASES if case.mission == "flood")
-    assert quality(case, seeds=1, iterations=20_000).reached == 1
+    assert quality(case, seeds=1, iterations=120_000).reached == 1
     assert quality(replace(case, weight=125.0), seeds=1, iterations=100).values == (float("inf"),)
 
 
