@@ -13,9 +13,6 @@ namespace {
 
 using Unlocked = nb::call_guard<nb::gil_scoped_release>;
 
-constexpr int kNear = 10;            // tasks beside which a task is tried
-constexpr double kForbidding = 1e6;  // of a weight left out, in what all routes cost: no gain makes up for it
-
 SearchSettings settings_of(double removed, int longest_string, double blink, double greatest_share, int near,
                            bool oversubscribed) {
   return {removed, longest_string, blink, greatest_share, near, oversubscribed};
@@ -28,14 +25,7 @@ void bind_search(nb::module_& m) {
       "improved",
       [](const Problem& problem, const Routes& routes) {
         static_cast<void>(draft_from(problem, routes));
-        const Neighbours neighbours(problem, kNear, 1);
-        Team team(problem, routes);
-        TeamCost cost(problem, team);
-        LocalSearch search(problem, neighbours, team, cost);
-        search.weigh(kForbidding * (1.0 + cost.cost()));
-        for (int task = 0; task < problem.tasks(); ++task) search.wake(task);
-        search.improve();
-        return team.routes();
+        return improved(problem, routes);
       },
       "problem"_a, "routes"_a, Unlocked(),
       "Routes after local search alone, with no less weight of tasks; those given where no move is for the problem's "

@@ -16,6 +16,8 @@ namespace {
 constexpr int kNear = 10;            // tasks beside which a task is tried
 constexpr double kLeastGain = 1e-9;  // in the usual way: less may be rounding
 
+constexpr double kForbidding = 1e6;  // of a weight left out, in what all routes cost: no gain makes up for it
+
 template <class Kind>
 void add(std::vector<std::unique_ptr<Move>>& moves, Surroundings& around) {
   if (Kind::supports(around.problem)) moves.push_back(std::make_unique<Kind>(around));
@@ -68,6 +70,17 @@ void LocalSearch::improve() {
       k = moves_[k]->improve(task) ? 0 : k + 1;
     }
   }
+}
+
+Routes improved(const Problem& problem, const Routes& routes) {
+  const Neighbours neighbours(problem, kNear, 1);
+  Team team(problem, routes);
+  TeamCost cost(problem, team);
+  LocalSearch search(problem, neighbours, team, cost);
+  search.weigh(kForbidding * (1.0 + cost.cost()));
+  for (int task = 0; task < problem.tasks(); ++task) search.wake(task);
+  search.improve();
+  return team.routes();
 }
 
 }  // namespace muster

@@ -28,4 +28,7 @@ class LocalSearch {
   std::vector<std::unique_ptr<Move>> moves_;
 };
 
+// Routes after local search alone, from every task, with no less weight of tasks.
+Routes improved(const Problem& problem, const Routes& routes);
+
 }  // namespace muster

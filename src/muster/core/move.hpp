@@ -23,7 +23,6 @@ class Surroundings {
   std::span<const int> near(int task) const;
   // Whether a task may be put behind a place.
   bool open(int place) const { return !team.before(place, team.last_fixed(team.robot_of(place))); }
-  double way(int robot, int from, int to) const { return team.way(robot, from, to); }
   bool gains(double change) const { return change < -least_gain_; }
   // Whether one route may grow so much, or two.
   bool fits(int robot, double growth) const { return growth <= 0.0 || problem.fits(robot, team.usage(robot) + growth); }

@@ -199,8 +199,7 @@ void Search::set_out_again() {
 int Search::seed_task() {
   const auto& absent = team_.absent();
   if (!absent.empty() && random_.uniform() < 0.5) return absent[random_.below(static_cast<int>(absent.size()))];
-  const bool sees_greatest = problem_.objective() != Objective::total && problem_.objective() != Objective::average;
-  if (sees_greatest && random_.uniform() < settings_.greatest_share) {
+  if (team_cost_.sees_greatest() && random_.uniform() < settings_.greatest_share) {
     const int robot = team_cost_.greatest();
     if (!team_.empty(robot)) return team_.task_at(robot, random_.below(team_.size(robot)));
   }

@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from muster.mission.errors import ParameterError
+from muster_studies.effort import Effort
 from muster_studies.peers.peer import Peer, missing
 
 
@@ -45,3 +47,23 @@ def versions(peers: Iterable[Peer]) -> dict[str, str]:
         except PackageNotFoundError:
             raise missing(peer.name) from None
     return found
+
+
+def require_comparable(effort: Effort, peers: Iterable[Peer]) -> None:
+    """Refuse iterations, which mean something else to each solver.
+
+    Raises
+    ------
+    ParameterError
+    MissingExtraError
+        if a peer is not installed.
+    """
+    if effort.iterations is not None:
+        raise ParameterError(f"iterations: {effort.iterations}; expected none: all solvers have the same time")
+    versions(peers)
+
+
+def machine_and_versions(peers: Iterable[Peer]) -> str:
+    """The line about both that stands above a comparison."""
+    numbers = ", ".join(f"{name} {number}" for name, number in versions(peers).items())
+    return f"Machine: {machine()}. Versions: {numbers}."

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from muster.mission.errors import ParameterError
 from muster_studies.effort import Effort
 from muster_studies.peers.contest import PEERS, Result, Run, undisturbed
-from muster_studies.peers.machine import machine, versions
+from muster_studies.peers.machine import machine_and_versions, require_comparable
 from muster_studies.peers.routes_tables import FAMILIES
 from muster_studies.peers.timed_effort import QUICK_S, seeds_of
 from muster_studies.repetition import Repetition, one_by_one
@@ -31,18 +30,15 @@ def peers_routes_study() -> Repetition[Run, Result]:
 
 
 def _check(effort: Effort) -> None:
-    if effort.iterations is not None:
-        raise ParameterError(f"iterations: {effort.iterations}; expected none: all solvers have the same time")
-    versions(PEERS[name] for name in _PEERS)
+    require_comparable(effort, (PEERS[name] for name in _PEERS))
 
 
 def _legend(effort: Effort, found: Mapping[Run, Result]) -> tuple[str, ...]:
     peers = [PEERS[name] for name in _PEERS]
-    numbers = ", ".join(f"{name} {number}" for name, number in versions(peers).items())
     seeds = seeds_of(effort)
     quick = f" With --quick every limit is {QUICK_S:g} s." if effort.quick else ""
     return (
-        f"Machine: {machine()}. Versions: {numbers}.",
+        machine_and_versions(peers),
         "Every solver has the same processor time for each plan and one thread, and runs alone; handing over the model "
         f"comes on top.{quick} All plans are judged by muster.verify in double precision; whole numbers that solvers "
         "want are rounded up at 1e-7 of the longest way.",

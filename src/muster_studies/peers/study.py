@@ -21,7 +21,7 @@ from muster_studies.peers.contest import (
     standings_of,
     undisturbed,
 )
-from muster_studies.peers.machine import machine, versions
+from muster_studies.peers.machine import machine_and_versions, require_comparable
 from muster_studies.repetition import Repetition, one_by_one
 from muster_studies.tables import Cell, Notes, Table
 
@@ -113,9 +113,7 @@ def peers_study(limits: Limits | None = None) -> Repetition[Run, Result]:
 
 
 def _check(effort: Effort) -> None:
-    if effort.iterations is not None:
-        raise ParameterError(f"iterations: {effort.iterations}; expected none: all solvers have the same time")
-    versions(PEERS.values())
+    require_comparable(effort, PEERS.values())
 
 
 def _limits(effort: Effort) -> Limits:
@@ -136,9 +134,8 @@ def _matches(number: str, quick: bool) -> list[Match]:
 
 
 def _legend(limits: Limits, seeds: int) -> list[str]:
-    found = versions(PEERS.values())
     return [
-        f"Machine: {machine()}. Versions: {', '.join(f'{name} {number}' for name, number in found.items())}.",
+        machine_and_versions(PEERS.values()),
         f"Every solver has {limits.all:g} s of processor time for each plan (VROOM: of wall time) and one thread, and "
         "runs alone; handing over the model comes on top (milliseconds; in the table of large missions it is a "
         "column). Whole numbers that solvers want are rounded at 1e-7 of the longest way. All values are by "

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from muster.mission.errors import ParameterError
 from muster_studies.effort import Effort
 from muster_studies.peers.contest import PEERS, Result, Run, undisturbed
-from muster_studies.peers.machine import machine, versions
+from muster_studies.peers.machine import machine_and_versions, require_comparable
 from muster_studies.peers.ordered_table import Ordered
 from muster_studies.peers.study import shares
 from muster_studies.peers.teams_table import Teams
@@ -32,17 +31,14 @@ def peers_timed_study() -> Repetition[Run, Result]:
 
 
 def _check(effort: Effort) -> None:
-    if effort.iterations is not None:
-        raise ParameterError(f"iterations: {effort.iterations}; expected none: all solvers have the same time")
-    versions(PEERS.values())
+    require_comparable(effort, PEERS.values())
 
 
 def _legend(effort: Effort, found: Mapping[Run, Result]) -> tuple[str, ...]:
-    numbers = versions(PEERS.values())
     seeds = seeds_of(effort)
     quick = f" With --quick every limit is {QUICK_S:g} s." if effort.quick else ""
     return (
-        f"Machine: {machine()}. Versions: {', '.join(f'{name} {number}' for name, number in numbers.items())}.",
+        machine_and_versions(PEERS.values()),
         "Every solver has the same processor time for each plan (VROOM: wall time) and one thread, and runs alone; "
         f"handing over the model comes on top.{quick} All plans are judged by muster.verify in double precision. Whole "
         "numbers that solvers want are rounded at 1e-7 of the longest way or work: travel and work up, openings of "
