@@ -1,4 +1,4 @@
-"""`muster bench`: speed on this machine; its `peers`, `peers-timed`, `peers-routes`: quality against other solvers."""
+"""`muster bench`: speed on this machine; its `peers...`: quality against other solvers."""
 
 from __future__ import annotations
 
@@ -110,6 +110,22 @@ def peers_routes(ctx: click.Context, /, **options: Any) -> int:
     depots, one long tour. This is `muster study peers-routes`; it needs the extra `studies`.
     """
     return int(ctx.invoke(study_verb.command, name="peers-routes", **options))
+
+
+@command.command("peers-waiting")
+@_seeds_option
+@click.option("--quick", is_flag=True, help="Missions of 20 tasks and short time limits.")
+@format_option
+@_output_option
+@quiet_option
+@click.pass_context
+def peers_waiting(ctx: click.Context, /, **options: Any) -> int:
+    """Compare search with CP-SAT, which has more time, where tasks wait for each other.
+
+    The makespan of missions of 20 to 400 tasks with prerequisites. This is `muster study peers-waiting`; it needs the
+    extra `studies`.
+    """
+    return int(ctx.invoke(study_verb.command, name="peers-waiting", **options))
 
 
 def _figure(value: float) -> str:

@@ -42,6 +42,7 @@ HELP = [
     ["bench", "peers", "--help"],
     ["bench", "peers-timed", "--help"],
     ["bench", "peers-routes", "--help"],
+    ["bench", "peers-waiting", "--help"],
     ["study", "--list"],
 ]
 LACKING = {"physics": ["study", "thesis-6.1"], "plot": ["solve", "6T-2R", "--plot", "plan.png", "-q"]}

@@ -16,10 +16,12 @@ from muster.mission.plan import Plan
 from muster.verification import verify
 from muster_studies.instances.coalitions import SKILL_SETS, counted_teams
 from muster_studies.instances.orienteering import orienteering_instance
+from muster_studies.instances.precedence import precedence_mission
 from muster_studies.instances.routing import clustered_mission, routing_instance, uniform_tour
 from muster_studies.instances.solomon import solomon_instance
 from muster_studies.instances.waiting import windows_mission
 from muster_studies.peers.cp_sat import CpSat
+from muster_studies.peers.cp_sat_schedule import CpSatSchedule
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, Peer
 from muster_studies.peers.processor_time import ProcessorClock
@@ -34,11 +36,15 @@ OWN = "search"
 OWN_OTHERS = ("greedy", "auction")
 """Allocators that some tables have beside it."""
 PEERS: Mapping[str, Peer] = {peer.name: peer for peer in (Routing(), CpSat(), PyVRP(), Vroom())}
+"""Those of most missions."""
+WAITING_PEER = CpSatSchedule()
+"""That of missions whose tasks wait for each other, and of no others."""
 
 GENERATED: Mapping[str, Callable[[Sequence[str]], Mission]] = {
     "uniform": lambda words: large_mission(int(words[0]), int(words[1])),
     "solomon": lambda words: solomon_instance(words[0], int(words[1])),
     "windows": lambda words: windows_mission(int(words[0])),
+    "waiting": lambda words: precedence_mission(words[0], *map(int, words[1:])),
     "skills": lambda words: SKILL_SETS[words[0]].instance(int(words[1])),
     "counted": lambda words: counted_teams(int(words[0])),
     "orienteering": lambda words: orienteering_instance(words[0]),
@@ -156,7 +162,7 @@ def perform(run: Run) -> Result:
         stop = Stop(time_limit=run.seconds, clock=ProcessorClock())
         plan = allocator_named(run.solver).solve(problem, stop, seed=run.seed)
         return _judged(run, problem, plan, Answer(None), begin, cpu)
-    instance, peer = Instance(problem, run.match.complete), PEERS[run.solver]
+    instance, peer = Instance(problem, run.match.complete), _peer(run.solver)
     unable = peer.cannot(instance)
     if unable is not None:
         return Result(run=run, fault=unable)
@@ -223,4 +229,8 @@ def runs_of(matches: Iterable[Match], solvers: Sequence[str], seconds: float, se
 
 
 def _is_random(solver: str) -> bool:
-    return PEERS[solver].random if solver in PEERS else solver == OWN
+    return solver == OWN if solver in (OWN, *OWN_OTHERS) else _peer(solver).random
+
+
+def _peer(name: str) -> Peer:
+    return WAITING_PEER if name == WAITING_PEER.name else PEERS[name]

@@ -41,7 +41,7 @@ class Solved:
     bound: float
 
 
-def _run(solver: cp_model.CpSolver, model: cp_model.CpModel, interrupted: Callable[[], bool]) -> Any:
+def run_until(solver: cp_model.CpSolver, model: cp_model.CpModel, interrupted: Callable[[], bool]) -> Any:
     """Solve in another thread, while this one receives Ctrl-C: CP-SAT's own handler would replace Python's."""
     solver.parameters.catch_sigint_signal = False
     with ThreadPoolExecutor(1) as beside:
@@ -167,7 +167,7 @@ class Program:
         solver.parameters.num_workers = workers
         for name, setting in parameters.items():
             setattr(solver.parameters, name, setting)
-        status = _run(solver, self.model, interrupted)
+        status = run_until(solver, self.model, interrupted)
         if status == cp_model.INFEASIBLE:
             return Solved(None, math.inf)
         if status == cp_model.UNKNOWN:
@@ -204,7 +204,7 @@ class Program:
         solver = cp_model.CpSolver()
         solver.parameters.num_workers = 1
         solver.parameters.fix_variables_to_their_hinted_value = True
-        if _run(solver, self.model, lambda: False) != cp_model.OPTIMAL:
+        if run_until(solver, self.model, lambda: False) != cp_model.OPTIMAL:
             return None
         values = solver.response_proto.solution
         self.model.clear_hints()  # type: ignore[no-untyped-call]
