@@ -14,12 +14,12 @@ the schedule, which gives each robot one place, so that no cycle of waiting can 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import cycle, pairwise
+from random import Random
 
 from muster import core
 from muster.allocation import greedy
@@ -29,6 +29,8 @@ from muster.allocation.feasibility import lost_tasks
 from muster.allocation.partition import improve_in_parts, number_of_parts
 from muster.allocation.problem import Problem
 from muster.allocation.ray_cluster import joined
+from muster.allocation.route_exchange import crossed
+from muster.allocation.side_by_side import SideBySide, rank_of
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Threads, Workers
 from muster.mission.errors import ParameterError
@@ -39,7 +41,7 @@ _Search = core.Search | core.ScheduleSearch
 # the share of the run that this has; the rest is for the objective.
 _TRADING_HOT, _TRADING_COLD = 20.0, 0.1
 _TRADING_SHARE = 0.9
-_EXCHANGES = 20  # how often threads take over the best plan, in a whole run
+_PLANS = 4  # that a run begins with
 # Tasks and robots times steps, between two looks at the clock: some milliseconds.
 _BATCH = 400_000
 _BATCH_ON_SCHEDULE = 40_000
@@ -57,6 +59,7 @@ class Parameters:
     """
 
     threads: int = 0  # 0: one for each processor under a time limit, else 1
+    plans: int = 0  # that are annealed at first, of which ever fewer go on; 0: 4
     parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
     ray: str = "none"  # address of the Ray cluster that parts are worked on; none: threads of this process
     # 0: 1 for the objectives `max` and, on a schedule, `makespan`, which few tasks decide; else 5; where greedy leaves
@@ -79,6 +82,8 @@ class Parameters:
             raise ParameterError(f"threads: {self.threads}, with a Ray cluster; expected one of the two")
         if self.threads < 0:
             raise ParameterError(f"threads: {self.threads}; expected a whole number of at least 0")
+        if self.plans < 0:
+            raise ParameterError(f"plans: {self.plans}; expected a whole number of at least 0")
         if self.near < 1:
             raise ParameterError(f"near: {self.near}; expected a whole number of at least 1")
         if not 0 < self.cold <= (self.hot or self.cold) < float("inf"):
@@ -124,33 +129,41 @@ def _processors() -> int:
 
 
 def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes) -> Routes:
-    """From the greedy plan; several threads begin with other random numbers and take over the best now and then."""
+    """From the greedy plan: several plans are annealed side by side, and fewer the colder it is."""
     first = start if problem.core.is_timed else greedy.completed(problem, start)
     stop.improved(*problem.value(first))
     oversubscribed = _is_oversubscribed(problem, first)
-    threads = params.threads or (_processors() if stop.is_a_time_alone else 1)
-    searches = [_search(problem, first, seed + thread, params, oversubscribed) for thread in range(threads)]
-    cooling = _cooling(problem, params, searches[0])
-    trading = _trading(params, searches[0], cooling) if oversubscribed else cooling
-    exchanged, weight = 0, 0.0
-    known: tuple[float, float, float] | None = None
-    with ThreadPoolExecutor(threads) as pool:
+    with _side_by_side(problem, stop, seed, params, first, oversubscribed) as searches:
+        best, rank = searches.best, None
+        cooling = _cooling(problem, params, best)
+        trading = _trading(params, best, cooling) if oversubscribed else cooling
         for steps in stop.batches(_steps_at_once(problem)):
-            leaves_out = _best(searches).best_weight_left_out > 0
-            temperature = (trading if leaves_out else cooling).temperature(stop.share)
-            annealing = [pool.submit(search.anneal, steps, temperature, temperature) for search in searches]
-            for one in annealing:
-                one.result()
-            best = _best(searches)
-            if _rank(best) != known:
-                if known is None or best.best_weight_left_out != known[0]:
-                    weight = _weight(problem, best)
-                known = _rank(best)
-                stop.improved(weight, best.best_objective)
-            if stop.share * _EXCHANGES >= exchanged + 1:
-                exchanged += 1
-                exchange(searches, best)
-    return _best(searches).best
+            now = trading if best.best_weight_left_out > 0 else cooling
+            searches.anneal(steps, now.temperature(stop.share))
+            best = searches.best
+            if rank_of(best) != rank:
+                rank = rank_of(best)
+                stop.improved(_weight(problem, best), best.best_objective)
+            searches.go_on(stop.share)
+        return best.best
+
+
+def _side_by_side(
+    problem: Problem, stop: Stop, seed: int, params: Parameters, first: Routes, oversubscribed: bool
+) -> SideBySide[_Search]:
+    threads = params.threads or (_processors() if stop.is_a_time_alone else 1)
+    random = Random(seed)
+
+    def cross(routes: Routes, other: Routes) -> Routes:
+        return routes if problem.core.is_timed else crossed(problem, routes, other, random)
+
+    return SideBySide(
+        lambda k: _search(problem, first, seed + (k << 32), params, oversubscribed),
+        plans=params.plans or _PLANS,
+        busy=threads if stop.is_a_time_alone else 1,
+        threads=threads,
+        cross=cross,
+    )
 
 
 class Variations:
@@ -178,13 +191,6 @@ class Variations:
         search.go_on_from(routes)
         search.anneal(1, self._temperature, self._temperature)
         return search.routes
-
-
-def exchange(searches: Sequence[_Search], best: _Search) -> None:
-    """All but the best go on from its plan."""
-    for search in searches:
-        if search is not best:
-            search.go_on_from(best.best)
 
 
 def _steps_at_once(problem: Problem) -> int:
@@ -249,14 +255,6 @@ def _search(problem: Problem, first: Routes, seed: int, params: Parameters, over
         greatest_share=0.8 if problem.objective in ("max", "makespan") else 0.5,
         near=params.near,
     )
-
-
-def _best(searches: Sequence[_Search]) -> _Search:
-    return min(searches, key=_rank)
-
-
-def _rank(search: _Search) -> tuple[float, float, float]:
-    return search.best_weight_left_out, search.best_objective, search.best_tie
 
 
 def _weight(problem: Problem, search: _Search) -> float:
