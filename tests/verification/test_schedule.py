@@ -56,6 +56,18 @@ def test_a_robot_leaves_when_it_is_available():
     assert verdict.total_cost == 6
 
 
+def test_robots_that_wait_for_nobody_have_the_times_that_they_have_beside_one_that_waits():
+    windows = {"a": (7, ((5, 6), (20, 30))), "b": (9, ((0, 1),)), "c": (4, ())}
+    own = [Task(id=k, position=(x, 0), duration_s=3, window_s=window) for k, (x, window) in windows.items()]
+    waiting = [Task(id="first", position=(2, 0)), Task(id="second", position=(3, 0), prerequisites=("first",))]
+    robots = (Robot(id="r", position=(0, 0), available_from_s=2, available_until_s=30), Robot(id="s", position=(0, 0)))
+    alone = judge(Mission(robots=robots, tasks=tuple(own)), r=["a", "b"], s=["c"])
+    beside = judge(Mission(robots=robots, tasks=(*own, *waiting)), r=["a", "b"], s=["c", "first", "second"])
+    assert times(alone) == {"a": (9, 20, 23), "b": (25, 25, 28), "c": (4, 4, 7)}
+    assert times(beside).items() >= times(alone).items()
+    assert [v.kind for v in alone.violations] == [v.kind for v in beside.violations] == ["window"]
+
+
 def test_back_after_waiting():
     mission = line({"a": (2, 1, ["b"]), "b": (4, 1, [])}, r={"return_to_start": True, "speed_mps": 0.5}, s={})
     verdict = judge(mission, r=["a"], s=["b"])

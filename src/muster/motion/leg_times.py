@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -66,7 +67,7 @@ class LegTimes:
         """By the mission's own rules and travel."""
         return cls.of(robot, mission.rules, over_map=mission.travel_rule == "map")
 
-    @property
+    @cached_property
     def is_constant(self) -> bool:
         """Whether the time is proportional to the length."""
         unlimited = self.acceleration_mps2 == math.inf and self.climb_mps == math.inf
@@ -94,6 +95,10 @@ class LegTimes:
         pieces = np.where(turned > _STRAIGHT, _PIECES if self.turn_s > 0 else _PIECES_SLIDING, 1)
         seconds = pieces * self._ramped(metres / pieces, rise_m / pieces)
         return np.where(metres > 0, seconds + self.turn_s * (1 + turned / _RIGHT_ANGLE), metres)
+
+    def leg_seconds(self, metres: float, rise_m: float, apart_m: float) -> float:
+        """The time of one leg, as `seconds` has it."""
+        return metres / self.speed_mps if self.is_constant else float(self.seconds(metres, rise_m, apart_m))
 
     def rest_seconds(self, metres: float, rise_m: float = 0.0, apart_m: float = math.inf) -> float:
         """The time of the rest of a leg for a robot under way: it need not turn nor gather speed any more."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from muster.mission.model import Mission, Point, Task
 from muster.motion.grid import Floats
+from muster.motion.leg_times import LegTimes
 from muster.verification.measure import MeasuredRoute, work_seconds
 from muster.verification.travel import Place, Travel, place_at_end, place_of_start, place_of_task
 
@@ -19,7 +20,8 @@ class Insertions:
     """
 
     def __init__(self, mission: Mission, travel: Travel, route: MeasuredRoute) -> None:
-        self._mission, self._travel, self._route = mission, travel, route
+        self._travel, self._route = travel, route
+        self._times = LegTimes.in_mission(route.robot, mission)
         self._in_time = mission.rules.usage == "time"
         self._pace = 1 / route.robot.speed_mps if self._in_time else 1.0  # usage a metre
         end = place_at_end(route.robot, mission.rules)
@@ -48,7 +50,7 @@ class Insertions:
         metres = self._travel.work_metres(self._route.robot, task)
         if metres is None or not self._passable:
             return math.inf
-        work = work_seconds(self._mission, self._travel, self._route.robot, task) if self._in_time else metres
+        work = work_seconds(self._times, self._travel, self._route.robot, task) if self._in_time else metres
         used = self._route.usage + work
         margin = 2 * self._travel.tolerance * capacity / self._pace
         return used + self._least_metres(task, first, (capacity - used) / self._pace, margin) * self._pace

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from muster.mission.errors import ParameterError
@@ -24,8 +24,8 @@ from muster.verification.statements import false_statements
 from muster.verification.travel import Travel
 from muster.verification.verdict import RouteFigures, Verdict, Violation, Visit
 
-TimesOf = Mapping[tuple[str, str], Times]
-"""By robot and task."""
+TimesOf = Mapping[str, Sequence[Times]]
+"""By robot those at the tasks of its route, in order."""
 
 
 @collector_paused()
@@ -93,7 +93,7 @@ def _verdict(case: Case, objective: str, times: TimesOf | None) -> Verdict:
     for step in (step for route in case.routes for step in route.steps):
         done[step.task.id] = step.task
         arrivals[step.task.id] = max(step.arrival_usage, arrivals.get(step.task.id, 0.0))
-    ends = {} if times is None else {task: time.ends for (_, task), time in times.items()}
+    ends = {} if times is None else dict(_ends(case.routes, times))
     late = lateness((done[name].priority, end, done[name].due_s) for name, end in ends.items())
     routes = tuple(_figures(route, case.capacity_of(route.robot), times) for route in case.routes)
     back = [route.back_s for route in routes if route.back_s is not None]
@@ -117,8 +117,14 @@ def _verdict(case: Case, objective: str, times: TimesOf | None) -> Verdict:
     )
 
 
+def _ends(routes: Sequence[MeasuredRoute], times: TimesOf) -> Iterator[tuple[str, float]]:
+    for route in routes:
+        for step, time in zip(route.steps, times[route.robot.id], strict=True):
+            yield step.task.id, time.ends
+
+
 def _figures(route: MeasuredRoute, capacity: float | None, times: TimesOf | None) -> RouteFigures:
-    visits = tuple(_visits(route, times)) if times is not None else ()
+    visits = tuple(_visits(route, times[route.robot.id])) if times is not None else ()
     return RouteFigures(
         robot=route.robot.id,
         tasks=tuple(step.task.id for step in route.steps),
@@ -132,7 +138,6 @@ def _figures(route: MeasuredRoute, capacity: float | None, times: TimesOf | None
     )
 
 
-def _visits(route: MeasuredRoute, times: TimesOf) -> Iterator[Visit]:
-    for step in route.steps:
-        time = times[route.robot.id, step.task.id]
+def _visits(route: MeasuredRoute, times: Sequence[Times]) -> Iterator[Visit]:
+    for step, time in zip(route.steps, times, strict=True):
         yield Visit(step.task.id, time.arrives, time.starts, time.ends, step.arrival_usage)

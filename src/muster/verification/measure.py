@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.actions import TaskMotion
@@ -12,8 +13,7 @@ from muster.motion.leg_times import LegTimes
 from muster.verification.travel import Place, Travel, doing_at, place_at_end, place_of_start, place_of_task, rise_m
 
 
-@dataclass(frozen=True)
-class Leg:
+class Leg(NamedTuple):
     """The way to a place. A leg without a way counts nothing, so that the rest of the route can still be judged."""
 
     exists: bool
@@ -21,8 +21,7 @@ class Leg:
     seconds: float
 
 
-@dataclass(frozen=True)
-class Step:
+class Step(NamedTuple):
     """One task of a route: the way there, the usage on arrival, and how long the work takes.
 
     It is passable if there is a way along the way points of its action; without one the work's metres count nothing.
@@ -55,8 +54,9 @@ def all_measured(mission: Mission, travel: Travel, tasks_of: Mapping[str, Sequen
     """Measure the routes of all robots, in mission order. A task takes as long as for the slowest of its team."""
     slowest: dict[str, float] = {}
     for robot in mission.robots:
+        times = LegTimes.in_mission(robot, mission)
         for task in tasks_of.get(robot.id, ()):
-            seconds = work_seconds(mission, travel, robot, task)
+            seconds = work_seconds(times, travel, robot, task)
             slowest[task.id] = max(seconds, slowest.get(task.id, 0.0))
     return tuple(measured(mission, travel, robot, tasks_of.get(robot.id, ()), slowest) for robot in mission.robots)
 
@@ -90,11 +90,11 @@ def leg_between(travel: Travel, robot: Robot, start: Place, end: Place, times: L
     metres = travel.metres(robot, start, end)
     if metres is None:
         return Leg(exists=False, usage=0.0, seconds=0.0)
-    seconds = float(times.seconds(metres, rise_m(start, end), math.dist(start.exit, end.entry)))
+    seconds = times.leg_seconds(metres, rise_m(start, end), math.dist(start.exit, end.entry))
     return Leg(exists=True, usage=seconds if in_time else metres, seconds=seconds)
 
 
-def work_seconds(mission: Mission, travel: Travel, robot: Robot, task: Task) -> float:
+def work_seconds(times: LegTimes, travel: Travel, robot: Robot, task: Task) -> float:
     """Return how long the robot works on the task: duration by efficiency where one is given.
 
     Else the time of its motion profile along the way points of the task's action, if it has any; else cost by speed.
@@ -104,7 +104,7 @@ def work_seconds(mission: Mission, travel: Travel, robot: Robot, task: Task) -> 
         duration = task.action.duration_s
     if duration is not None:
         return duration / robot.efficiency
-    times, metres = LegTimes.in_mission(robot, mission), travel.work_metres(robot, task) or 0.0
+    metres = travel.work_metres(robot, task) or 0.0
     doing = None if times.is_constant else doing_at(robot, task)
     if not isinstance(doing, TaskMotion) or metres == 0.0:
         return metres / robot.speed_mps

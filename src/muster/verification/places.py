@@ -10,6 +10,7 @@ from itertools import combinations, islice, product
 
 from muster.mission.model import Robot, Task
 from muster.mission.task_relations import tied_by
+from muster.motion.leg_times import LegTimes
 from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute, measured, work_seconds
 from muster.verification.rules import rules_that_hold
@@ -181,10 +182,12 @@ class Places:
     def _measured(self, changed: dict[str, list[Task]]) -> tuple[MeasuredRoute, ...]:
         """The routes of all robots; a task takes as long as for the slowest of its team."""
         mission, travel, work = self.case.mission, self.case.travel, dict(self._work)
-        for robot, tasks in changed.items():
+        for name, tasks in changed.items():
+            robot = self._route[name].robot
+            times = LegTimes.in_mission(robot, mission)
             for task in tasks:
                 if task.id not in self._work:
-                    seconds = work_seconds(mission, travel, self._route[robot].robot, task)
+                    seconds = work_seconds(times, travel, robot, task)
                     work[task.id] = max(seconds, work.get(task.id, 0.0))
         return tuple(
             measured(mission, travel, route.robot, changed[route.robot.id], work)

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from itertools import groupby, pairwise
+from typing import NamedTuple
 
 from muster.mission.plan import tie_order
 from muster.mission.task_relations import tied_by
@@ -24,8 +25,7 @@ ROUNDING = 1e-9
 """By how much a time may be above a limit, relative, or in seconds where it is below one."""
 
 
-@dataclass(frozen=True)
-class Times:
+class Times(NamedTuple):
     """When the robot is at a task, seconds."""
 
     arrives: float
@@ -42,9 +42,9 @@ class Deadlock:
 
 @dataclass(frozen=True)
 class Schedule:
-    """The times of every robot at every task, by their ids; and the limits that these break."""
+    """By robot the times at the tasks of its route, in order; and the limits that these break."""
 
-    times: Mapping[tuple[str, str], Times]
+    times: Mapping[str, Sequence[Times]]
     broken: tuple[Violation, ...]
 
 
@@ -91,13 +91,18 @@ class _Graph:
     def __init__(self, routes: Sequence[MeasuredRoute], ignored: Sequence[str], margin: float) -> None:
         self.routes, self.ignored, self.margin = routes, ignored, margin
         self.task = {step.task.id: step.task for route in routes for step in route.steps}
-        self.windows = {name: self._windows(task) for name, task in self.task.items()}
+        self.windows = {name: self._windows(task) for name, task in self.task.items() if task.window_s}
         self.work = {step.task.id: step.work_s for route in routes for step in route.steps}
         self.node_of = self._units()
-        self.nodes = {name: _Node([]) for name in self.node_of.values()}
+        self.begin = dict.fromkeys(self.node_of.values(), 0.0)
+        self.nodes: dict[str, _Node] = {}
+        self.raised_by: dict[str, _Bound] = {}  # what has raised the begin of a node last, where no window has
+
+    def _link_nodes(self) -> None:
+        self.nodes = {name: _Node([]) for name in self.begin}
         for name, task in self.task.items():
             self.nodes[self.node_of[name]].tasks.append(task)
-        for route in routes:
+        for route in self.routes:
             before = None
             for step in route.steps:
                 own = self.nodes[self.node_of[step.task.id]]
@@ -105,8 +110,6 @@ class _Graph:
                 before = step.task.id
         for name, task in self.task.items():
             self.nodes[self.node_of[name]].awaited.extend(self._lags(task))
-        self.begin = dict.fromkeys(self.nodes, 0.0)
-        self.raised_by: dict[str, _Bound] = {}  # what has raised the begin of a node last, where no window has
 
     def _limit(self, limit: float) -> float:
         return limit - self.margin * max(1.0, abs(limit)) if math.isfinite(limit) else limit
@@ -129,7 +132,7 @@ class _Graph:
         return {task.id: tasks[k].id for task, k in zip(tasks, tied_by("starts_with", tasks), strict=True)}
 
     def _lags(self, task: Task) -> list[tuple[str, float, float]]:
-        if "prerequisite" in self.ignored:
+        if not task.prerequisites or "prerequisite" in self.ignored:
             return []
         lags = ((name, task.lag(name)) for name in task.prerequisites if name in self.task)
         return [
@@ -137,6 +140,10 @@ class _Graph:
         ]
 
     def solve(self) -> Schedule | Deadlock:
+        if self._is_each_for_itself():
+            self._follow_routes()
+            return Schedule(self._times(), tuple(self._broken()))
+        self._link_nodes()
         order = self._order()
         if isinstance(order, Deadlock):
             return order
@@ -155,6 +162,20 @@ class _Graph:
             if passes > lagged + 1:
                 return Deadlock(self._too_long(delayed))
         return Schedule(self._times(), tuple(self._broken()))
+
+    def _is_each_for_itself(self) -> bool:
+        """Whether no robot waits for another: then there is no need for a graph."""
+        if len(self.task) < sum(len(route.steps) for route in self.routes):
+            return False  # a team
+        return len(self.begin) == len(self.task) and not any(map(self._lags, self.task.values()))
+
+    def _follow_routes(self) -> None:
+        for route in self.routes:
+            time = route.robot.available_from_s
+            for step in route.steps:
+                begin = self._open([step.task], time + step.leg.seconds)
+                self.begin[step.task.id] = begin
+                time = begin + step.work_s
 
     def _order(self) -> list[str] | Deadlock:
         graph = {
@@ -187,7 +208,7 @@ class _Graph:
             if bound > time:
                 time = bound
                 self._raise(name, why)
-        later = self._open(self.nodes[name], time)
+        later = self._open(self.nodes[name].tasks, time)
         if later > time:
             self._raise(name, None)
         return later
@@ -198,17 +219,19 @@ class _Graph:
         else:
             self.raised_by[name] = why
 
-    def _open(self, node: _Node, time: float) -> float:
+    def _open(self, tasks: Sequence[Task], time: float) -> float:
         """The first time from `time` on that lies in a window of each task; `time` where none is left."""
-        for _ in range(1 + sum(len(task.window_s) for task in node.tasks)):
-            later = max(self._next(task, time) for task in node.tasks)
+        if not self.windows:
+            return time
+        for _ in range(1 + sum(len(task.window_s) for task in tasks)):
+            later = max(self._next(task, time) for task in tasks)
             if later == time or math.isinf(later):
                 return time
             time = later
         return time
 
     def _next(self, task: Task, time: float) -> float:
-        if not self.windows[task.id]:
+        if not self.windows.get(task.id):
             return time
         left = [first for first, last in self.windows[task.id] if not is_after(time, last)]
         return max(time, min(left)) if left else math.inf
@@ -267,26 +290,28 @@ class _Graph:
             return f"{bound.robot} comes to {self._task_after(bound.robot, bound.before)} {_after(bound)}"
         return f"{self._waiting(name, bound.before)} begins at least {_after(bound)}"
 
-    def _times(self) -> dict[tuple[str, str], Times]:
-        times = {}
-        for route in self.routes:
-            leaves = route.robot.available_from_s
-            for step in route.steps:
-                begin = self.begin[self.node_of[step.task.id]]
-                times[route.robot.id, step.task.id] = Times(leaves + step.leg.seconds, begin, begin + step.work_s)
-                leaves = begin + step.work_s
-        return times
+    def _times(self) -> dict[str, list[Times]]:
+        return {route.robot.id: list(self._times_of(route)) for route in self.routes}
+
+    def _times_of(self, route: MeasuredRoute) -> Iterator[Times]:
+        leaves = route.robot.available_from_s
+        for step in route.steps:
+            begin = self.begin[self.node_of[step.task.id]]
+            end = begin + step.work_s
+            yield Times(leaves + step.leg.seconds, begin, end)
+            leaves = end
 
     def _broken(self) -> list[Violation]:
         """The windows, deadlines and shifts that the earliest begins break: then every schedule breaks one."""
         found = []
         for name, task in self.task.items():
-            begin = self.begin[self.node_of[name]]
-            if self.windows[name] and not _in_windows(self.windows[name], begin):
+            begin, windows = self.begin[self.node_of[name]], self.windows.get(name)
+            if windows and not _in_windows(windows, begin):
                 found.append(Violation("window", None, name, _window_text(task, begin)))
+            if task.deadline_s is None or "deadline" in self.ignored:
+                continue
             end = begin + self.work[name]
-            deadline = math.inf if task.deadline_s is None else self._limit(task.deadline_s)
-            if "deadline" not in self.ignored and is_after(end, deadline):
+            if is_after(end, self._limit(task.deadline_s)):
                 detail = f"ends at {end:,.10g} s at the earliest, its deadline is {task.deadline_s:,.10g} s"
                 found.append(Violation("deadline", None, name, detail))
         for route in self.routes:

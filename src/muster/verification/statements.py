@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from muster.mission.model import OBJECTIVES
-from muster.mission.plan import Plan
+from muster.mission.plan import STOP_TIMES, Plan
 from muster.verification.agreement import ABSOLUTE_TOLERANCE, RELATIVE_TOLERANCE, agrees
 from muster.verification.verdict import Verdict, Violation
 
@@ -65,25 +65,25 @@ def _usages(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violatio
 
 def _stops(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
     """Find stops whose times are not those of the earliest schedule."""
-    visits = {(route.robot, visit.task): visit for route in verdict.routes for visit in route.visits}
+    visits = {route.robot: {visit.task: visit for visit in route.visits} for route in verdict.routes}
     for route in plan.routes:
         named = tuple(stop.task for stop in route.stops)
         if named and named != route.tasks:
             detail = f"the stops are those of {', '.join(named)}, not of the route's tasks"
             yield Violation("stop", route.robot, None, detail)
             continue
+        own = visits.get(route.robot, {})
         for stop in route.stops:
-            visit = visits.get((route.robot, stop.task))
+            visit = own.get(stop.task)
             if visit is None:
                 continue
-            times = (
-                ("arrive_s", stop.arrive_s, visit.arrives_s),
-                ("begin_s", stop.begin_s, visit.starts_s),
-                ("end_s", stop.end_s, visit.ends_s),
-            )
-            for name, stated, found in times:
-                if not agrees(stated, found, tolerance, RELATIVE_TOLERANCE):
-                    yield Violation("stop", route.robot, stop.task, f"{name}: the plan says {stated}, it is {found}")
+            stated = (stop.arrive_s, stop.begin_s, stop.end_s)
+            found = (visit.arrives_s, visit.starts_s, visit.ends_s)
+            if stated == found:  # as most are
+                continue
+            for name, says, is_at in zip(STOP_TIMES, stated, found, strict=True):
+                if not agrees(says, is_at, tolerance, RELATIVE_TOLERANCE):
+                    yield Violation("stop", route.robot, stop.task, f"{name}: the plan says {says}, it is {is_at}")
 
 
 def _history(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:

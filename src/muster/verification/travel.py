@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from muster.mission.model import Mission, Point, Robot, Rules, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
 from muster.verification.map_paths import MapPaths
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(NamedTuple):
     """Where a leg ends or begins: its id in travel tables; where one arrives and leaves, metres in the map frame."""
 
     id: str
@@ -24,10 +23,11 @@ def place_of_task(task: Task, robot: Robot | None = None) -> Place:
 
     Of one that the robot cannot do it is the task's position.
     """
-    doing = None if robot is None else doing_at(robot, task)
-    assert robot is not None or not _has_geometry(task)
-    if isinstance(doing, TaskMotion):
-        return Place(task.id, entry=doing.entry, exit=doing.exit)
+    if _has_geometry(task):
+        assert robot is not None
+        doing = plan(task, robot)
+        if isinstance(doing, TaskMotion):
+            return Place(task.id, entry=doing.entry, exit=doing.exit)
     return Place(task.id, entry=task.entry or task.position, exit=task.exit or task.position)
 
 
@@ -110,8 +110,7 @@ class Travel:
         """
         doing = doing_at(robot, task)
         if doing is None:
-            place = place_of_task(task)
-            if self._paths is None or place.entry == place.exit:
+            if self._paths is None or (place := place_of_task(task)).entry == place.exit:
                 return task.actuation_cost
             return None if self._paths.metres(robot, place.entry, place.exit) is None else task.actuation_cost
         if isinstance(doing, Impossible):
