@@ -12,6 +12,8 @@ from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_of
 from muster.allocation.stop import Stop
+from muster.cli.main import run
+from muster.mission.clock import SystemClock, VirtualClock
 from muster.mission.model import Mission, Robot, Task
 from muster.planning.budget import Budget, Pace
 from muster.planning.request import Request
@@ -103,6 +105,27 @@ def test_an_exact_proof_shares_the_time_limit_with_the_algorithm():
     budget = Budget(100.0, Stop(), 0, proof_follows=True)
     assert budget.algorithm_s == pytest.approx(50.0, rel=0.01)
     assert budget.proof_s == pytest.approx(100.0, rel=0.01)
+
+
+def test_time_that_has_gone_by_before_counts():
+    stop = Stop(time_limit=5.0, clock=VirtualClock(start_s=100.0), began_s=97.0)
+    assert (stop.elapsed_s, stop.time_left_s, stop.due()) == (3.0, 2.0, False)
+    assert Stop(time_limit=5.0, clock=VirtualClock(start_s=100.0), began_s=95.0).due()
+
+
+def test_the_time_limit_counts_from_when_the_command_began(tmp_path, capsys):
+    began_s, plan = SystemClock().now() - 100.0, str(tmp_path / "plan.json")
+    assert run(["solve", "6T-2R", "-a", "auction", "--time-limit", "50", "-o", plan], began_s) == 0
+    assert "time limit: 50 s, all took 1" in capsys.readouterr().err
+    explain = ["explain", "6T-2R", plan, "--task", "0", "--format", "json", "--time-limit", "50"]
+    for began, cut_short in ((began_s, "true"), (None, "false")):
+        assert run(explain, began) == 0
+        assert f'"cut_short": {cut_short}' in capsys.readouterr().out
+
+
+def test_what_keeps_its_time_limit_says_nothing_of_it(capsys):
+    assert run(["solve", "6T-2R", "-a", "greedy", "--time-limit", "1000"]) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_a_plan_without_time_is_judged_and_cut_short():

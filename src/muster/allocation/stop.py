@@ -59,6 +59,8 @@ class Stop:
         called when the best plan improves, and every now and then between.
     whole
         of which this is a part: it ends with it.
+    began_s
+        by the clock, when the time began that the limit and `elapsed_s` are of; None: now.
     """
 
     _REPORT_EVERY_S = 0.1
@@ -71,6 +73,7 @@ class Stop:
         clock: Clock | None = None,
         on_progress: Callable[[Progress], None] | None = None,
         whole: Stop | None = None,
+        began_s: float | None = None,
     ) -> None:
         if iterations is not None and not (isinstance(iterations, int) and iterations >= 0):
             raise ParameterError(f"iterations: {iterations}; expected a whole number of at least 0")
@@ -80,7 +83,7 @@ class Stop:
         self._time_limit = time_limit
         self._clock = clock or SystemClock()
         self._on_progress = on_progress
-        self._begin = self._clock.now()
+        self._begin = self._clock.now() if began_s is None else began_s
         self._reported = self._begin
         self._interrupted = self._hurried = False
         self.cut_short = False

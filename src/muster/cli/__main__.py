@@ -21,6 +21,9 @@ def main() -> None:
     sys.excepthook = _end_or_print
     sys.unraisablehook = _end_or_go_on
     import signal
+    from time import perf_counter  # as `SystemClock` has it
+
+    began_s = perf_counter()
 
     interrupts = signal.getsignal(signal.SIGINT)
     ends = _end if interrupts is signal.default_int_handler else interrupts  # a shell may ask programs to ignore it
@@ -28,7 +31,7 @@ def main() -> None:
     from muster.cli.main import run
 
     signal.signal(signal.SIGINT, interrupts)
-    code = run(sys.argv[1:])
+    code = run(sys.argv[1:], began_s)
     signal.signal(signal.SIGINT, ends)
     sys.exit(code)
 

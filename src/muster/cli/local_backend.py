@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from muster.cli.whole_work import time_left_s
 from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -43,7 +44,7 @@ class LocalBackend:
     def check(self, mission: Mission, ignore: Sequence[str], time_limit: float) -> Possible:
         from muster.planning.explaining import possible
 
-        return possible(mission, ignored=ignore, time_limit=time_limit)
+        return possible(mission, ignored=ignore, time_limit=time_left_s(time_limit))
 
     def plan(self, request: Request, on_progress: Callable[[Progress], None] | None, interrupt: Stop) -> Solution:
         from muster.planning.solving import answer
@@ -62,7 +63,7 @@ class LocalBackend:
     ) -> Explanation:
         from muster.planning.explaining.tables import explained
 
-        return explained(mission, plan, task, ignore, file, time_limit)
+        return explained(mission, plan, task, ignore, file, time_left_s(time_limit))
 
     def export(
         self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str

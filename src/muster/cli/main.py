@@ -149,13 +149,13 @@ def muster() -> None:
     """Plan missions of robot teams."""
 
 
-def run(arguments: list[str]) -> int:
-    """Run the command; returns the exit code."""
+def run(arguments: list[str], began_s: float | None = None) -> int:
+    """Run the command, which began at a time of `SystemClock`, or begins now; returns the exit code."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a character that the terminal lacks is no reason to stop
             stream.reconfigure(errors="backslashreplace")
     try:
-        result = muster.main(arguments, prog_name="muster", standalone_mode=False)
+        result = muster.main(arguments, prog_name="muster", standalone_mode=False, obj=began_s)
         sys.stdout.flush()
     except click.exceptions.Exit as stop:
         return stop.exit_code

@@ -33,6 +33,7 @@ from muster.cli.outputs import require_drawable, require_folder, require_writabl
 from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
+from muster.cli.whole_work import whole_work
 from muster.client.server_plan import ServerPlan
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -303,10 +304,9 @@ def _plan(backend: Backend, request: Request, *, quiet: bool) -> Plan:
     KeyboardInterrupt
         if Ctrl-C ended planning: nothing is carried out then.
     """
-    from muster.allocation.stop import Stop
     from muster.cli.progress import progress_bar
 
-    interrupt = Stop()
+    interrupt = whole_work()
     with ctrl_c_interrupts(interrupt), progress_bar(not quiet, request.mission) as on_progress:
         plan = backend.plan(request, on_progress, interrupt).plan
     if interrupt.interrupted:

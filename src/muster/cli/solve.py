@@ -20,6 +20,7 @@ from muster.cli.options import (
 from muster.cli.outputs import require_csv, require_drawable, require_writable
 from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.results import show_plan, write_book
+from muster.cli.whole_work import whole_work
 from muster.mission.errors import ParameterError
 from muster.planning.options import PlanningOptions
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from muster.planning.solving import Solution
 
 _FILE = click.Path(path_type=Path)
+_OVERRUN, _OVERRUN_S = 0.1, 0.2  # of a time limit, and seconds, about which nothing is said
 
 
 @click.command()
@@ -61,10 +63,9 @@ def command(
 
     Every plan is judged by `verify` before it is shown. Ctrl-C ends the search; the best plan so far is kept.
     """
-    from muster.allocation.stop import Stop
     from muster.cli.progress import progress_bar
 
-    interrupt = Stop()  # its clock is that of the time limit
+    interrupt = whole_work()  # its clock is that of the time limit
     require_writable(output, (book, plot, gantt), mission.files, (start, fixed))
     require_csv(book)
     require_drawable(plot, gantt)
@@ -87,6 +88,8 @@ def command(
         return INTERRUPTED
     if solution.cut_short and not quiet:
         click.echo("time limit: planning was cut short; it did not come to all tasks that are left out", err=True)
+    if options.time_limit is not None and not quiet:
+        _say_overrun(interrupt.elapsed_s, options.time_limit, solution.plan)
     _say_why(solution, quiet=quiet, verbose=verbose)
     return INCOMPLETE if require_complete and not solution.plan.complete else DONE
 
@@ -97,6 +100,16 @@ def _warn_of_unseen(mission: Mission, plan: Plan) -> None:
 
     for one in unseen_in_plan(mission, plan):
         click.echo(f"warning: task {one.task}: spacing_m {one.spacing_m:g}: {one.detail}", err=True)
+
+
+def _say_overrun(took_s: float, limit_s: float, plan: Plan) -> None:
+    """Print on standard error what a time limit was too short for."""
+    if took_s > limit_s * (1 + _OVERRUN) + _OVERRUN_S:
+        beside_s = took_s - (plan.elapsed_s or 0.0)
+        click.echo(
+            f"time limit: {limit_s:g} s, all took {took_s:.1f} s: reading, judging and writing {beside_s:.1f} s of it",
+            err=True,
+        )
 
 
 def _say_why(solution: Solution, *, quiet: bool, verbose: bool) -> None:

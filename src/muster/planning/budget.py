@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from muster.allocation.stop import Stop
 
-_JUDGED_S = 8e-5  # a task, to put the plan together, judge and write it
+_JUDGED_S = 6e-5  # a task, to put the plan together, judge and write it
 _LEAST_SHARE = 0.1  # of the time limit, which each part has at least
 _BOUND_SHARE = 0.2  # of what is left, for a quick bound
 _SEARCHED_SHARE = 0.5  # of what is left, where an exact proof follows
@@ -39,7 +39,7 @@ class Budget:
     Parameters
     ----------
     limit_s
-        of all the work, from when `whole` was made.
+        of all the work, from when `whole` began.
     whole
         ends all the work when it is interrupted; its clock counts.
     tasks

@@ -59,7 +59,7 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
         called when the best plan improves, and every now and then between.
     interrupt
         its `interrupt()`, from another thread or a signal, ends planning with the best plan so far. The time limit
-        counts from when it was made.
+        counts from when it began.
 
     Raises
     ------
