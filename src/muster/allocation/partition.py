@@ -8,10 +8,12 @@ gets worse; with the objectives `max` and `makespan` a part sees only its own gr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from muster import core
 from muster.allocation import greedy
@@ -20,6 +22,7 @@ from muster.allocation.problem import Floats, Problem
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Improve, Job, Limits, Offer, Workers
 
+Ints = NDArray[np.intp]
 _MOST_WHOLE = 15_000  # tasks up to which a team is searched as a whole
 _IN_A_PART = 1_500  # tasks
 _DIVISIONS = 4
@@ -45,8 +48,11 @@ def improve_in_parts(
     """Divide, improve every part, and divide otherwise, until it is time to stop."""
     routes = [list(route) for route in start or [[]] * len(problem.robots)]
     for division in range(_DIVISIONS):
+        began_s = stop.elapsed_s
         pieces = list(divide(problem, routes, parts, division))
-        limits = _limits(stop, _DIVISIONS - division, len(pieces), workers.count)
+        further = _DIVISIONS - division - 1
+        kept_s = further * (stop.elapsed_s - began_s)  # for dividing again
+        limits = _limits(stop, further + 1, len(pieces), workers.count, kept_s)
         team = _Team(problem, routes)
         jobs = [_job(problem, piece, routes, seed + k, limits, improve) for k, piece in enumerate(pieces)]
         for piece, job, made in zip(pieces, jobs, workers.map(jobs, stop), strict=True):
@@ -88,66 +94,74 @@ def _cost(usages: Floats, others: float) -> float:
     return float(usages.sum()) + max(others, float(usages.max()))
 
 
-def _limits(stop: Stop, divisions: int, parts: int, workers: int) -> Limits:
+def _limits(stop: Stop, divisions: int, parts: int, workers: int, kept_s: float) -> Limits:
     left, iterations = stop.time_left_s, stop.iterations_left
     if left is None and iterations is None:
         return Limits(_SECONDS, None)
     turns = divisions * math.ceil(parts / workers)
     return Limits(
-        None if left is None else left / turns,
+        None if left is None else max(0.0, left - kept_s) / turns,
         None if iterations is None else max(1, iterations // (divisions * parts)),
     )
 
 
 @dataclass(frozen=True)
-class _Atom:
-    """What is not to be divided: a robot with its route, tasks that wait for each other, and what these join."""
+class _Atoms:
+    """What is not to be divided: a robot with its route, tasks that wait for each other, and what these join.
 
-    robots: list[int]
-    tasks: list[int]
-    place: Floats
+    Of each its robots, its tasks and where in the plane it is, (k, 2).
+    """
+
+    robots: list[list[int]]
+    tasks: list[list[int]]
+    places: Floats
+
+    @cached_property
+    def robot_counts(self) -> Ints:
+        return np.array(list(map(len, self.robots)), dtype=np.intp)
+
+    @cached_property
+    def task_counts(self) -> Ints:
+        return np.array(list(map(len, self.tasks)), dtype=np.intp)
+
+    def part(self, own: Ints) -> Part:
+        """Some of the atoms as a part."""
+        robots, tasks = (sorted(x for k in own.tolist() for x in items[k]) for items in (self.robots, self.tasks))
+        return Part(robots, tasks)
 
 
 def divide(problem: Problem, routes: Routes, parts: int, division: int) -> Iterator[Part]:
     """Divide by straight lines, each across the longer side of what it divides, turned a bit for every division."""
     turn = math.pi * division / (2 * _DIVISIONS)
     turned = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    atoms = _atoms(problem, routes)
+    places = atoms.places @ turned
 
-    def cut(atoms: Sequence[_Atom], count: int) -> Iterator[Part]:
-        if count == 1 or len(atoms) < 2:
-            robots, tasks = (sorted(x for atom in atoms for x in items(atom)) for items in (_robots, _tasks))
-            yield Part(robots, tasks)
+    def cut(own: Ints, count: int) -> Iterator[Part]:
+        if count == 1 or len(own) < 2:
+            yield atoms.part(own)
             return
-        places = np.array([atom.place[:2] for atom in atoms]) @ turned
-        along = places[:, int(np.argmax(np.ptp(places, axis=0)))]
-        order = [atoms[k] for k in np.argsort(along, kind="stable").tolist()]
+        along = places[own][:, int(np.argmax(np.ptp(places[own], axis=0)))]
+        order = own[np.argsort(along, kind="stable")]
+        manned = atoms.robot_counts[order] > 0
         share = (count // 2) / count
-        manned, unmanned = ([a for a in order if bool(a.robots) is has] for has in (True, False))
-        near, far = (
-            a + b for a, b in zip(_parted(manned, share, _robots), _parted(unmanned, share, _tasks), strict=True)
-        )
+        robots = _parted(order[manned], share, atoms.robot_counts)
+        tasks = _parted(order[~manned], share, atoms.task_counts)
+        near, far = (np.concatenate(pair) for pair in zip(robots, tasks, strict=True))
         yield from cut(near, count // 2)
         yield from cut(far, count - count // 2)
 
-    return (part for part in cut(_atoms(problem, routes), parts) if part.robots)
+    return (part for part in cut(np.arange(len(atoms.places)), parts) if part.robots)
 
 
-def _robots(atom: _Atom) -> list[int]:
-    return atom.robots
-
-
-def _tasks(atom: _Atom) -> list[int]:
-    return atom.tasks
-
-
-def _parted(atoms: list[_Atom], share: float, items: Callable[[_Atom], list[int]]) -> tuple[list[_Atom], list[_Atom]]:
-    """The first atoms, up to a share of all items, and the others."""
-    sums = np.cumsum([len(items(atom)) for atom in atoms])
+def _parted(own: Ints, share: float, counts: Ints) -> tuple[Ints, Ints]:
+    """The first atoms, up to a share of all that is counted, and the others."""
+    sums = np.cumsum(counts[own])
     at = int(np.searchsorted(sums, share * sums[-1], side="right")) if len(sums) else 0
-    return atoms[:at], atoms[at:]
+    return own[:at], own[at:]
 
 
-def _atoms(problem: Problem, routes: Routes) -> list[_Atom]:
+def _atoms(problem: Problem, routes: Routes) -> _Atoms:
     """Robots with their routes and tasks in no route, joined where tasks wait for each other."""
     m = len(problem.robots)
     joined = list(range(m + len(problem.tasks)))
@@ -168,7 +182,11 @@ def _atoms(problem: Problem, routes: Routes) -> list[_Atom]:
         robots, tasks = groups.setdefault(root(x), ([], []))
         (robots if x < m else tasks).append(x if x < m else x - m)
     entries, starts = problem.places
-    return [
-        _Atom(robots, tasks, (entries[tasks] if tasks else starts[robots]).mean(axis=0))
-        for robots, tasks in groups.values()
-    ]
+    places = [_middle(entries, tasks) if tasks else _middle(starts, robots) for robots, tasks in groups.values()]
+    robots_of, tasks_of = map(list, zip(*groups.values(), strict=True))
+    return _Atoms(robots_of, tasks_of, np.array(places)[:, :2])
+
+
+def _middle(places: Floats, of: list[int]) -> Floats:
+    middle: Floats = places[of[0]] if len(of) == 1 else places[of].mean(axis=0)
+    return middle

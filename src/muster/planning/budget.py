@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from muster.allocation.stop import Stop
 
-_JUDGED_S = 6e-5  # a task, to put the plan together, judge and write it
+_JUDGED_S = 4e-5  # a task, to put the plan together, judge and write it
+_IN_CACHE = 30_000  # tasks; more outgrow the caches of processors, and each takes twice as long
 _LEAST_SHARE = 0.1  # of the time limit, which each part has at least
 _BOUND_SHARE = 0.2  # of what is left, for a quick bound
 _SEARCHED_SHARE = 0.5  # of what is left, where an exact proof follows
@@ -75,5 +76,10 @@ class Budget:
         """A share of what is left beside judging."""
         if self.limit_s is None:
             return None
-        left_s = self.limit_s - self.whole.elapsed_s - _JUDGED_S * self.slowness * self.tasks
+        left_s = self.limit_s - self.whole.elapsed_s - self.slowness * _judged_s(self.tasks)
         return max(share * left_s, _LEAST_SHARE * self.limit_s)
+
+
+def _judged_s(tasks: int) -> float:
+    """Processor seconds, on a machine that does nothing else, for judging a plan."""
+    return _JUDGED_S * tasks * (1 if tasks <= _IN_CACHE else 2)
