@@ -1,7 +1,9 @@
-"""`muster bench`: speed on this machine; its `peers...`: quality against other solvers."""
+"""`muster bench`: speed on this machine; `peers`, ...: quality against other solvers; `scale`: against time."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,7 @@ import click
 from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.near_matches import did_you_mean
+from muster.mission.value_types import shown
 from muster_studies import study_verb
 from muster_studies.benches import BENCHES, bench_named
 
@@ -126,6 +129,48 @@ def peers_waiting(ctx: click.Context, /, **options: Any) -> int:
     extra `studies`.
     """
     return int(ctx.invoke(study_verb.command, name="peers-waiting", **options))
+
+
+@command.command("scale")
+@click.option("--tasks", metavar="N,N", default="100,1000,10000,100000", show_default=True, help="Sizes of missions.")
+@click.option("--seconds", metavar="S,S", default="1,5,20,60", show_default=True, help="Time limits.")
+@click.option(
+    "--kept",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="Add each run to this file; those that it has are not made again.",
+)
+@format_option
+@_output_option
+@quiet_option
+def scale(
+    tasks: str, seconds: str, kept: Path | None, form: str, output: Path | None, quiet: bool, verbose: bool
+) -> None:
+    """Measure quality against time from 100 to 100,000 tasks: greedy, auction and search."""
+    from muster_studies import scale as scales
+
+    def told(run: scales.Run) -> None:
+        click.echo(f"{run.tasks} tasks, {run.allocator}, {run.limit_s:g} s: {run.wall_s:.1f} s", err=True)
+
+    sizes = [_one_of(name, scales.ROBOTS) for name in tasks.split(",")]
+    report = scales.scale(sizes, [_seconds(text) for text in seconds.split(",")], kept, None if quiet else told)
+    study_verb.show(report, form, output)
+
+
+def _one_of(text: str, sizes: Mapping[int, int]) -> int:
+    if text.strip() not in map(str, sizes):
+        raise ParameterError(f"--tasks: {shown(text)}; expected {' or '.join(map(str, sizes))}")
+    return int(text)
+
+
+def _seconds(text: str) -> float:
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = 0.0
+    if not 0 < seconds < math.inf:
+        raise ParameterError(f"--seconds: {shown(text.strip())}; expected numbers above 0, separated by commas")
+    return seconds
 
 
 def _figure(value: float) -> str:

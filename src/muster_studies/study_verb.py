@@ -84,7 +84,7 @@ def command(
     if not effort.figures:
         with _progress_bar(not quiet, study.name) as on_done:
             report = study.run(effort, workers or os.cpu_count() or 1, on_done)
-        _show(report, form, output)
+        show(report, form, output)
         if verbose:
             click.echo(f"{report.runs} runs, {report.cpu_s:.1f} s of processor time", err=True)
     if plot is not None:
@@ -144,7 +144,8 @@ def _as_dict(study: Study) -> dict[str, object]:
     }
 
 
-def _show(report: Report, form: str, output: Path | None) -> None:
+def show(report: Report, form: str, output: Path | None) -> None:
+    """Print a report, and write it to a file where one is given."""
     if form == "json":
         click.echo(_json(report.as_dict()))
     else:
