@@ -47,3 +47,21 @@ def test_with_enough_room_nothing_folds(printed):
     (head, _, row) = [line.split() for line in printed(300, ("robot", "tasks", "usage [m]"), rows, ()) if line.strip()]
     assert head == ["robot", "tasks", "usage", "[m]"]
     assert row == ["r_0", *SEQUENCE.split(), "1234.56"]
+
+
+def test_a_long_table_is_printed_as_a_short_one(capsys, monkeypatch):
+    columns, rows = ("robot", "where", "usage [m]"), [(f"r_{k}", "機械 ü"[: k % 5], f"{k / 7:.2f}") for k in range(30)]
+    prints = []
+    for most in (100, 5):
+        monkeypatch.setattr("muster.cli.tables._MOST_STYLED", most)
+        print_table(columns, rows, title="Ways", right=("usage [m]",))
+        prints.append(capsys.readouterr().out)
+    assert prints[0] == prints[1]
+    assert prints[0].count("\n") == 34 + 1
+
+
+@pytest.mark.parametrize("cell", ["1\n2", SEQUENCE * 2])
+def test_a_long_table_with_cells_of_several_lines_folds(cell, capsys, monkeypatch):
+    monkeypatch.setattr("muster.cli.tables._MOST_STYLED", 5)
+    print_table(("a", "b"), [("r", cell)] * 9)
+    assert len(capsys.readouterr().out.splitlines()) > 3 + 9 * 2

@@ -126,7 +126,12 @@ class TimedRules:
     @cached_property
     def with_teams(self) -> bool:
         """Whether a team may have to do a task."""
-        return any(map(self.is_for_team, range(len(self.problem.tasks))))
+        return bool(self.for_teams)
+
+    @cached_property
+    def for_teams(self) -> tuple[int, ...]:
+        """The tasks that more than one robot may have to do."""
+        return tuple(filter(self.is_for_team, range(len(self.problem.tasks))))
 
     @cached_property
     def with_relations(self) -> bool:
@@ -180,11 +185,10 @@ class TimedRules:
 
     def in_team(self, i: int) -> object:
         """What makes robot i the same as another in every team."""
-        tasks, robot = range(len(self.problem.tasks)), self.problem.robots[i]
-        if not self.with_teams:
+        if not self.for_teams:
             return None
-        seats = tuple(bool(fits[i]) for j in tasks if self.is_for_team(j) for _, fits in self.parts(j))
-        return seats, tuple(sorted((robot.abilities or {}).items()))
+        seats = tuple(bool(fits[i]) for j in self.for_teams for _, fits in self.parts(j))
+        return seats, tuple(sorted((self.problem.robots[i].abilities or {}).items()))
 
     def sizes_differ(self, j: int, k: int) -> bool:
         """Whether no team is of the right size for both of two tasks."""

@@ -8,6 +8,7 @@ from typing import Any
 
 _WIDTH_WITHOUT_TERMINAL = 120
 _MOST_TASKS_SHOWN = 60
+_MOST_STYLED = 200  # rows; more are printed as lines where nothing folds
 _LONGEST_WORD = 10  # that is not folded where there is little room
 
 
@@ -18,6 +19,12 @@ def print_table(
 
     In a narrow terminal words wrap and figures do not: a table may be wider than the terminal.
     """
+    listed = [tuple(row) for row in rows]
+    out = console()
+    widths = _widths([(name, [row[k] for row in listed]) for k, name in enumerate(columns)], right, out.width)
+    if len(listed) > _MOST_STYLED and not out.options.ascii_only and _is_plain((columns, *listed), widths):
+        _print_lines(columns, listed, widths, title, right)
+        return
     from rich import box
     from rich.table import Table
 
@@ -28,9 +35,6 @@ def print_table(
         title_style="bold",
         pad_edge=False,
     )
-    listed = [tuple(row) for row in rows]
-    out = console()
-    widths = _widths([(name, [row[k] for row in listed]) for k, name in enumerate(columns)], right, out.width)
     for column, width in zip(columns, widths, strict=True):
         justify: Any = "right" if column in right else "left"
         table.add_column(_plain(column), justify=justify, overflow="fold", width=width)
@@ -40,12 +44,41 @@ def print_table(
     out.print(table)
 
 
+def _is_plain(rows: Iterable[Sequence[str]], widths: Sequence[int]) -> bool:
+    """Whether each cell is one line that fits into its column."""
+    return all(
+        "\n" not in cell and _width(cell) <= width for row in rows for cell, width in zip(row, widths, strict=True)
+    )
+
+
+def _print_lines(
+    columns: Sequence[str], rows: Iterable[Sequence[str]], widths: Sequence[int], title: str, right: Sequence[str]
+) -> None:
+    """Print a table of many rows, in which nothing folds, as it is printed else: that takes a millisecond a row."""
+    import click
+
+    def line(cells: Sequence[str]) -> str:
+        room = [" " * (width - _width(cell)) for cell, width in zip(cells, widths, strict=True)]
+        set_right = [name in right for name in columns]
+        padded = [
+            f"{gap}{cell}" if at else f"{cell}{gap}" for cell, gap, at in zip(cells, room, set_right, strict=True)
+        ]
+        return f" {'   '.join(padded)} "
+
+    whole = _whole(widths)
+    titles = [click.style(title.ljust(whole), bold=True)] if title else []
+    head = [" " * whole, click.style(line(columns), bold=True), f" {'─' * (whole - 2)} "]
+    click.echo("\n".join([*titles, *head, *map(line, rows), " " * whole]))
+
+
 def _widths(columns: Sequence[tuple[str, Sequence[str]]], right: Sequence[str], room: int) -> list[int]:
     """Widths of columns (head, cells): those of their cells; without room for that, narrow columns grow first."""
-    wanted, widths = [], []
-    for head, cells in columns:
-        lines = [line for cell in (head, *cells) for line in cell.split("\n")]
-        wanted.append(_widest(lines))
+    lines_of = [[line for cell in (head, *cells) for line in cell.split("\n")] for head, cells in columns]
+    wanted = list(map(_widest, lines_of))
+    if _whole(wanted) <= room:
+        return wanted
+    widths = []
+    for (head, _), lines in zip(columns, lines_of, strict=True):
         words = min(_LONGEST_WORD, _widest([word for line in lines for word in line.split()]))
         widths.append(max(_widest(head.split()), _widest(lines[1:])) if head in right else words)
     spare = room - _whole(widths)
@@ -61,9 +94,14 @@ def _whole(widths: Sequence[int]) -> int:
 
 
 def _widest(texts: Iterable[str]) -> int:
+    return max(map(_width, texts), default=0)
+
+
+def _width(text: str) -> int:
+    """The columns that a text takes in a terminal."""
     from rich.cells import cell_len
 
-    return max(map(cell_len, texts), default=0)
+    return len(text) if text.isascii() else cell_len(text)
 
 
 def _plain(cell: str) -> Any:
