@@ -10,8 +10,9 @@ from tests.random_missions import random_mission
 import muster
 from muster.allocation.partition import divide, number_of_parts
 from muster.allocation.problem import Problem
-from muster.allocation.search import SEARCH
+from muster.allocation.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
+from muster.allocation.workers import Job, Limits, Threads
 from muster_studies.uniform import large_mission
 
 
@@ -77,3 +78,12 @@ def test_interrupted_before_anything_has_begun_there_is_a_whole_plan(tasks):
     plan = SEARCH.solve(problem, stop)
     assert plan.complete
     assert muster.verify(mission, plan).valid
+
+
+def test_parts_that_have_not_begun_when_time_is_up_are_left_to_greedy():
+    problem = Problem.compile(large_mission(60, 6)).ready()
+    late = Stop(time_limit=0.0)
+    job = Job(problem, 0, [[] for _ in problem.robots], Limits(0.0, None), lambda *_: pytest.fail("begun"))
+    assert list(Threads(2).map([job, job], late)) == [None, None]
+    plan = SEARCH.solve(problem, late, params=Parameters(parts=3))
+    assert plan.complete

@@ -80,4 +80,4 @@ class Threads:
 
     def map(self, jobs: Sequence[Job], stop: Stop) -> Iterator[Offer | None]:
         with ThreadPoolExecutor(self.count) as pool:
-            yield from pool.map(lambda job: job.done(stop), jobs)
+            yield from pool.map(lambda job: None if stop.due() else job.done(stop), jobs)
