@@ -1,10 +1,16 @@
 """`muster check`: tasks that no plan does together."""
 
 import json
+import math
+from itertools import combinations
 from pathlib import Path
+from random import Random
 
 import pytest
 from tests.cli.yard import FOUND
+
+from muster.cli.check import _touching
+from muster.mission.model import Robot
 
 pytestmark = pytest.mark.usefixtures("folder")
 
@@ -289,3 +295,23 @@ def test_lanes_that_do_not_lead_where_robots_must_go_are_named(muster):
     assert (one["task"], one["robots"]) == ("2", ["r_1"])
     assert one["detail"] == "no lanes lead r_1 to task 2 and to the end of its route"
     assert blocked(muster, LANES.replace(", width_m: 0.5", "")) == []
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_robots_that_touch_are_found_among_all_pairs(seed):
+    random = Random(seed)
+    robots = [
+        Robot(
+            id=f"r_{k}",
+            position=(random.choice((1.0, random.uniform(0, 3))), random.uniform(0, 3)),
+            radius_m=random.choice((0.1, 0.3, 0.6)),
+            kind=random.choice(("ground", "air")),
+        )
+        for k in range(12)
+    ]
+    pairs = [
+        (a, b)
+        for a, b in combinations(robots, 2)
+        if a.kind == b.kind and math.dist(a.position, b.position) < a.radius_m + b.radius_m
+    ]
+    assert _touching(robots) == pairs

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import combinations
 from typing import TYPE_CHECKING
 
 import click
@@ -21,7 +20,7 @@ from muster.cli.options import (
 from muster.cli.tables import counted, sequence
 from muster.mission.errors import Finding, MissionError, NotSupportedError
 from muster.mission.ignorable_rules import ignored_rules
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Robot
 from muster.mission.plan import Unassigned, json_text
 
 if TYPE_CHECKING:
@@ -150,16 +149,27 @@ def _print_never_used(mission: Mission, ignored: Collection[str]) -> None:
 
 def _print_touching(mission: Mission) -> None:
     """Print on standard error that robots of one kind touch where they start."""
-    touching = [
-        (a, b)
-        for a, b in combinations(mission.robots, 2)
-        if a.kind == b.kind and math.dist(a.position, b.position) < a.radius_m + b.radius_m
-    ]
+    touching = _touching(mission.robots)
     if touching:
         (a, b), more = touching[0], len(touching) - 1
         where = f"start {math.dist(a.position, b.position):g} m apart, and touch below {a.radius_m + b.radius_m:g} m"
         others = f"; so do {counted(more, 'more pair')}" if more else ""
         click.echo(f"warning: robots {a.id} and {b.id} {where}{others}", err=True)
+
+
+def _touching(robots: Sequence[Robot]) -> list[tuple[Robot, Robot]]:
+    """The pairs of robots of one kind that touch where they start, in mission order; found along the first axis."""
+    along = sorted(range(len(robots)), key=lambda k: robots[k].position[0])
+    widest = 2 * max(robot.radius_m for robot in robots)
+    found = []
+    for at, k in enumerate(along):
+        for other in along[at + 1 :]:
+            a, b = (robots[n] for n in sorted((k, other)))
+            if abs(b.position[0] - a.position[0]) >= widest:
+                break
+            if a.kind == b.kind and math.dist(a.position, b.position) < a.radius_m + b.radius_m:
+                found.append(tuple(sorted((k, other))))
+    return [(robots[a], robots[b]) for a, b in sorted(found)]
 
 
 def _print_together(found: Together, tasks: str) -> None:
