@@ -5,6 +5,7 @@ grows least, the robot that does most included; many ruins begin at that robot, 
 end waits for; places are those that no prerequisite forbids, through all routes; tasks left out are tried again in
 every step. After each ruin routes are improved around it by local search ([croes1958], [or1976], [potvin1995]). Where
 not all tasks can be done, as in team orienteering ([chao1996]), tasks are given away for others while it is hot.
+Several plans are annealed at first, of which the better ones go on.
 
 Where tasks are bound to times, teams or relations, and for `makespan` with prerequisites, the search works on a
 schedule that is propagated through the part that a change affects ([pearce2006]); a team is chosen at a cut through
@@ -41,7 +42,7 @@ _Search = core.Search | core.ScheduleSearch
 # the share of the run that this has; the rest is for the objective.
 _TRADING_HOT, _TRADING_COLD = 20.0, 0.1
 _TRADING_SHARE = 0.9
-_PLANS = 4  # that a run begins with
+_PLANS, _MANY = 4, 5_000  # plans that a run begins with; one where it has so many tasks
 # Tasks and robots times steps, between two looks at the clock: some milliseconds.
 _BATCH = 400_000
 _BATCH_ON_SCHEDULE = 40_000
@@ -59,7 +60,7 @@ class Parameters:
     """
 
     threads: int = 0  # 0: one for each processor under a time limit, else 1
-    plans: int = 0  # that are annealed at first, of which ever fewer go on; 0: 4
+    plans: int = 0  # that are annealed at first, of which ever fewer go on; 0: 4, or 1 for more than 5,000 tasks
     parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
     ray: str = "none"  # address of the Ray cluster that parts are worked on; none: threads of this process
     # 0: 1 for the objectives `max` and, on a schedule, `makespan`, which few tasks decide; else 5; where greedy leaves
@@ -153,13 +154,17 @@ def _side_by_side(
 ) -> SideBySide[_Search]:
     threads = params.threads or (_processors() if stop.is_a_time_alone else 1)
     random = Random(seed)
+    opening = _search(problem, first, seed, params, oversubscribed)
+
+    def search(k: int) -> _Search:
+        return _search(problem, opening.best, seed + (k << 32), params, oversubscribed) if k else opening
 
     def cross(routes: Routes, other: Routes) -> Routes:
         return routes if problem.core.is_timed else crossed(problem, routes, other, random)
 
     return SideBySide(
-        lambda k: _search(problem, first, seed + (k << 32), params, oversubscribed),
-        plans=params.plans or _PLANS,
+        search,
+        plans=params.plans or (_PLANS if len(problem.tasks) <= _MANY else 1),
         busy=threads if stop.is_a_time_alone else 1,
         threads=threads,
         cross=cross,

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from muster.allocation.stop import Stop
 
 _FILE = click.Path(path_type=Path)
-_THREADS_HELP = "Searches side by side.  [default: one for each processor; with --iterations 1]"
+_THREADS_HELP = "Threads that the search works with.  [default: one for each processor; with --iterations 1]"
 _PARAMETERS = ("threads", "ray", "bid", "placement", "winner")  # of allocators, with options of their own
 _TRAFFIC_OF_PLAN = click.option(
     "--traffic", default=DEFAULT, show_default=True, metavar=f"[{'|'.join(TRAFFIC)}]", help=HELP["traffic"]
