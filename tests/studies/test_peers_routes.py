@@ -17,8 +17,10 @@ from muster_studies.instances.orienteering import (
 )
 from muster_studies.instances.routing import (
     LONGEST_ROUTES,
+    SHORTER_ROUTES,
     clustered_mission,
     routing_instance,
+    shorter_plan,
     uniform_tour,
 )
 from muster_studies.peers import peers_routes_study
@@ -91,6 +93,15 @@ def test_instances_of_the_longest_route(name, robots):
         2 * min(math.dist(robot.position, task.position) for robot in mission.robots) for task in mission.tasks
     )
     assert farthest <= LONGEST_ROUTES[name, robots]
+
+
+@pytest.mark.parametrize(("name", "robots"), SHORTER_ROUTES)
+def test_shipped_plans_are_better_than_all_published(name, robots):
+    verdict = muster.verify(routing_instance(name, robots), shorter_plan(name, robots))
+    assert verdict.valid
+    assert verdict.tasks_completed == verdict.tasks_total
+    assert verdict.value("max") == pytest.approx(SHORTER_ROUTES[name, robots], abs=1e-4)
+    assert verdict.value("max") < LONGEST_ROUTES[name, robots]
 
 
 def test_instances_and_numbers_of_robots_that_are_none_are_told():
