@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from operator import attrgetter
 
 from muster.mission.mission_data import MissionData
-from muster.mission.mission_parts import all_work, new_tasks, unknown_id
+from muster.mission.mission_parts import new_tasks, unknown_id, work_that
 from muster.mission.task_relations import tied_by
 from muster.mission.tasks import Task
 from muster.mission.value_types import Fault, Path, shown
@@ -21,9 +22,7 @@ def _unknown_or_repeated(mission: MissionData) -> Iterator[Fault]:
     ids = [t.id for t in mission.tasks]
     with_new = [*ids, *(t.id for _, t in new_tasks(mission))]
     own, all_of_them = set(ids), set(with_new)
-    for path, task in all_work(mission):
-        if not task.prerequisites:
-            continue
+    for path, task in work_that(attrgetter("prerequisites"), mission):
         known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
         seen: set[str] = set()
         for p, name in enumerate(task.prerequisites):

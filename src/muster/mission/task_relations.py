@@ -6,12 +6,16 @@ from collections.abc import Iterator, Sequence
 from operator import attrgetter
 
 from muster.mission.mission_data import MissionData
-from muster.mission.mission_parts import all_work, new_tasks, unknown_id
-from muster.mission.tasks import Task
+from muster.mission.mission_parts import new_tasks, unknown_id, work_that
+from muster.mission.tasks import Task, Work
 from muster.mission.value_types import Fault, Path, shown
 
 RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")
 _tasks_named_by = attrgetter(*RELATIONS)
+
+
+def _names_tasks(work: Work) -> bool:
+    return any(_tasks_named_by(work))
 
 
 def relation_faults(mission: MissionData) -> Iterator[Fault]:
@@ -45,9 +49,9 @@ def _wrong_names(mission: MissionData) -> Iterator[Fault]:
     ids = [t.id for t in mission.tasks]
     with_new = [*ids, *(t.id for _, t in new_tasks(mission))]
     own, all_of_them = set(ids), set(with_new)
-    for path, task in all_work(mission):
+    for path, task in work_that(_names_tasks, mission):
         known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
-        for relation in RELATIONS if any(_tasks_named_by(task)) else ():
+        for relation in RELATIONS:
             names = getattr(task, relation)
             for n, name in enumerate(names):
                 at: Path = (*path, relation, n)

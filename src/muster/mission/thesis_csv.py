@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any, cast
 
-from muster.mission.csv_files import Columns, number, read_columns, read_table
+from muster.mission.csv_files import number, read_columns, read_table
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
@@ -38,11 +38,11 @@ def read_csv(tasks: FilePath, robots: FilePath, suitability: FilePath | None = N
         with every finding: file, line, field, value, what was expected.
     """
     places: dict[Path, Place] = {("robots",): (str(robots), 1)}
-    data = _without_robots(tasks, suitability, places)
+    data, of_tasks = _without_robots(tasks, suitability, places)
     columns = read_columns(robots, ROBOT_COLUMNS, ("z",))
     data["robots"] = _robots(columns.cells)
-    places |= _lines(columns, "robots", robots)
-    return mission_from(data, Source(str(tasks), places), [])
+    lines = _Lines("robots", str(robots), columns.lines, beside=of_tasks)
+    return mission_from(data, Source(str(tasks), lines), [])
 
 
 def read_csv_for(
@@ -61,28 +61,43 @@ def read_csv_for(
         as `read_csv` does.
     """
     places: dict[Path, Place] = {}
-    data = _without_robots(tasks, suitability, places)
+    data, of_tasks = _without_robots(tasks, suitability, places)
     first = next(iter(cast("list[dict[str, Any]]", data["tasks"])), None)
     data["robots"] = list(robots(2 if first is None else len(first["position"])))
-    return mission_from(data, Source(str(tasks), places), [])
+    return mission_from(data, Source(str(tasks), of_tasks), [])
 
 
-def _without_robots(tasks: FilePath, suitability: FilePath | None, places: dict[Path, Place]) -> dict[str, object]:
-    """The data of a mission but for its robots."""
+def _without_robots(
+    tasks: FilePath, suitability: FilePath | None, places: dict[Path, Place]
+) -> tuple[dict[str, object], Mapping[Path, Place]]:
+    """The data of a mission but for its robots, and these places with those of its tasks."""
     places["suitability",] = (str(suitability), 1)
     columns = read_columns(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))
     data: dict[str, object] = {"schema": SCHEMA, "name": tasks.stem}
     data["tasks"] = _tasks(columns.cells)
-    places |= _lines(columns, "tasks", tasks)
     if suitability is not None:
         data["suitability"] = _suitability(suitability, places)
-    return data
+    return data, _Lines("tasks", str(tasks), columns.lines, beside=places)
 
 
-def _lines(columns: Columns, group: str, path: FilePath) -> dict[Path, Place]:
-    """The place of each record of a group."""
-    file = str(path)
-    return {(group, k): (file, line) for k, line in enumerate(columns.lines)}
+class _Lines(Mapping[Path, Place]):
+    """The place of each record of a group, made when it is asked for, as few are; beside other places."""
+
+    def __init__(self, group: str, file: str, lines: Sequence[int], *, beside: Mapping[Path, Place]) -> None:
+        self._group, self._file, self._lines, self._others = group, file, lines, beside
+
+    def __getitem__(self, path: Path) -> Place:
+        match path:
+            case (self._group, int(k)) if 0 <= k < len(self._lines):
+                return self._file, self._lines[k]
+        return self._others[path]
+
+    def __iter__(self) -> Iterator[Path]:
+        yield from ((self._group, k) for k in range(len(self._lines)))
+        yield from self._others
+
+    def __len__(self) -> int:
+        return len(self._lines) + len(self._others)
 
 
 def _tasks(cells: Mapping[str, list[str]]) -> list[dict[str, object]]:
