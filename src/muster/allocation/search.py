@@ -133,6 +133,8 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
     """From the greedy plan: several plans are annealed side by side, and fewer the colder it is."""
     first = start if problem.core.is_timed else greedy.completed(problem, start)
     stop.improved(*problem.value(first))
+    if stop.due() and not problem.core.is_timed:
+        return first
     oversubscribed = _is_oversubscribed(problem, first)
     with _side_by_side(problem, stop, seed, params, first, oversubscribed) as searches:
         best, rank = searches.best, None
