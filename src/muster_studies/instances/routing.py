@@ -82,8 +82,8 @@ def routing_instance(name: str, robots: int, objective: str = "max") -> Mission:
 def shorter_plan(name: str, robots: int) -> Plan:
     """A plan of a shipped instance whose longest route is less than the least published (`SHORTER_ROUTES`).
 
-    `search` found it in 45 s of processor time with `plans` 8. A file of `routing_plans` has a line for each robot, with
-    the numbers of its tasks.
+    `search` found it in 45 s of processor time with `plans` 8. A file of `routing_plans` has a line for each robot,
+    with the numbers of its tasks.
     """
     text = (files("muster_studies.instances") / "routing_plans" / f"{name}-{robots}.txt").read_text(encoding="utf-8")
     return Plan(routes=tuple(Route(f"r_{k}", tuple(line.split())) for k, line in enumerate(text.splitlines())))
