@@ -13,6 +13,7 @@ from tests.random_missions import TYPES, random_mission
 import muster
 from muster import Mission, Robot, Rules, Task, core
 from muster.allocation.arrival_bounds import least_arrivals
+from muster.allocation.arrival_paths import least_arrivals_on_paths
 from muster.allocation.bounds import WHY, best_bound, lower_bound
 from muster.allocation.earliest_times import opened
 from muster.allocation.problem import Problem
@@ -87,8 +88,11 @@ def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(see
             assert bounds[used - 1] <= usages @ weights * (1 + ROUNDING) + ROUNDING
 
 
+@pytest.mark.parametrize("merged", [False, True])
 @pytest.mark.parametrize("seed", range(40))
-def test_no_routes_have_a_lower_sum_of_arrivals_than_their_forests(seed):
+def test_no_routes_have_a_lower_sum_of_arrivals_than_forests_and_paths(seed, merged, monkeypatch):
+    if merged:
+        monkeypatch.setattr("muster.allocation.arrival_paths._EFFORT", 9 * 9 * 9 * 30)
     random = Random(seed)
     ignored = ("capacity", "prerequisites")
     mission = random_mission(seed, tasks=9, robots=3, return_to_start=False) if seed % 2 else by_table(seed)
@@ -96,7 +100,8 @@ def test_no_routes_have_a_lower_sum_of_arrivals_than_their_forests(seed):
     if not problem.allowed.any(axis=0).all():
         return
     robots, tasks = problem.allowed.any(axis=1).sum(), list(range(len(problem.tasks)))
-    least = least_arrivals(Ways.of(problem, problem.allowed), robots)
+    forests = least_arrivals(Ways.of(problem, problem.allowed), robots)
+    least = max(forests, least_arrivals_on_paths(problem, problem.allowed, forests))
     for _ in range(200):
         routes = [[] for _ in problem.robots]
         for j in random.sample(tasks, len(tasks)):
@@ -115,11 +120,23 @@ def test_forests_tell_what_nearest_neighbours_do_not():
     )
     problem = Problem.compile(mission)
     bound, best = best_bound(problem), problem.value([list(range(10))])[1]
-    assert bound.arguments == ("the least way to each task",)
     assert bound.value == pytest.approx(best)  # all lie on one line
     ways = Ways.of(problem, problem.allowed)
     nearest = np.sort(ways.entering(after_work=True))[::-1] @ np.arange(1, 11)
     assert 1.2 * nearest < least_arrivals(ways, 1) <= 10 * best * (1 + ROUNDING)
+
+
+def test_paths_tell_nearly_all_of_what_clusters_far_apart_cost():
+    """Two robots between two clusters of tasks: each takes one of them, along a line."""
+    places = [(side * (50.0 + k), 0.0) for side in (-1, 1) for k in range(6)]
+    mission = Mission(
+        rules=Rules(objective="average"),
+        robots=tuple(Robot(id=f"r_{k}", position=(0, 0)) for k in range(2)),
+        tasks=tuple(Task(id=str(k), position=place, actuation_cost=5.0) for k, place in enumerate(places)),
+    )
+    problem = Problem.compile(mission)
+    _, best = problem.value([list(range(6)), list(range(6, 12))])
+    assert 0.95 * best < least_arrivals_on_paths(problem, problem.allowed, 0.0) / 12 <= best * (1 + ROUNDING)
 
 
 @pytest.mark.parametrize("objective", OBJECTIVES)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from muster.allocation.arrival_bounds import least_arrivals
+from muster.allocation.arrival_paths import least_arrivals_on_paths
 from muster.allocation.earliest_times import EarliestTimes, in_time, kth_least, opened
 from muster.allocation.feasibility import least_usages, usable_pairs
 from muster.allocation.problem import Bools, Floats, Problem
@@ -31,7 +32,7 @@ _HELD_KARP = "Held and Karp, Operations Research 18, 1970"
 _TREES, _FARTHEST = "spanning trees with multipliers", "the farthest task"
 _CROWDED, _SHARE = "crowded tasks", "an even share"
 _LEAST_WAYS, _IN_TURN, _CRITICAL = "the least way to each task", "tasks in turn", "the critical path"
-_FORESTS = "forests of beginnings"
+_FORESTS, _PATHS = "forests of beginnings", "paths by the number of tasks behind"
 _NO_TASKS, _NOBODY = "no tasks", "a task that nobody can do"
 WHY = {
     _TREES: f"starts and tasks joined by routes are spanning trees, and every task has two neighbours ({_HELD_KARP})",
@@ -43,6 +44,8 @@ WHY = {
     " (Conway, Maxwell and Miller, Theory of Scheduling, 1967)",
     _FORESTS: "the beginnings of routes that have a number of tasks behind them are forests, at best the least"
     " (Kruskal, Proceedings of the American Mathematical Society 7, 1956)",
+    _PATHS: "each task has a price, and robots take the cheapest paths, whose legs count once for each task behind them"
+    " (Picard and Queyranne, Operations Research 26, 1978)",
     _CRITICAL: "a task waits for its robots, its prerequisites and its windows, and they for theirs"
     " (Kelley and Walker, Eastern Joint Computer Conference, 1959)",
     _NO_TASKS: "there is nothing to do",
@@ -197,7 +200,7 @@ def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     order times 1 (m of them), 2 (m of them), and so on, by the rearrangement inequality: the rule of the shortest
     processing time first on parallel machines [conway1967]. A team arrives with the last of its k robots: in (1) no
     earlier than the k-th least, in (2) no earlier than any one of them, whose route may go through more tasks. (3)
-    Without teams, see `least_arrivals`.
+    Without teams, see `least_arrivals` and `least_arrivals_on_paths`.
     """
     n, m = usable.shape[1], int(usable.any(axis=1).sum())
     open_ended = opened(problem)
@@ -207,8 +210,10 @@ def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     ways = Ways.of(open_ended, usable)
     steps = np.sort(ways.entering(after_work=True))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
-    forests = 0.0 if problem.timed_rules.with_teams else least_arrivals(ways, m, due) / n
-    named = {_LEAST_WAYS: alone, _IN_TURN: in_turn, _FORESTS: forests}
+    named = {_LEAST_WAYS: alone, _IN_TURN: in_turn}
+    if not problem.timed_rules.with_teams:
+        named[_FORESTS] = least_arrivals(ways, m, due) / n
+        named[_PATHS] = least_arrivals_on_paths(open_ended, usable, n * max(named.values()), due) / n
     best = max(named, key=lambda name: named[name])
     return Bound(named[best], (best,))
 
