@@ -18,6 +18,7 @@ from muster.allocation.bounds import WHY, best_bound, lower_bound
 from muster.allocation.earliest_times import opened
 from muster.allocation.problem import Problem
 from muster.allocation.spanning import Ways, route_bounds
+from muster.allocation.weighed_shares import weighed_shares
 from muster.mission.model import OBJECTIVES, TravelTable
 
 ROUNDING = 1e-9
@@ -77,6 +78,7 @@ def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(see
     if not problem.allowed.any(axis=0).all():
         return
     bounds = route_bounds(Ways.of(problem, problem.allowed, weights), np.asarray)
+    shares = np.broadcast_to(weighed_shares(problem, problem.allowed), bounds.shape)
     tasks = list(range(len(problem.tasks)))
     for _ in range(200):
         routes = [[] for _ in problem.robots]
@@ -86,6 +88,7 @@ def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(see
         used = sum(bool(route) for route in routes)
         if np.isfinite(usages).all():
             assert bounds[used - 1] <= usages @ weights * (1 + ROUNDING) + ROUNDING
+            assert shares[used - 1] <= usages.max() * (1 + ROUNDING) + ROUNDING
 
 
 @pytest.mark.parametrize("merged", [False, True])
@@ -100,7 +103,7 @@ def test_no_routes_have_a_lower_sum_of_arrivals_than_forests_and_paths(seed, mer
     if not problem.allowed.any(axis=0).all():
         return
     robots, tasks = problem.allowed.any(axis=1).sum(), list(range(len(problem.tasks)))
-    forests = least_arrivals(Ways.of(problem, problem.allowed), robots)
+    forests = least_arrivals(Ways.of(problem, problem.allowed, with_surplus=False), robots)
     least = max(forests, least_arrivals_on_paths(problem, problem.allowed, forests))
     for _ in range(200):
         routes = [[] for _ in problem.robots]
@@ -159,6 +162,20 @@ def test_where_every_robot_has_a_route_its_start_is_left():
     bounds = route_bounds(Ways.of(problem, problem.allowed), lambda totals: totals / (1, 2))
     assert bounds[0] == pytest.approx(168.0)
     assert bounds[1] == pytest.approx(160.0 + 52.0 + 7.0 - 1.0, abs=2.0)
+
+
+@pytest.mark.parametrize(("objective", "seconds"), [("makespan", 5.0), ("max", 0.0), ("max", 5.0)])
+def test_slow_robots_help_no_more_than_they_can(objective, seconds):
+    """Two robots on a lattice, one of them three times as fast: in a time they do a number of tasks between them."""
+    mission = Mission(
+        rules=Rules(objective=objective, usage="time"),
+        robots=tuple(Robot(id=f"r_{speed}", position=(0, -10), speed_mps=speed) for speed in (1, 3)),
+        tasks=tuple(Task(id=str(k), position=(10 * (k // 6), 10 * (k % 6)), duration_s=seconds) for k in range(36)),
+    )
+    bound = best_bound(Problem.compile(mission))
+    shared = 36 / (1 / (10 + seconds) + 3 / (10 + 3 * seconds))
+    assert bound.arguments == ("a weighed share",)
+    assert bound.value > 0.97 * shared
 
 
 def test_every_argument_says_why_it_holds():

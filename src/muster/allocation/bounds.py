@@ -22,22 +22,19 @@ from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.spanning import Ways, never, route_bounds
 from muster.allocation.team_copies import with_copies
+from muster.allocation.weighed_shares import weighed_shares
 from muster.mission.errors import MusterError
-
-_MOST_KINDS = 10  # kinds of task, by the robots that can do them, that are looked at for crowding
-_MOST_CROWDED = 300  # tasks up to which crowding is looked at
-_CROWDING_EFFORT = 4e7  # as in `route_bounds`, for each kind
 
 _HELD_KARP = "Held and Karp, Operations Research 18, 1970"
 _TREES, _FARTHEST = "spanning trees with multipliers", "the farthest task"
-_CROWDED, _SHARE = "crowded tasks", "an even share"
+_WEIGHED, _SHARE = "a weighed share", "an even share"
 _LEAST_WAYS, _IN_TURN, _CRITICAL = "the least way to each task", "tasks in turn", "the critical path"
 _FORESTS, _PATHS = "forests of beginnings", "paths by the number of tasks behind"
 _NO_TASKS, _NOBODY = "no tasks", "a task that nobody can do"
 WHY = {
     _TREES: f"starts and tasks joined by routes are spanning trees, and every task has two neighbours ({_HELD_KARP})",
     _FARTHEST: "some robot must get to it, do it and go to its end, by the shortest way (Dijkstra, Num. Math. 1, 1959)",
-    _CROWDED: f"the few robots that can do them have to share them; spanning trees, weighted ({_HELD_KARP})",
+    _WEIGHED: f"robots that are fast, or that alone can do a kind of task, count more; spanning trees ({_HELD_KARP})",
     _SHARE: f"at best all robots use the same, together no less than spanning trees with multipliers ({_HELD_KARP})",
     _LEAST_WAYS: "no robot arrives anywhere with less usage than by the shortest way (Dijkstra, Num. Math. 1, 1959)",
     _IN_TURN: "robots do one task after the other, at best the shortest first"
@@ -119,8 +116,8 @@ def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], boo
     such a plan is at least the least U for which the k greatest capacities, each cut down to U, sum up to L_k; for
     unlimited robots that is L_k / k. There is no such plan if they do not sum up to L_k at all. (2) It is at least what
     the task that is farthest away takes by itself, the maximum over tasks of the minimum over robots of `least_usage`,
-    and what `_crowding` tells. (3) Total and greatest usage together are at least the sum of their bounds, for the same
-    k. The bound is the least over k.
+    and what `weighed_shares` tell. (3) Total and greatest usage together are at least the sum of their bounds, for the
+    same k. The bound is the least over k.
     """
     members = [problem.timed_rules.least_members(j) for j in range(len(problem.tasks))]
     alone = float(kth_least(np.where(usable, least, math.inf), members).max())
@@ -128,11 +125,11 @@ def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], boo
     if copied is None:
         return _by_tasks_alone(problem, np.where(usable, least, math.inf), members)
     problem, usable = copied.problem, copied.usable
-    crowded = _crowding(problem, usable, due) if problem.objective != "total" else 0.0
     capacity = np.sort(problem.capacity[usable.any(axis=1)])[::-1]
+    weighed = 0.0 if problem.objective == "total" else weighed_shares(problem, usable, due)
 
     def worth(totals: Floats) -> Floats:
-        greatest = np.maximum(_evened(totals, capacity), max(alone, crowded))
+        greatest = np.maximum(np.maximum(_evened(totals, capacity), weighed), alone)
         values = {"total": totals, "max": greatest, "total+max": totals + greatest}[problem.objective]
         return np.where(np.isfinite(greatest), values, math.inf)
 
@@ -141,7 +138,7 @@ def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], boo
     k = int(values.argmin())
     greatest = {
         _FARTHEST: alone,
-        _CROWDED: crowded,
+        _WEIGHED: float(np.broadcast_to(weighed, totals.shape)[k]),
         _SHARE: float(_evened(totals, capacity)[k]),
     }
     best = max(greatest, key=lambda name: greatest[name])
@@ -174,22 +171,6 @@ def _evened(totals: Floats, capacity: Floats) -> Floats:
     return np.array(evened)
 
 
-def _crowding(problem: Problem, usable: Bools, due: Callable[[], bool]) -> float:
-    """Bound the greatest usage by the tasks that few robots can do.
-
-    Theorem. The greatest usage is at least the mean over any set S of robots, and so at least a bound of the total cost
-    in which the usage of the robots of S counts 1 / |S|, and of the others nothing. S are here the robots that can do
-    some task.
-    """
-    kinds = np.unique(usable, axis=1).T
-    if len(kinds) == 1 or len(kinds) > _MOST_KINDS or usable.shape[1] > _MOST_CROWDED:
-        return 0.0
-    weights = [kind / kind.sum() for kind in kinds]
-    return max(
-        float(route_bounds(Ways.of(problem, usable, w), np.asarray, due, _CROWDING_EFFORT).min()) for w in weights
-    )
-
-
 def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     """Bound the mean usage on arrival.
 
@@ -207,7 +188,7 @@ def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     work = np.array([problem.work_usage(i) for i in range(len(problem.robots))])
     arrivals = np.where(usable, least_usages(open_ended) - work, math.inf)
     alone = float(kth_least(arrivals, [problem.timed_rules.least_members(j) for j in range(len(problem.tasks))]).mean())
-    ways = Ways.of(open_ended, usable)
+    ways = Ways.of(open_ended, usable, with_surplus=False)
     steps = np.sort(ways.entering(after_work=True))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
     named = {_LEAST_WAYS: alone, _IN_TURN: in_turn}
@@ -225,7 +206,7 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
     its windows. (2) The robots of k routes are on their way or at work for no longer than from when they are available
     to the last end: k times that is at least the least total time of k routes, the tasks of teams counted for each
     member, plus the k least times of availability. The bound is the least over k, and at least (1). Routes are open,
-    unless the way to the robots' ends counts.
+    unless the way to the robots' ends counts. (3) Nor is the last end before what `weighed_shares` tell.
     """
     timed, earliest = in_time(problem), EarliestTimes.of(problem, usable)
     with_return = problem.mission.rules.makespan_includes_return
@@ -236,14 +217,24 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
     available = np.array([robot.available_from_s for robot in problem.robots])
     waits = np.cumsum(np.sort(available[usable.any(axis=1)]))
 
-    def worth(totals: Floats) -> Floats:
-        routes = len(totals)
-        return np.asarray(np.maximum((totals + waits[:routes]) / np.arange(1, routes + 1), critical))
+    weighed = weighed_shares(copied.problem, copied.usable, due)
 
-    shared = float(worth(route_bounds(Ways.of(copied.problem, copied.usable), worth, due)).min())
-    if shared > critical:
-        return Bound(shared, (_SHARE,))
-    return Bound(critical, (_CRITICAL,))
+    def evened(totals: Floats) -> Floats:
+        routes = len(totals)
+        return np.asarray((totals + waits[:routes]) / np.arange(1, routes + 1))
+
+    def worth(totals: Floats) -> Floats:
+        return np.maximum(np.maximum(evened(totals), weighed), critical)
+
+    totals = route_bounds(Ways.of(copied.problem, copied.usable), worth, due)
+    values = worth(totals)
+    k = int(values.argmin())
+    named = {
+        _CRITICAL: critical,
+        _SHARE: float(evened(totals)[k]),
+        _WEIGHED: float(np.broadcast_to(weighed, totals.shape)[k]),
+    }
+    return Bound(float(values[k]), (max(named, key=lambda name: named[name]),))
 
 
 def _lateness(problem: Problem, usable: Bools) -> Bound:

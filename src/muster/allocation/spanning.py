@@ -16,16 +16,18 @@ _CALLS = 2000  # how many nodes of a row cost as much as calling NumPy
 _MOST_ROUNDS = 300
 _FIRST_STEP = 0.3  # of multipliers, in legs of the first tree
 _LAST_STEP = 0.003  # in first steps
+_MOST_GROUPS = 16  # of robots by travel table and surplus work, up to which legs know the surplus
 _MOST_KINDS = 600  # kinds of task, by the robots that can do them, up to which legs know who can do both ends
 
 
 class Legs:
     """The least leg between two tasks over the robots that can do both, in the unit of usage; inf where there is none.
 
-    Where the tasks differ in too many ways in who can do them, the least over all robots.
+    A robot's leg has half its `surplus` (m, n) of work at both ends. Where the tasks differ in too many ways in who can
+    do them, the least over all robots.
     """
 
-    def __init__(self, problem: Problem, usable: Bools, weights: Floats) -> None:
+    def __init__(self, problem: Problem, usable: Bools, weights: Floats, surplus: Floats) -> None:
         self._problem = problem
         self._tasks = np.arange(len(problem.tasks))
         self.symmetric = not len(problem.shortcuts())
@@ -33,7 +35,7 @@ class Legs:
         if kinds.shape[1] > _MOST_KINDS:
             kinds, kind_of = np.ones((len(usable), 1), np.bool_), np.zeros(len(self._tasks), np.int64)
         self._kind_of = kind_of.reshape(-1)
-        self._paces = _paces(problem, kinds, weights)
+        self._groups = _groups(problem, kinds, weights, surplus)
         self._dense = self._between(self._tasks) if len(self._tasks) <= _DENSE else None
 
     def rows_plus(self, p: Floats) -> Callable[[int], Floats]:
@@ -50,7 +52,7 @@ class Legs:
     def directed(self, some: Indices, *, reverse: bool = False) -> Floats:
         """(len(some), n) the least legs from some tasks to all, or from all to some."""
         least = np.full((len(some), len(self._tasks)), math.inf)
-        for i, pace in self._paces:
+        for i, pace, half in self._groups:
             for at in range(0, len(some), 100):
                 few = some[at : at + 100]
                 legs = (
@@ -61,23 +63,31 @@ class Legs:
                 factor = pace[self._kind_of[few][:, None], self._kind_of[None]]
                 scaled = np.full(legs.shape, math.inf)
                 np.multiply(legs, factor, out=scaled, where=np.isfinite(factor) & np.isfinite(legs))
+                scaled += half[few][:, None] + half
                 np.minimum(least[at : at + 100], scaled, out=least[at : at + 100])
         least[np.arange(len(some)), some] = math.inf
         return least
 
 
-def _paces(problem: Problem, kinds: Bools, weights: Floats) -> list[tuple[int, Floats]]:
-    """One robot of each travel table, and (kinds, kinds) what a metre takes at least of the robots for both kinds."""
+def _groups(problem: Problem, kinds: Bools, weights: Floats, surplus: Floats) -> list[tuple[int, Floats, Floats]]:
+    """One robot of each group with a travel table and surplus work in common, and what its legs are made of.
+
+    (kinds, kinds) is the least that a metre takes of the robots for both kinds of task; (n,) is half the surplus.
+    """
     _, classes = problem.travel
     tables = classes if len(classes) else np.zeros(len(problem.robots), np.int32)
     metre = weights / np.array([robot.speed_mps if problem.in_time else 1.0 for robot in problem.robots])
-    paces = []
-    for k in np.unique(tables):
-        members = np.flatnonzero(tables == k)
+    alike = np.column_stack([tables, surplus])
+    if len(np.unique(alike, axis=0)) > _MOST_GROUPS:
+        alike = np.column_stack([tables, np.zeros_like(surplus)])
+    like, group_of = np.unique(alike, axis=0, return_inverse=True)
+    groups = []
+    for k, (_, *common) in enumerate(like):
+        members = np.flatnonzero(group_of.reshape(-1) == k)
         costs = np.where(kinds[members], metre[members, None], math.inf)
         pace = np.array([np.maximum(costs, row[:, None]).min(axis=0) for row in costs.T])
-        paces.append((int(members[0]), pace))
-    return paces
+        groups.append((int(members[0]), pace, np.array(common) / 2))
+    return groups
 
 
 @dataclass(frozen=True)
@@ -92,8 +102,6 @@ class Ways:
         (n,) the least work usage of each task.
     starts
         (d, n) the leg from a robot's start to a task; like robots are one row.
-    surplus
-        (d, n) what the robot's work on the task is above the least.
     ends
         (d, n) the leg from a task to where the robot must end; 0 where it may end anywhere.
     robots
@@ -103,32 +111,31 @@ class Ways:
     legs: Legs
     work: Floats
     starts: Floats
-    surplus: Floats
     ends: Floats
     robots: Indices
 
     @classmethod
-    def of(cls, problem: Problem, usable: Bools, weights: Floats | None = None) -> Ways:
+    def of(cls, problem: Problem, usable: Bools, weights: Floats | None = None, *, with_surplus: bool = True) -> Ways:
         """The costs of a problem of which only some pairs (m, n) of robot and task are usable.
 
-        With (m,) `weights` every robot's usage counts so many times.
+        With (m,) `weights` every robot's usage counts so many times. `with_surplus`: what a robot's work on a task is
+        above the least counts half with the leg before it, and half with the leg or end after it.
         """
         weights = np.ones(len(problem.robots)) if weights is None else weights
         tasks = np.arange(len(problem.tasks))
         work = weights[:, None] * np.array([problem.work_usage(i) for i in range(len(problem.robots))])
         least = np.where(usable, work, math.inf).min(axis=0)
+        surplus = np.where(usable & with_surplus, work - least, 0.0)
         rows = []
         for i, robot in enumerate(problem.robots):
             start = problem.legs(i, [problem.start(i)], tasks)[0]
             is_open = robot.place_at_end(problem.mission.rules) is None
             end = np.zeros(len(tasks)) if is_open else problem.legs(i, tasks, [problem.end(i)])[:, 0]
-            surplus = np.where(usable[i], work[i], least) - least
-            rows.append(
-                np.where(usable[i], [_times(weights[i], start), surplus, _times(weights[i], end)], math.inf).ravel()
-            )
+            legs = np.array([_times(weights[i], start), _times(weights[i], end)]) + surplus[i] / 2
+            rows.append(np.where(usable[i], legs, math.inf).ravel())
         like, robots = np.unique(np.array(rows)[usable.any(axis=1)], axis=0, return_counts=True)
-        starts, surplus, ends = np.hsplit(like, 3)
-        return cls(Legs(problem, usable, weights), least, starts, surplus, ends, robots)
+        starts, ends = np.hsplit(like, 2)
+        return cls(Legs(problem, usable, weights, surplus), least, starts, ends, robots)
 
     def entering(self, *, after_work: bool = False) -> Floats:
         """(n,) the least leg into each task, from another or a start; `after_work`: with the work of the other."""
@@ -173,7 +180,8 @@ def route_bounds(
         + least spanning tree of legs c(i, j) + p_i + p_j and first legs min_d (c(d, j) + a_d - b_d) + p_j
         + sum of the k least min_d (c(j, d) + b_d) + p_j,
 
-    where w_j is the least work, and c(d, j) holds what the robot's work on j is above it. This is the bound of
+    where w_j is the least work, and legs hold half of what the robot's work on their tasks is above it; c(j, d) does,
+    too. This is the bound of
     [held-karp1970], for several paths from several depots. No triangle inequality is used. The multipliers ascend by
     the subgradients of the k that is worth least, with the memory of [volgenant1982]; for every k the best bound is
     kept. Where travel is asymmetric the sums of the least legs into tasks, and out of them, can be better. From when
@@ -204,10 +212,10 @@ def _ascended(
     p, a, b = np.zeros(n), np.zeros(len(ways.robots)), np.zeros(len(ways.robots))
     least = np.full(len(a), -math.inf if all_leave else 0.0)
     if all_leave:
-        a -= (ways.starts + ways.surplus).min(axis=1)  # the way out of each start then costs nothing
+        a -= ways.starts.min(axis=1)  # the way out of each start then costs nothing
     step, memory = math.nan, np.zeros(0)
     for _ in range(rounds):
-        first, group = _least_rows(ways.starts + ways.surplus + (a - b)[:, None])
+        first, group = _least_rows(ways.starts + (a - b)[:, None])
         last, end_group = _least_rows(ways.ends + b[:, None])
         joined, parent = spanning_tree(ways.legs.rows_plus(p), first + p, p, due)
         if due():

@@ -1,0 +1,58 @@
+"""Lower bounds of the greatest usage, by weighed means over robots that differ in speed or in what they can do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from muster.allocation.problem import Bools, Floats, Problem
+from muster.allocation.spanning import Ways, never, route_bounds
+
+_MOST_KINDS = 10  # of task, by the robots that can do them, for which robots are weighed
+_MOST_TASKS = 300
+_LEAST_USAGE = 1e-9  # for a task, that robots are weighed by
+_EFFORT = 8e7  # as in `route_bounds`, for each kind
+
+
+def weighed_shares(problem: Problem, usable: Bools, due: Callable[[], bool] = never) -> Floats:
+    """(k,) bounds of the greatest usage in plans with 1, 2, ..., k routes, by weighed means over robots.
+
+    Theorem. The greatest usage of the robots that have a route is at least any weighed mean of theirs. Whatever they
+    are, k robots weigh no more than the k heaviest, so that it is at least a bound of the total cost in which usages
+    are weighed, over the weight of these. Weights are here as many tasks as a robot does in a time, about, for then the
+    slow do not seem to help more than they can; and nothing for robots that cannot do a kind of task: the others have
+    to share it.
+    """
+    everyone = usable.any(axis=1)
+    kinds = np.unique(np.column_stack([everyone, usable]), axis=1).T
+    if len(kinds) > _MOST_KINDS or usable.shape[1] > _MOST_TASKS:
+        return np.zeros(1)
+    pace = np.array([1.0 / _usual_usage(problem, i) for i in range(len(problem.robots))])
+    shares = [
+        _weighed_share(problem, usable, weights, due)
+        for weights in kinds * pace / (kinds @ pace)[:, None]
+        if np.ptp(weights[everyone])  # else it is the even share
+    ]
+    return np.asarray(np.max(shares, axis=0)) if shares else np.zeros(1)
+
+
+def _usual_usage(problem: Problem, i: int) -> float:
+    """What a task takes of robot i, about: its work and the leg from the nearest other."""
+    tasks = range(len(problem.tasks))
+    legs = problem.legs(i, tasks, tasks)
+    np.fill_diagonal(legs, math.inf)
+    usages = problem.work_usage(i) + legs.min(axis=0)
+    return max(_LEAST_USAGE, float(np.where(np.isfinite(usages), usages, 0.0).mean()))
+
+
+def _weighed_share(problem: Problem, usable: Bools, weights: Floats, due: Callable[[], bool]) -> Floats:
+    """The bounds of `weighed_shares` by some weights."""
+    count = min(usable.shape[1], int(usable.any(axis=1).sum()))
+    heaviest = np.cumsum(np.sort(weights)[::-1])[:count]
+
+    def shared(totals: Floats) -> Floats:
+        return totals / heaviest
+
+    return shared(route_bounds(Ways.of(problem, usable, weights), shared, due, _EFFORT))
