@@ -18,7 +18,7 @@ from muster.allocation.bounds import WHY, best_bound, lower_bound
 from muster.allocation.earliest_times import opened
 from muster.allocation.problem import Problem
 from muster.allocation.spanning import Ways, route_bounds
-from muster.allocation.weighed_shares import weighed_shares
+from muster.allocation.weighed_shares import far_shares, weighed_shares
 from muster.mission.model import OBJECTIVES, TravelTable
 
 ROUNDING = 1e-9
@@ -78,7 +78,8 @@ def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(see
     if not problem.allowed.any(axis=0).all():
         return
     bounds = route_bounds(Ways.of(problem, problem.allowed, weights), np.asarray)
-    shares = np.broadcast_to(weighed_shares(problem, problem.allowed), bounds.shape)
+    weighed, far = weighed_shares(problem, problem.allowed), far_shares(problem, problem.allowed)
+    shares = np.maximum(np.broadcast_to(weighed, bounds.shape), far)
     tasks = list(range(len(problem.tasks)))
     for _ in range(200):
         routes = [[] for _ in problem.robots]
@@ -176,6 +177,31 @@ def test_slow_robots_help_no_more_than_they_can(objective, seconds):
     shared = 36 / (1 / (10 + seconds) + 3 / (10 + 3 * seconds))
     assert bound.arguments == ("a weighed share",)
     assert bound.value > 0.97 * shared
+
+
+def test_tasks_far_away_tell_what_tasks_at_hand_hide():
+    """With a task at hand for each robot but one, that one seems to do all the others in one round."""
+    places = [*((0.0, float(k)) for k in range(1, 4)), *((100.0, 10.0 * k) for k in range(-4, 5))]
+    mission = Mission(
+        rules=Rules(objective="max", return_to_start=True),
+        robots=tuple(Robot(id=f"r_{k}", position=(0, 0)) for k in range(4)),
+        tasks=tuple(Task(id=str(k), position=place, actuation_cost=60.0) for k, place in enumerate(places)),
+    )
+    bound = best_bound(Problem.compile(mission))
+    assert bound.arguments == ("the tasks far away",)
+    assert bound.value > (4 * 2 * 100 + 9 * 60 - 1) / 4  # four rounds and the work
+
+
+def test_robots_with_tasks_at_hand_need_not_go_far_away():
+    """Of two robots far apart one has a single task: without it the best plan has one route, not two."""
+    mission = Mission(
+        rules=Rules(objective="max"),
+        robots=(Robot(id="many", position=(0, 0)), Robot(id="one", position=(10000, 0))),
+        tasks=tuple(Task(id=str(x), position=(float(x), 0.0)) for x in (*range(10, 120, 10), 10001)),
+    )
+    problem = Problem.compile(mission)
+    assert far_shares(problem, problem.allowed).max() <= 110 * (1 + ROUNDING)
+    assert best_bound(problem).value <= 110 * (1 + ROUNDING)
 
 
 def test_every_argument_says_why_it_holds():

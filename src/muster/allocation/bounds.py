@@ -22,12 +22,12 @@ from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.spanning import Ways, never, route_bounds
 from muster.allocation.team_copies import with_copies
-from muster.allocation.weighed_shares import weighed_shares
+from muster.allocation.weighed_shares import far_shares, weighed_shares
 from muster.mission.errors import MusterError
 
 _HELD_KARP = "Held and Karp, Operations Research 18, 1970"
 _TREES, _FARTHEST = "spanning trees with multipliers", "the farthest task"
-_WEIGHED, _SHARE = "a weighed share", "an even share"
+_WEIGHED, _SHARE, _FAR = "a weighed share", "an even share", "the tasks far away"
 _LEAST_WAYS, _IN_TURN, _CRITICAL = "the least way to each task", "tasks in turn", "the critical path"
 _FORESTS, _PATHS = "forests of beginnings", "paths by the number of tasks behind"
 _NO_TASKS, _NOBODY = "no tasks", "a task that nobody can do"
@@ -35,6 +35,7 @@ WHY = {
     _TREES: f"starts and tasks joined by routes are spanning trees, and every task has two neighbours ({_HELD_KARP})",
     _FARTHEST: "some robot must get to it, do it and go to its end, by the shortest way (Dijkstra, Num. Math. 1, 1959)",
     _WEIGHED: f"robots that are fast, or that alone can do a kind of task, count more; spanning trees ({_HELD_KARP})",
+    _FAR: f"to do them alone would take no robot more, and they are shared at best; spanning trees ({_HELD_KARP})",
     _SHARE: f"at best all robots use the same, together no less than spanning trees with multipliers ({_HELD_KARP})",
     _LEAST_WAYS: "no robot arrives anywhere with less usage than by the shortest way (Dijkstra, Num. Math. 1, 1959)",
     _IN_TURN: "robots do one task after the other, at best the shortest first"
@@ -116,8 +117,8 @@ def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], boo
     such a plan is at least the least U for which the k greatest capacities, each cut down to U, sum up to L_k; for
     unlimited robots that is L_k / k. There is no such plan if they do not sum up to L_k at all. (2) It is at least what
     the task that is farthest away takes by itself, the maximum over tasks of the minimum over robots of `least_usage`,
-    and what `weighed_shares` tell. (3) Total and greatest usage together are at least the sum of their bounds, for the
-    same k. The bound is the least over k.
+    and what `weighed_shares` and `far_shares` tell. (3) Total and greatest usage together are at least the sum of their
+    bounds, for the same k. The bound is the least over k.
     """
     members = [problem.timed_rules.least_members(j) for j in range(len(problem.tasks))]
     alone = float(kth_least(np.where(usable, least, math.inf), members).max())
@@ -126,10 +127,10 @@ def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], boo
         return _by_tasks_alone(problem, np.where(usable, least, math.inf), members)
     problem, usable = copied.problem, copied.usable
     capacity = np.sort(problem.capacity[usable.any(axis=1)])[::-1]
-    weighed = 0.0 if problem.objective == "total" else weighed_shares(problem, usable, due)
+    shares = {} if problem.objective == "total" else _shares(problem, usable, due)
 
     def worth(totals: Floats) -> Floats:
-        greatest = np.maximum(np.maximum(_evened(totals, capacity), weighed), alone)
+        greatest = np.max([_evened(totals, capacity), *shares.values(), np.full(len(totals), alone)], axis=0)
         values = {"total": totals, "max": greatest, "total+max": totals + greatest}[problem.objective]
         return np.where(np.isfinite(greatest), values, math.inf)
 
@@ -138,11 +139,20 @@ def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], boo
     k = int(values.argmin())
     greatest = {
         _FARTHEST: alone,
-        _WEIGHED: float(np.broadcast_to(weighed, totals.shape)[k]),
+        **{name: float(bounds[k]) for name, bounds in shares.items()},
         _SHARE: float(_evened(totals, capacity)[k]),
     }
     best = max(greatest, key=lambda name: greatest[name])
     return Bound(float(values[k]), {"total": (_TREES,), "max": (best,)}.get(problem.objective, (_TREES, best)))
+
+
+def _shares(problem: Problem, usable: Bools, due: Callable[[], bool]) -> dict[str, Floats]:
+    """The bounds (k,) of the greatest usage in plans with 1, 2, ..., k routes that are not by their total cost."""
+    routes = min(usable.shape[1], int(usable.any(axis=1).sum()))
+    return {
+        _WEIGHED: np.broadcast_to(weighed_shares(problem, usable, due), routes),
+        _FAR: np.broadcast_to(far_shares(problem, usable, due), routes),
+    }
 
 
 def _by_tasks_alone(problem: Problem, least: Floats, members: Sequence[int]) -> Bound:
@@ -206,7 +216,8 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
     its windows. (2) The robots of k routes are on their way or at work for no longer than from when they are available
     to the last end: k times that is at least the least total time of k routes, the tasks of teams counted for each
     member, plus the k least times of availability. The bound is the least over k, and at least (1). Routes are open,
-    unless the way to the robots' ends counts. (3) Nor is the last end before what `weighed_shares` tell.
+    unless the way to the robots' ends counts. (3) The last end is not before what `weighed_shares` and `far_shares`
+    tell.
     """
     timed, earliest = in_time(problem), EarliestTimes.of(problem, usable)
     with_return = problem.mission.rules.makespan_includes_return
@@ -217,14 +228,14 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
     available = np.array([robot.available_from_s for robot in problem.robots])
     waits = np.cumsum(np.sort(available[usable.any(axis=1)]))
 
-    weighed = weighed_shares(copied.problem, copied.usable, due)
+    shares = _shares(copied.problem, copied.usable, due)
 
     def evened(totals: Floats) -> Floats:
         routes = len(totals)
         return np.asarray((totals + waits[:routes]) / np.arange(1, routes + 1))
 
     def worth(totals: Floats) -> Floats:
-        return np.maximum(np.maximum(evened(totals), weighed), critical)
+        return np.asarray(np.max([evened(totals), *shares.values(), np.full(len(totals), critical)], axis=0))
 
     totals = route_bounds(Ways.of(copied.problem, copied.usable), worth, due)
     values = worth(totals)
@@ -232,7 +243,7 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
     named = {
         _CRITICAL: critical,
         _SHARE: float(evened(totals)[k]),
-        _WEIGHED: float(np.broadcast_to(weighed, totals.shape)[k]),
+        **{name: float(bounds[k]) for name, bounds in shares.items()},
     }
     return Bound(float(values[k]), (max(named, key=lambda name: named[name]),))
 

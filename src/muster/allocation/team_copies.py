@@ -34,10 +34,10 @@ def with_copies(problem: Problem, usable: Bools) -> Copied | None:
     if len(problem.shortcuts()) and any(rules.needs(j) for j in tasks):
         return None
     copies = np.repeat(np.arange(len(tasks)), [rules.least_members(j) for j in tasks])
-    return Copied(_of_tasks(problem, copies.tolist()), usable[:, copies])
+    return Copied(of_tasks(problem, copies.tolist()), usable[:, copies])
 
 
-def _of_tasks(problem: Problem, copies: list[int]) -> Problem:
+def of_tasks(problem: Problem, copies: list[int]) -> Problem:
     """The problem of these tasks, some of them named several times; of use for lengths alone."""
     n, m = len(problem.tasks), len(problem.robots)
     known = None

@@ -1,4 +1,4 @@
-"""Lower bounds of the greatest usage, by weighed means over robots that differ in speed or in what they can do."""
+"""Lower bounds of the greatest usage, by weighed means over robots and by the tasks that are far away."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ import numpy as np
 
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.spanning import Ways, never, route_bounds
+from muster.allocation.team_copies import of_tasks
 
 _MOST_KINDS = 10  # of task, by the robots that can do them, for which robots are weighed
 _MOST_TASKS = 300
 _LEAST_USAGE = 1e-9  # for a task, that robots are weighed by
-_EFFORT = 8e7  # as in `route_bounds`, for each kind
+_AT_HAND = (0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.5)  # of all tasks, that are left out
+_EFFORT = 8e7  # as in `route_bounds`, for each kind and share of tasks
 
 
 def weighed_shares(problem: Problem, usable: Bools, due: Callable[[], bool] = never) -> Floats:
@@ -29,13 +31,41 @@ def weighed_shares(problem: Problem, usable: Bools, due: Callable[[], bool] = ne
     kinds = np.unique(np.column_stack([everyone, usable]), axis=1).T
     if len(kinds) > _MOST_KINDS or usable.shape[1] > _MOST_TASKS:
         return np.zeros(1)
-    pace = np.array([1.0 / _usual_usage(problem, i) for i in range(len(problem.robots))])
+    pace = _paces(problem)
     shares = [
         _weighed_share(problem, usable, weights, due)
         for weights in kinds * pace / (kinds @ pace)[:, None]
         if np.ptp(weights[everyone])  # else it is the even share
     ]
     return np.asarray(np.max(shares, axis=0)) if shares else np.zeros(1)
+
+
+def far_shares(problem: Problem, usable: Bools, due: Callable[[], bool] = never) -> Floats:
+    """(k,) bounds of the greatest usage in plans with 1, 2, ..., k routes, by the tasks farthest from all starts.
+
+    Theorem. Where no way through a task is shorter than the direct one, a plan that leaves tasks out costs no robot
+    more. It may leave robots without a route; so the greatest usage of plans with k routes is at least the least
+    weighed share, as in `weighed_shares`, of plans of some tasks with k routes or fewer. The tasks far away can tell
+    more than all: with tasks at hand each robot seems to have a route, and one of them does all the rest.
+    """
+    if len(problem.shortcuts()) or usable.shape[1] > _MOST_TASKS:
+        return np.zeros(1)
+    tasks, everyone = range(usable.shape[1]), usable.any(axis=1)
+    starts = np.array([problem.legs(i, [problem.start(i)], tasks)[0] for i in range(len(problem.robots))])
+    nearest_first = np.where(usable, starts, math.inf).min(axis=0).argsort(kind="stable")
+    weights = everyone * _paces(problem)
+    best = np.zeros(min(len(tasks), int(everyone.sum())))
+    for left_out in {math.floor(share * len(tasks)) for share in _AT_HAND} - {0}:
+        far = nearest_first[left_out:]
+        bounds = _weighed_share(of_tasks(problem, far.tolist()), usable[:, far], weights / weights.sum(), due)
+        fewer = np.minimum.accumulate(bounds)
+        best = np.maximum(best, np.pad(fewer, (0, len(best) - len(fewer)), mode="edge"))
+    return best
+
+
+def _paces(problem: Problem) -> Floats:
+    """(m,) how many tasks robots do for their usage, about."""
+    return np.array([1.0 / _usual_usage(problem, i) for i in range(len(problem.robots))])
 
 
 def _usual_usage(problem: Problem, i: int) -> float:
