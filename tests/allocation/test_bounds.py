@@ -130,6 +130,21 @@ def test_forests_tell_what_nearest_neighbours_do_not():
     assert 1.2 * nearest < least_arrivals(ways, 1) <= 10 * best * (1 + ROUNDING)
 
 
+def test_prices_do_not_run_away_where_paths_are_a_plan():
+    """Three tasks whose cheapest path soon is the best route: steps to better prices would be of any length."""
+    mission = Mission(
+        rules=Rules(objective="average", usage="time"),
+        robots=(Robot(id="r", position=(6.61, 0.998)),),
+        tasks=tuple(
+            Task(id=str(k), position=place, duration_s=seconds)
+            for k, (place, seconds) in enumerate([((-8.575, 4.674), 3.1), ((9.205, -5.46), 4.5), ((2.346, 2.919), 3.1)])
+        ),
+    )
+    problem = Problem.compile(mission)
+    bound = least_arrivals_on_paths(problem, problem.allowed, 0.0)
+    assert bound <= 3 * best_plan(problem)[1] * (1 + ROUNDING)
+
+
 def test_paths_tell_nearly_all_of_what_clusters_far_apart_cost():
     """Two robots between two clusters of tasks: each takes one of them, along a line."""
     places = [(side * (50.0 + k), 0.0) for side in (-1, 1) for k in range(6)]

@@ -16,6 +16,8 @@ _ROUNDS, _LEAST_ROUNDS = 120, 30  # with fewer the prices are worth nothing
 _LEVELS = 4  # how many times its even share of the tasks a route is followed, or so
 _FIRST_AIM, _LAST_AIM = 0.1, 0.002  # how far above the best bound so far steps aim, relative
 
+_ROUNDING = 1e-12  # of sums, relative to prices
+
 _Follower = tuple[Indices, Indices]  # of each task the best that may follow, and the second best
 
 
@@ -111,14 +113,14 @@ def least_arrivals_on_paths(problem: Problem, usable: Bools, known: float, due: 
         if due():
             break
         paid = sum(float(kind.robots @ paths.least()) for kind, paths in zip(kinds, found, strict=True))
-        bound = float(prices.sum()) + paid
+        bound = float(prices.sum()) + paid - _ROUNDING * float(np.abs(prices).sum())
         best = max(best, bound)
         visits = np.sum([paths.visits(kind.robots) for kind, paths in zip(kinds, found, strict=True)], axis=0)
         slope = np.asarray(1.0 - visits)
         memory = 0.5 * slope + 0.5 * (memory if len(memory) else slope)
-        if not memory.any():
-            break
-        prices = prices + ((1 + aim) * max(best, known) - bound) / (memory @ memory) * memory
+        if not slope.any():
+            break  # the paths are a plan: no prices are better
+        prices = prices + ((1 + aim) * max(best, known) - bound) / max(1.0, memory @ memory) * memory
     return best
 
 
