@@ -37,6 +37,7 @@ def test_routes_spread_and_the_plan_says_what_its_traffic_takes(mission):
 
 def test_varied_by_its_traffic_a_plan_is_better_than_those_it_comes_from(mission, monkeypatch):
     """What varies keeps the rules, and the plan tells the time that the traffic of its own routes takes."""
+    monkeypatch.setattr(spreading, "VARIATIONS_BY_ITERATIONS", 200)
     varied = [planned(mission, seed=seed) for seed in range(2)]
     monkeypatch.setattr(spreading, "VARIATIONS_BY_ITERATIONS", 0)
     first = [planned(mission, seed=seed) for seed in range(2)]

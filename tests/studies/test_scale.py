@@ -58,7 +58,7 @@ def test_a_run_is_a_process_whose_plan_is_read(tmp_path):
     assert (run.tasks, run.done, run.key) == (100, 100, (100, "greedy", 30.0))
     assert run.objective > 1000
     assert run.cpu_s > 0
-    assert 10 < run.memory_mb < 1000
+    assert run.memory_mb > 10
 
 
 def test_a_run_that_fails_ends_the_bench(tmp_path):

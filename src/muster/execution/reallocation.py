@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 from muster.allocation.allocator import Allocator, Routes
@@ -26,8 +27,8 @@ from muster.mission.plan import Reason, Unassigned, teams_of
 RobotsOf = Mapping[int, frozenset[int]]
 """For each task, by index, the robots that do it."""
 
-REPLANNING_HOT = 1.0
-"""Temperature at which a search begins that goes on from a good plan."""
+REPLANNING: Mapping[str, Any] = MappingProxyType({"hot": 1.0, "plans": 1})
+"""How a search goes on from a good plan: not so hot that it is to settle anew which robot goes where."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,7 +98,7 @@ class Reallocation:
     iterations: int = 3000
     seed: int = 0
     allocator: Allocator = SEARCH
-    parameters: Any = Parameters(hot=REPLANNING_HOT)
+    parameters: Any = Parameters(**REPLANNING)
     fill_waiting: bool = False
 
     def __post_init__(self) -> None:

@@ -10,7 +10,7 @@ from muster.allocation.registry import allocator_of
 from muster.allocation.search import SEARCH
 from muster.execution import Reallocation, Revision, Standing, travel_of
 from muster.execution.insertion import Insertion
-from muster.execution.reallocation import REPLANNING_HOT
+from muster.execution.reallocation import REPLANNING
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.travel import Travel
 from muster.mission.model import Mission
@@ -36,7 +36,7 @@ def reallocation_by(options: PlanningOptions | None, travel: Travel, seed: int) 
     if not allocator.keeps_fixed:
         return Reallocation(travel=travel, seed=seed, fill_waiting=options.rewire)
     if allocator is SEARCH:
-        parameters = {"hot": REPLANNING_HOT} | parameters
+        parameters = {**REPLANNING, **parameters}
     return Reallocation(
         travel=travel,
         seed=seed,

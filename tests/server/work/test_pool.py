@@ -41,7 +41,7 @@ def is_there(pid):
     """Whether a process lives; one that has ended and was not asked for its code does not."""
     try:
         return "State:\tZ" not in Path(f"/proc/{pid}/status").read_text(encoding="ascii")
-    except FileNotFoundError:
+    except (FileNotFoundError, ProcessLookupError):  # the latter if it ends between opening and reading
         return False
 
 
