@@ -198,7 +198,9 @@ def test_the_readme_is_short():
     assert len(README.split()) <= 700
 
 
-@pytest.mark.parametrize("name", ["allocators", "benchmarks", "benchmarks-timed", "benchmarks-scale"])
+@pytest.mark.parametrize(
+    "name", ["allocators", *(f"benchmarks{of}" for of in ("", "-timed", "-routes", "-waiting", "-scale"))]
+)
 def test_pages_that_a_command_writes_are_as_it_wrote_them(name):
     stored = json.loads((ROOT / "docs" / "measured" / f"{name}.json").read_text(encoding="utf-8"))
     text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
