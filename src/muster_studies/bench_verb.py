@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -17,12 +17,27 @@ from muster.mission.value_types import shown
 from muster_studies import study_verb
 from muster_studies.benches import BENCHES, bench_named
 
+_Verb = Callable[..., Any]
+
 _seeds_option = click.option(
     "--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]"
 )
 _output_option = click.option(
     "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
 )
+
+
+def _comparison_options(*, quick: str, tables: str | None = None) -> Callable[[_Verb], _Verb]:
+    """The options of a comparison with others: what `--quick` does, and the tables to choose from, if several."""
+
+    def decorate(verb: _Verb) -> _Verb:
+        verb = format_option(_output_option(quiet_option(click.pass_context(verb))))
+        verb = _seeds_option(click.option("--quick", is_flag=True, help=quick)(verb))
+        if tables is None:
+            return verb
+        return click.option("--tables", metavar="N,N", help=f"Only these tables: {tables}.")(verb)
+
+    return decorate
 
 
 @click.group(invoke_without_command=True, short_help="Measure speed on this machine, or quality against other solvers.")
@@ -66,69 +81,52 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
 
 
 @command.command("peers")
-@click.option("--tables", metavar="N,N", help="Only these tables: total+max, total, max, average, makespan, large.")
-@_seeds_option
-@click.option("--quick", is_flag=True, help="Small missions and short time limits, to see that everything works.")
-@format_option
-@_output_option
-@quiet_option
-@click.pass_context
+@_comparison_options(
+    quick="Small missions and short time limits, to see that everything works.",
+    tables="total+max, total, max, average, makespan, large",
+)
 def peers(ctx: click.Context, /, **options: Any) -> int:
     """Compare search with OR-Tools, PyVRP and VROOM.
 
     All have the same time, and run one after the other. This is `muster study peers`; it needs the extra `studies`.
     """
-    return int(ctx.invoke(study_verb.command, name="peers", **options))
+    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
 
 
 @command.command("peers-timed")
-@click.option("--tables", metavar="N,N", help="Only these tables: windows, ordered, teams.")
-@_seeds_option
-@click.option("--quick", is_flag=True, help="One or two missions a table and short time limits.")
-@format_option
-@_output_option
-@quiet_option
-@click.pass_context
+@_comparison_options(quick="One or two missions a table and short time limits.", tables="windows, ordered, teams")
 def peers_timed(ctx: click.Context, /, **options: Any) -> int:
     """Compare search with others on missions with time windows, prerequisites and teams.
 
     Time windows beside PyVRP, OR-Tools and VROOM; windows with prerequisites beside greedy, auction, CP-SAT and
     OR-Tools; teams beside the best plans known. This is `muster study peers-timed`; it needs the extra `studies`.
     """
-    return int(ctx.invoke(study_verb.command, name="peers-timed", **options))
+    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
 
 
 @command.command("peers-routes")
-@click.option("--tables", metavar="N,N", help="Only these tables: orienteering, longest, depots, tour.")
-@_seeds_option
-@click.option("--quick", is_flag=True, help="One small mission a table and short time limits.")
-@format_option
-@_output_option
-@quiet_option
-@click.pass_context
+@_comparison_options(
+    quick="One small mission a table and short time limits.",
+    tables="orienteering, longest, depots, tour",
+)
 def peers_routes(ctx: click.Context, /, **options: Any) -> int:
     """Compare search with PyVRP and OR-Tools on routes, beside the best known.
 
     Team orienteering (more tasks than the team can do), the shortest longest route, clusters of tasks among many
     depots, one long tour. This is `muster study peers-routes`; it needs the extra `studies`.
     """
-    return int(ctx.invoke(study_verb.command, name="peers-routes", **options))
+    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
 
 
 @command.command("peers-waiting")
-@_seeds_option
-@click.option("--quick", is_flag=True, help="Missions of 20 tasks and short time limits.")
-@format_option
-@_output_option
-@quiet_option
-@click.pass_context
+@_comparison_options(quick="Missions of 20 tasks and short time limits.")
 def peers_waiting(ctx: click.Context, /, **options: Any) -> int:
     """Compare search with CP-SAT, which has more time, where tasks wait for each other.
 
     The makespan of missions of 20 to 400 tasks with prerequisites. This is `muster study peers-waiting`; it needs the
     extra `studies`.
     """
-    return int(ctx.invoke(study_verb.command, name="peers-waiting", **options))
+    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
 
 
 @command.command("scale")

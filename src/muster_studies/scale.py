@@ -21,7 +21,6 @@ from muster_studies.uniform import large_mission
 ROBOTS = {100: 5, 1_000: 20, 10_000: 200, 100_000: 2_000}
 """By the number of tasks of a mission."""
 ALLOCATORS = ("greedy", "auction", "search")
-SECONDS = (1.0, 5.0, 20.0, 60.0)
 _END_BY_THEMSELVES = ("greedy", "auction")
 _KIB_PER_MB = 1000 if sys.platform != "darwin" else 1_000_000  # as systems count the greatest memory of a process
 _COLUMNS = ("allocator", "limit [s]", "tasks done", "objective", "of the best", "CPU [s]", "wall [s]", "over [s]", "MB")

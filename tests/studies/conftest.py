@@ -4,8 +4,10 @@ from pathlib import Path
 
 import pytest
 
+import muster
 from muster_studies.effort import Effort
 from muster_studies.registry import study_named
+from muster_studies.repetition import Repetition
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -25,3 +27,16 @@ def report():
 @pytest.fixture(scope="session")
 def tables(report):
     return {table.number: table for table in report.tables}
+
+
+@pytest.fixture
+def asked_of_studies(monkeypatch):
+    """The names and efforts of studies that are asked for; none is run: each refuses."""
+    asked = []
+
+    def run(self, effort, workers=1, on_done=None):
+        asked.append((self.name, effort))
+        raise muster.ParameterError("enough")
+
+    monkeypatch.setattr(Repetition, "run", run)
+    return asked

@@ -28,7 +28,6 @@ from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
 from muster_studies.peers.contest import OWN, PEERS, Result, Standing, mission_of
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.routes_tables import FAMILIES
-from muster_studies.repetition import Repetition
 from muster_studies.tables import Notes
 
 BY_NUMBER = {family.number: family for family in FAMILIES}
@@ -215,16 +214,9 @@ def test_a_solver_without_a_plan_is_told():
     assert (row["OR-Tools"], mean["search"]) == ("no plan", None)
 
 
-def test_the_bench_leads_to_the_study(monkeypatch):
-    asked = []
-
-    def run(self, effort, workers=1, on_done=None):
-        asked.append((self.name, effort))
-        raise muster.ParameterError("enough")
-
-    monkeypatch.setattr(Repetition, "run", run)
+def test_the_bench_leads_to_the_study(asked_of_studies):
     assert cli(["bench", "peers-routes", "--tables", "tour", "--seeds", "2"]) == 2
-    assert asked == [("peers-routes", Effort(seeds=2, tables=("tour",)))]
+    assert asked_of_studies == [("peers-routes", Effort(seeds=2, tables=("tour",)))]
 
 
 def test_iterations_are_refused():

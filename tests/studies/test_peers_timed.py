@@ -17,7 +17,6 @@ from muster_studies.peers.ordered_table import Ordered
 from muster_studies.peers.processor_time import ProcessorStop
 from muster_studies.peers.teams_table import SETS, Teams
 from muster_studies.peers.windows_table import Windows
-from muster_studies.repetition import Repetition
 
 SECONDS = 0.15
 
@@ -181,16 +180,9 @@ def test_allocators_without_randomness_run_once():
     assert [perform(run).fault for run in runs[1:]] == [None, None, None]
 
 
-def test_the_bench_leads_to_the_study(monkeypatch):
-    asked = []
-
-    def run(self, effort, workers=1, on_done=None):
-        asked.append((self.name, effort))
-        raise muster.ParameterError("enough")
-
-    monkeypatch.setattr(Repetition, "run", run)
+def test_the_bench_leads_to_the_study(asked_of_studies):
     assert cli(["bench", "peers-timed", "--tables", "teams", "--seeds", "2"]) == 2
-    assert asked == [("peers-timed", Effort(seeds=2, tables=("teams",)))]
+    assert asked_of_studies == [("peers-timed", Effort(seeds=2, tables=("teams",)))]
 
 
 def test_iterations_are_refused():

@@ -14,7 +14,6 @@ from muster_studies.peers import peers_waiting_study
 from muster_studies.peers.contest import OWN, WAITING_PEER, Match, Result, Run, mission_of, perform
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.waiting_table import PEER, Waiting
-from muster_studies.repetition import Repetition
 
 SECONDS = 1.0
 RETURNS = Rules(objective="makespan", return_to_start=True, makespan_includes_return=True)
@@ -138,13 +137,6 @@ def test_the_study_is_quick_where_asked():
     assert all(math.isfinite(row["search 5 s"]) for row in rows)
 
 
-def test_the_bench_leads_to_the_study(monkeypatch):
-    asked = []
-
-    def run(self, effort, workers=1, on_done=None):
-        asked.append((self.name, effort))
-        raise muster.ParameterError("enough")
-
-    monkeypatch.setattr(Repetition, "run", run)
+def test_the_bench_leads_to_the_study(asked_of_studies):
     assert cli(["bench", "peers-waiting", "--seeds", "2"]) == 2
-    assert asked == [("peers-waiting", Effort(seeds=2))]
+    assert asked_of_studies == [("peers-waiting", Effort(seeds=2))]

@@ -13,16 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from muster import core
 from muster.allocation import greedy
 from muster.allocation.allocator import Routes
-from muster.allocation.problem import Floats, Problem
+from muster.allocation.problem import Floats, Indices, Problem
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Improve, Job, Limits, Offer, Workers
 
-Ints = NDArray[np.intp]
 _MOST_WHOLE = 15_000  # tasks up to which a team is searched as a whole
 _IN_A_PART = 1_500  # tasks
 _DIVISIONS = 4
@@ -117,14 +115,14 @@ class _Atoms:
     places: Floats
 
     @cached_property
-    def robot_counts(self) -> Ints:
-        return np.array(list(map(len, self.robots)), dtype=np.intp)
+    def robot_counts(self) -> Indices:
+        return np.array(list(map(len, self.robots)), dtype=np.int64)
 
     @cached_property
-    def task_counts(self) -> Ints:
-        return np.array(list(map(len, self.tasks)), dtype=np.intp)
+    def task_counts(self) -> Indices:
+        return np.array(list(map(len, self.tasks)), dtype=np.int64)
 
-    def part(self, own: Ints) -> Part:
+    def part(self, own: Indices) -> Part:
         """Some of the atoms as a part."""
         robots, tasks = (sorted(x for k in own.tolist() for x in items[k]) for items in (self.robots, self.tasks))
         return Part(robots, tasks)
@@ -137,7 +135,7 @@ def divide(problem: Problem, routes: Routes, parts: int, division: int) -> Itera
     atoms = _atoms(problem, routes)
     places = atoms.places @ turned
 
-    def cut(own: Ints, count: int) -> Iterator[Part]:
+    def cut(own: Indices, count: int) -> Iterator[Part]:
         if count == 1 or len(own) < 2:
             yield atoms.part(own)
             return
@@ -154,7 +152,7 @@ def divide(problem: Problem, routes: Routes, parts: int, division: int) -> Itera
     return (part for part in cut(np.arange(len(atoms.places)), parts) if part.robots)
 
 
-def _parted(own: Ints, share: float, counts: Ints) -> tuple[Ints, Ints]:
+def _parted(own: Indices, share: float, counts: Indices) -> tuple[Indices, Indices]:
     """The first atoms, up to a share of all that is counted, and the others."""
     sums = np.cumsum(counts[own])
     at = int(np.searchsorted(sums, share * sums[-1], side="right")) if len(sums) else 0

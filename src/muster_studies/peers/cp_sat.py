@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 
 _MOST_TASKS = 80
 """Arcs grow with the square of the tasks, times robots."""
-_TREE: Mapping[str, Any] = {
+TREE: Mapping[str, Any] = {
     "linearization_level": 0,
     "cp_model_probing_level": 0,
     "symmetry_level": 0,
     "max_presolve_iterations": 1,
 }
-_LNS: Mapping[str, Any] = {**_TREE, "interleave_search": True, "use_lns_only": True}
+LNS: Mapping[str, Any] = {**TREE, "interleave_search": True, "use_lns_only": True}
 
 
 class CpSat:
@@ -91,7 +91,7 @@ class _Run:
         program.maximise_weight()
         program.hint(self.routes)
         self.build_s += time.perf_counter() - begin
-        return self._search(program, seconds, _TREE)
+        return self._search(program, seconds, TREE)
 
     def lower_value(self, seconds: float) -> None:
         """Minimise the objective at the weight, and number of tasks, that the plan has."""
@@ -100,7 +100,7 @@ class _Run:
         weight = sum(self._weights[j] for route in self.routes for j in route)
         program.minimise_value(weight, self.count, None, self._problem.value(self.routes)[1])
         self.build_s += time.perf_counter() - begin
-        for parameters in (_TREE, _LNS):
+        for parameters in (TREE, LNS):
             program.hint(self.routes)
             program.complete_hint()
             self._search(program, seconds / 2, parameters)

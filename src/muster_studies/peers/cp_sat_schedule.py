@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
-from typing import Any
 
 from muster.allocation import greedy
+from muster_studies.peers.cp_sat import LNS, TREE
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, missing
 from muster_studies.peers.processor_time import ProcessorStop
@@ -18,13 +17,6 @@ from muster_studies.peers.processor_time import ProcessorStop
 _ROOM = 1 + 1e-5
 """Rounded up, a plan takes longer by less."""
 _TREE_SHARE = 1 / 3
-_TREE: Mapping[str, Any] = {
-    "linearization_level": 0,
-    "cp_model_probing_level": 0,
-    "symmetry_level": 0,
-    "max_presolve_iterations": 1,
-}
-_LNS: Mapping[str, Any] = {**_TREE, "interleave_search": True, "use_lns_only": True}
 
 
 class CpSatSchedule:
@@ -59,6 +51,6 @@ class CpSatSchedule:
         latest = math.ceil(instance.problem.value(routes)[1] * instance.seconds.scale * _ROOM)
         program = ScheduleProgram(instance, plan, latest)
         build_s = time.perf_counter() - begin
-        for parameters, share in ((_TREE, _TREE_SHARE), (_LNS, 1 - _TREE_SHARE)):
+        for parameters, share in ((TREE, _TREE_SHARE), (LNS, 1 - _TREE_SHARE)):
             program.improve(seed, parameters, ProcessorStop(seconds * share).due)
         return Answer(program.plan, None, build_s)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from muster_studies.effort import Effort
-from muster_studies.peers.contest import Result, Run, perform
-from muster_studies.peers.cp_sat_schedule import CpSatSchedule
+from muster_studies.peers.contest import WAITING_PEER, Result, Run, perform
 from muster_studies.peers.machine import machine_and_versions, require_comparable
 from muster_studies.peers.timed_effort import QUICK_S, seeds_of
 from muster_studies.peers.waiting_table import Waiting
@@ -29,17 +28,17 @@ def peers_waiting_study() -> Repetition[Run, Result]:
 
 
 def _check(effort: Effort) -> None:
-    require_comparable(effort, [CpSatSchedule()])
+    require_comparable(effort, [WAITING_PEER])
 
 
 def _legend(effort: Effort, found: Mapping[Run, Result]) -> tuple[str, ...]:
-    seeds, peer = seeds_of(effort), CpSatSchedule()
+    seeds = seeds_of(effort)
     quick = f" With --quick every limit is {QUICK_S:g} s." if effort.quick else ""
     return (
-        machine_and_versions([peer]),
+        machine_and_versions([WAITING_PEER]),
         "Times are of the processor, with one thread, and each solver runs alone; handing over the model comes on top."
         f"{quick} All plans are judged by muster.verify in double precision.",
         f"search is random: mean and worst of {'seed 0' if seeds == 1 else f'seeds 0 to {seeds - 1}'}. CP-SAT runs "
         "once. search has its default settings.",
-        f"CP-SAT: {peer.settings}.",
+        f"CP-SAT: {WAITING_PEER.settings}.",
     )
