@@ -69,7 +69,7 @@ def test_the_schema_accepts_keys_without_value_that_the_reader_accepts(validator
 @pytest.mark.parametrize(
     "name",
     [
-        *("unknown-key-top", "unknown-key-robot-no-hint", "unknown-key-camera", "reserved-goods-and-energy"),
+        *("unknown-key-top", "unknown-key-robot-no-hint", "unknown-key-camera", "goods-wrong", "stations-wrong"),
         *("lat-lon-and-position", "lat-lon-out-of-range", "lat-lon-wrong-origin"),
         *("missing-schema", "missing-robots", "missing-tasks", "missing-position", "no-robots", "wrong-schema-version"),
         *("robots-mapping", "skills-text", "flag-number", "negative-work-capacity", "zero-speed", "unknown-kind"),

@@ -210,7 +210,7 @@ def _stops(problem: Problem, inspection: core.Inspection) -> list[tuple[RouteSto
     stops = inspection.stops
     if stops is None:
         return [() for _ in problem.robots]
-    return [tuple(RouteStop(problem.tasks[j].id, *times) for j, *times in row) for row in stops]
+    return [tuple(RouteStop(problem.tasks[j].id, at, begin, end) for j, at, begin, end in row) for row in stops]
 
 
 def equality_index(usages: Sequence[float]) -> float:

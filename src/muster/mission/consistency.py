@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from muster.mission.deliveries import goods_faults
 from muster.mission.doors import doors_of
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_robots, all_work, robots_that_join, rules_of_tags, unknown_id
@@ -23,6 +24,8 @@ def inconsistencies(mission: MissionData) -> Iterator[Fault]:
     yield from _repeated_ids(mission)
     yield from order_faults(mission)
     yield from relation_faults(mission)
+    yield from goods_faults(mission)
+    yield from _ids_of_stations(mission)
     yield from _locks(mission)
     yield from _suitability(mission)
     yield from _dimensions(mission)
@@ -41,6 +44,19 @@ def _repeated_ids(mission: MissionData) -> Iterator[Fault]:
             if name in first:
                 yield Fault((group, k, "id"), shown(name), f"an id of its own: {group}[{first[name]}] has this one")
             first.setdefault(name, k)
+
+
+def _ids_of_stations(mission: MissionData) -> Iterator[Fault]:
+    """Stations that have the id of another, or of a task."""
+    if not mission.stations:
+        return
+    first: dict[str, str] = {task.id: f"tasks[{k}]" for k, task in enumerate(mission.tasks)}
+    first |= {e.new_task.id: f"events[{k}].new_task" for k, e in enumerate(mission.events) if e.new_task}
+    for k, station in enumerate(mission.stations):
+        if station.id in first:
+            at = ("stations", k, "id")
+            yield Fault(at, shown(station.id), f"an id of its own: {first[station.id]} has this one")
+        first.setdefault(station.id, f"stations[{k}]")
 
 
 def _locks(mission: MissionData) -> Iterator[Fault]:
@@ -78,6 +94,8 @@ def positions(mission: MissionData) -> Iterator[tuple[Path, Point]]:
             yield ("robots", k, "end_position"), robot.end_position
     for k, task in enumerate(mission.tasks):
         yield from _places(("tasks", k), task)
+    for k, station in enumerate(mission.stations):
+        yield ("stations", k, "position"), station.position
     for k, event in enumerate(mission.events):
         if event.robot_joins is not None:
             yield ("events", k, "robot_joins", "position"), event.robot_joins.position
@@ -144,9 +162,14 @@ def _types_without_table(mission: MissionData) -> Iterator[Fault]:
 
 
 def _table_faults(mission: MissionData) -> Iterator[Fault]:
+    at: Path
     robots, tasks = [r.id for r in mission.robots], [t.id for t in mission.tasks]
+    stations = [station.id for station in mission.stations]
+    for name in sorted(set(robots) & set(stations)):
+        at = ("stations", stations.index(name), "id")
+        yield Fault(at, shown(name), "an id that no robot has: both are places of the travel tables")
     for name in sorted(set(robots) & set(tasks)):
-        at: Path = ("tasks", tasks.index(name), "id")
+        at = ("tasks", tasks.index(name), "id")
         yield Fault(at, shown(name), "an id that no robot has: both are places of the travel tables")
     for kind in mission.travel or ():
         if kind not in mission.travel_tables:
@@ -155,10 +178,11 @@ def _table_faults(mission: MissionData) -> Iterator[Fault]:
         rows = set(table.places)
         if any(len(row) != len(table.places) for row in (table.metres, *table.metres)):
             yield Fault(("travel", kind), "rows of different lengths", "a row and a column for each place")
-        missing = [name for name in (*robots, *tasks) if name not in rows]
+        missing = [name for name in (*robots, *tasks, *stations) if name not in rows]
         if missing:
             value = f"no row for {', '.join(missing[:5])}"
-            yield Fault(("travel", kind), value, "a row and a column for each robot and task")
+            all_of_them = "each robot, task and station" if stations else "each robot and task"
+            yield Fault(("travel", kind), value, f"a row and a column for {all_of_them}")
         for start, row in zip(table.places, table.metres, strict=True):
             for end, metres in zip(table.places, row, strict=True):
                 if not metres >= 0:
@@ -195,6 +219,7 @@ def _events(mission: MissionData) -> Iterator[Fault]:
     robots = [r.id for r in mission.robots] + [e.robot_joins.id for e in mission.events if e.robot_joins]
     tasks = [t.id for t in mission.tasks] + [e.new_task.id for e in mission.events if e.new_task]
     doors = list(doors_of(mission))
+    stations = [station.id for station in mission.stations]
     for k, event in enumerate(mission.events):
         named: Iterable[tuple[Path, str | None, list[str], str]] = (
             (("robot_fails",), event.robot_fails, robots, "robot"),
@@ -205,6 +230,8 @@ def _events(mission: MissionData) -> Iterator[Fault]:
             (("delay_task", "task"), event.delay_task.task if event.delay_task else None, tasks, "task"),
             (("door_closes",), event.door_closes, doors, "door"),
             (("door_opens",), event.door_opens, doors, "door"),
+            (("station_fails",), event.station_fails, stations, "station"),
+            (("station_returns",), event.station_returns, stations, "station"),
         )
         for path, name, known, what in named:
             if name is not None and name not in known:

@@ -92,11 +92,12 @@ def _own_places(record: Mapping[str, Any]) -> list[str]:
 
 
 def _records(data: object) -> Iterator[tuple[Path, dict[str, Any]]]:
-    """Everything in a mission that has places: robots, tasks and their actions, those of events, and tags."""
+    """Everything in a mission that has places: robots, tasks and their actions, those of events, stations, tags."""
     yield from robots_in(data)
     for at, record in tasks_in(data):
         yield from _of_task(at, record)
     yield from of_events(data, "move_task")
+    yield from listed(data, "stations")
     yield from listed(data, "tags")
     yield from listed(data, "landmarks")
 

@@ -40,6 +40,9 @@ class Event(Checked):
     door_closes: str | None = spec(Text(), "id of the zone or lane that is closed from then on", default=None)
     door_opens: str | None = spec(Text(), "id of the zone or lane that is open from then on", default=None)
 
+    station_fails: str | None = spec(Text(), "id of the station that serves nobody from then on", default=None)
+    station_returns: str | None = spec(Text(), "id of the station that serves again from then on", default=None)
+
     @property
     def door(self) -> str | None:
         """The door that closes or opens."""

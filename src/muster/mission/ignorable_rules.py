@@ -10,9 +10,10 @@ from muster.mission.value_types import shown
 
 IGNORABLE = (
     *("prerequisite", "suitability", "skill", "lock", "capacity"),
-    *("window", "deadline", "shift", "team", "relation", "min-tasks"),
+    *("window", "deadline", "shift", "team", "relation", "load", "battery", "min-tasks"),
 )
-_PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in ("suitability", "lock", "capacity", "min-tasks")}
+_AS_THEY_ARE = ("suitability", "lock", "capacity", "battery", "min-tasks")
+_PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in _AS_THEY_ARE}
 """Words of earlier files and commands, read as before; and the like of the others."""
 
 

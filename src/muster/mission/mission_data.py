@@ -12,6 +12,7 @@ from muster.mission.robots import Robot
 from muster.mission.rules import Rules
 from muster.mission.site import Landmark, Map, Origin, Tag, TravelTable
 from muster.mission.source import IN_PYTHON, Source
+from muster.mission.stations import Station
 from muster.mission.tasks import Found, Task
 from muster.mission.time_types import Moment
 from muster.mission.value_types import Choice, Many, Number, Table, Text
@@ -42,6 +43,9 @@ class MissionData(Checked):
         ),
         "scores of robot types for task types; without it every pair is allowed",
         default=None,
+    )
+    stations: tuple[Station, ...] = spec(
+        Many(Record(Station, "a station")), "where robots charge, swap batteries or unload", default=()
     )
     robots: tuple[Robot, ...] = spec(Many(Record(Robot, "a robot"), minimum=1), "the team")
     tasks: tuple[Task, ...] = spec(Many(Record(Task, "a task")), "the work")

@@ -22,6 +22,7 @@ from muster.mission.records import findings, record, shown_if_used
 from muster.mission.robots import Camera, Robot
 from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Landmark, Map, Origin, Point, Tag, TravelTable, Zone
+from muster.mission.stations import Battery, Station
 from muster.mission.tasks import Action, Found, Task, Work
 from muster.mission.text_files import write_text
 from muster.mission.yaml_writer import flow_text, plain, with_files_from, yaml_text
@@ -33,6 +34,7 @@ __all__ = [
     "OBJECTIVES",
     "SCHEMA",
     "Action",
+    "Battery",
     "Camera",
     "DelayedTask",
     "Event",
@@ -48,6 +50,7 @@ __all__ = [
     "Point",
     "Robot",
     "Rules",
+    "Station",
     "Tag",
     "Task",
     "TeamPart",

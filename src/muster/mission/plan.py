@@ -26,20 +26,32 @@ _TRAFFIC_TIMES = ("time_with_traffic_s", "time_without_traffic_s")
 
 @dataclass(frozen=True)
 class RouteStop:
-    """When a robot is at one task of its route: seconds from the start of the mission."""
+    """When a robot is at one stop of its route: seconds from the start of the mission.
 
-    task: str
+    `name` is the id of the task or station.
+    `charged` is what a charge at the station adds, in the unit of usage; None: the battery is filled, or not charged.
+    """
+
+    name: str
     arrive_s: float
     begin_s: float
     end_s: float
+    is_station: bool = False
+    charged: float | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """The stop as plan files hold it."""
+        place = {"station" if self.is_station else "task": self.name}
+        charged = {} if self.charged is None else {"charged": self.charged}
+        return place | {name: getattr(self, name) for name in STOP_TIMES} | charged
 
 
 @dataclass(frozen=True)
 class Route:
-    """One robot's ordered tasks.
+    """One robot's ordered tasks, and the stations between them.
 
-    A plan from elsewhere may have no `usage`, in the unit of the plan, and no `stops`; else these are the tasks again,
-    with the times of the earliest schedule.
+    A plan from elsewhere may have no `usage`, in the unit of the plan, and no `stops`; else these are the tasks and
+    stations again, with the times of the earliest schedule.
     """
 
     robot: str
@@ -50,7 +62,7 @@ class Route:
     def as_dict(self) -> dict[str, Any]:
         """The route as plan files hold it."""
         data: dict[str, Any] = {"robot": self.robot, "tasks": list(self.tasks), "usage": self.usage}
-        return data | ({"stops": [dict(vars(stop)) for stop in self.stops]} if self.stops else {})
+        return data | ({"stops": [stop.as_dict() for stop in self.stops]} if self.stops else {})
 
 
 @dataclass(frozen=True)
@@ -198,9 +210,9 @@ def teams_of(routes: Iterable[tuple[str, Iterable[str]]]) -> dict[str, list[str]
 
 def _times_of(route: Route) -> list[dict[str, Any]]:
     """For each task of a route its times; none where the stops are not those of its tasks."""
-    if tuple(stop.task for stop in route.stops) != route.tasks:
+    if tuple(stop.name for stop in route.stops) != route.tasks:
         return [{} for _ in route.tasks]
-    return [asdict(stop) for stop in route.stops]
+    return [{name: getattr(stop, name) for name in STOP_TIMES} for stop in route.stops]
 
 
 def gap(value: float, bound: float) -> float:

@@ -179,22 +179,25 @@ class _Reading:
         if data is None or data == []:
             return ()
         if not isinstance(data, list):
-            self._refuse(f"routes[{k}].stops", data, "a list of stops, one for each of its tasks")
+            self._refuse(f"routes[{k}].stops", data, "a list of stops, one for each of its tasks and stations")
             return ()
         before = len(self._found)
         for n, stop in enumerate(data):
             self._check_stop(stop, f"routes[{k}].stops[{n}]")
         if len(self._found) > before:
             return ()
-        return tuple(RouteStop(str(stop["task"]), *(float(stop[name]) for name in STOP_TIMES)) for stop in data)
+        return tuple(map(_stop_of, data))
 
     def _check_stop(self, stop: object, at: str) -> None:
-        if not isinstance(stop, dict) or not _is_id(stop.get("task")):
-            self._refuse(at, stop, f"a mapping with task, {', '.join(STOP_TIMES)}")
+        if not isinstance(stop, dict) or _is_id(stop.get("task")) == _is_id(stop.get("station")):
+            self._refuse(at, stop, f"a mapping with task or station, {', '.join(STOP_TIMES)}")
             return
         for name in STOP_TIMES:
             if not _finite(stop.get(name)):
                 self._refuse(f"{at}.{name}", stop.get(name), "a finite number, in seconds")
+        charged = stop.get("charged")
+        if charged is not None and (_is_id(stop.get("task")) or not _finite(charged) or charged < 0):
+            self._refuse(f"{at}.charged", charged, "a finite number of at least 0, at a station")
 
     def _unassigned(self, data: Mapping[str, Any]) -> tuple[Unassigned, ...]:
         left_out = []
@@ -243,6 +246,19 @@ class _Reading:
         for name in wrong:
             self._refuse(f"book[{k}].{name}", award[name], _AWARD[name][1])
         return not wrong
+
+
+def _stop_of(data: Mapping[str, Any]) -> RouteStop:
+    charged, is_station = data.get("charged"), data.get("task") is None
+    arrive_s, begin_s, end_s = (float(data[name]) for name in STOP_TIMES)
+    return RouteStop(
+        str(data["station" if is_station else "task"]),
+        arrive_s,
+        begin_s,
+        end_s,
+        is_station,
+        None if charged is None else float(charged),
+    )
 
 
 def _finite(value: object) -> bool:

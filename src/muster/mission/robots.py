@@ -6,11 +6,13 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from muster.mission.clock_times import SHIFT
+from muster.mission.goods import Amount, Amounts, by_commodity
 from muster.mission.near_matches import did_you_mean
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.rules import Rules
 from muster.mission.site import IN_DEGREES, Point
+from muster.mission.stations import Battery
 from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Table, Text, Whole, shown
 
 
@@ -48,6 +50,16 @@ class Robot(Checked):
         default=None,
         if_used=True,
     )
+    load_capacity: Amount | None = spec(
+        Amounts(minimum=0),
+        "the most that it carries, or by commodity; without it unlimited",
+        default=None,
+        if_used=True,
+    )
+    load_at_start: Amount | None = spec(
+        Amounts(minimum=0), "what it carries at first, or by commodity", default=None, if_used=True
+    )
+    battery: Battery | None = spec(Record(Battery, "a battery"), "its energy", default=None, if_used=True)
     speed_mps: float = spec(Number(above=0), "speed of travel", default=1.0)
     efficiency: float = spec(Number(above=0), "work of duration d takes d / efficiency (aging factor)", default=1.0)
     return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)
@@ -73,7 +85,7 @@ class Robot(Checked):
     avoidance_priority: float = spec(Number(minimum=0), "who gives way: the lower one", default=0.0)
     camera: Camera | None = spec(Record(Camera, "a camera"), "its camera", default=None)
 
-    tied = frozenset({"skill_quality", "available_until_s"})
+    tied = frozenset({"skill_quality", "available_until_s", "load_at_start"})
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
@@ -84,6 +96,10 @@ class Robot(Checked):
         begins, ends = values.get("available_from_s", 0.0), values.get("available_until_s")
         if ends is not None and ends < begins:
             yield Fault(("available_until_s",), shown(ends), f"a number of at least available_from_s ({begins:g})")
+        most = values.get("load_capacity")
+        for name, amount in by_commodity(values.get("load_at_start")).items():
+            if most is not None and amount > (room := by_commodity(most).get(name, 0.0)):
+                yield Fault(("load_at_start",), f"{amount:g} {name}".rstrip(), f"at most load_capacity ({room:g})")
 
     def place_at_end(self, rules: Rules) -> Point | None:
         """Where the robot's route must end, or None where it may end anywhere."""

@@ -40,13 +40,13 @@ def _cycles(tasks: Sequence[Task]) -> Iterator[Fault]:
     Tasks that start together are one node, named by the first of them. Not all cycles are named: there can be more than
     anyone could read, and the others go when one task of theirs is set right, or are found when it was.
     """
-    if not any(task.prerequisites for task in tasks):
+    if not any(_awaits(task) for task in tasks):
         return
     index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
     node = tied_by("starts_with", tasks)
     before: list[list[int]] = [[] for _ in tasks]
     for k, task in enumerate(tasks):
-        before[node[k]] += [node[index[name]] for name in task.prerequisites if name in index]
+        before[node[k]] += [node[index[name]] for name in _awaits(task) if name in index]
     state = [0] * len(before)  # 0: not visited, 1: on the way, 2: done
     named: set[int] = set()
     for start in range(len(before)):
@@ -67,6 +67,11 @@ def _cycles(tasks: Sequence[Task]) -> Iterator[Fault]:
                 steps.append(iter(before[following]))
 
 
+def _awaits(task: Task) -> tuple[str, ...]:
+    """The tasks that must be done before a task: its prerequisites, and the one that takes on what it delivers."""
+    return task.prerequisites if task.delivers is None else (*task.prerequisites, task.delivers)
+
+
 def _cycle(tasks: Sequence[Task], node: Sequence[int], knot: list[int]) -> Fault:
     """The fault of a cycle: its tasks, where one starts with the task before it said so."""
     index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
@@ -77,7 +82,7 @@ def _cycle(tasks: Sequence[Task], node: Sequence[int], knot: list[int]) -> Fault
             (k, index[name])
             for k, task in enumerate(tasks)
             if node[k] == here
-            for name in task.prerequisites
+            for name in _awaits(task)
             if name in index and node[index[name]] == there
         )
         words += _reached(tasks, reached, waits)
@@ -85,7 +90,8 @@ def _cycle(tasks: Sequence[Task], node: Sequence[int], knot: list[int]) -> Fault
         reached = reaches
     assert first is not None
     words += _reached(tasks, reached, first)
-    return Fault(("tasks", first, "prerequisites"), f"cycle {' -> '.join(words)}", "prerequisites without a cycle")
+    key = "prerequisites" if tasks[first].prerequisites else "delivers"
+    return Fault(("tasks", first, key), f"cycle {' -> '.join(words)}", "prerequisites without a cycle")
 
 
 def _reached(tasks: Sequence[Task], reached: int | None, waits: int) -> list[str]:

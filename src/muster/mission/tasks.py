@@ -10,6 +10,7 @@ from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.clock_times import DEADLINE, DUE, WINDOW
 from muster.mission.cooperation import Lag, Prerequisite, PrerequisiteOrId, TeamPart
 from muster.mission.errors import MissionError
+from muster.mission.goods import Amount, Amounts
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, findings, record, spec
 from muster.mission.site import IN_DEGREES, Point
@@ -144,6 +145,12 @@ class Work(Checked):
     starts_with: tuple[str, ...] = spec(
         OneOrMany(Text()), "ids of tasks that other robots begin at the same moment", default=(), if_used=True
     )
+    load: Amount | None = spec(
+        Amounts(), "what it takes on board, or by commodity; below 0: puts down", default=None, if_used=True
+    )
+    delivers: str | None = spec(
+        Text(), "id of the task whose load the same robot puts down here", default=None, if_used=True
+    )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)
     only_robots: tuple[str, ...] | None = spec(
@@ -157,7 +164,7 @@ class Work(Checked):
     lags: Mapping[str, Lag] = field(default_factory=dict, hash=False)
     """By prerequisite, those that have one; in files they stand inside `prerequisites`."""
 
-    tied = frozenset({"prerequisites", "lags", "robots_needed", "team", "needs", "action"})
+    tied = frozenset({"prerequisites", "lags", "robots_needed", "team", "needs", "load", "delivers", "action"})
 
     @property
     def is_for_team(self) -> bool:
@@ -197,6 +204,7 @@ class Work(Checked):
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         yield from _team_faults(values)
+        yield from _goods_of_a_team(values)
         yield from _lag_faults(values.get("lags", {}), values.get("prerequisites", ()))
         action = values.get("action")
         if action is not None and action.has_geometry and values.get("actuation_cost"):
@@ -221,6 +229,13 @@ def _team_faults(values: Mapping[str, Any]) -> Iterable[Fault]:
     ways = [name for name in ("robots_needed", "team", "needs") if values.get(name)]
     if len(ways) > 1:
         yield Fault((ways[1],), f"beside {ways[0]}", "at most one of robots_needed, team, needs")
+
+
+def _goods_of_a_team(values: Mapping[str, Any]) -> Iterable[Fault]:
+    many = (values.get("robots_needed") or 1) > 1 or values.get("team") or values.get("needs")
+    for name in ("load", "delivers"):
+        if many and values.get(name) is not None:
+            yield Fault((name,), shown(values[name]), "a task for one robot: goods are on board of one")
 
 
 @record

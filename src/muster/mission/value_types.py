@@ -18,9 +18,7 @@ from muster.mission.near_matches import did_you_mean
 Path = tuple[str | int, ...]
 JsonSchema = dict[str, Any]
 
-RESERVED_NAMES = frozenset(
-    {"load", "delivers", "relay", "load_capacity", "load_at_start", "battery", "stations", "recharge"}
-)
+RESERVED_NAMES = frozenset({"relay"})
 """Keys that a later version will give a meaning; until then they are refused, not ignored."""
 
 OTHER_NAMES = {
@@ -29,6 +27,8 @@ OTHER_NAMES = {
     "time_window": "window_s: [from, until]",
     "abilities": "needs: {name: amount}; abilities are those of robots",
     "needs": "abilities: {name: amount}; needs are those of tasks",
+    "recharge": "stations: [{id, position, services: [charge], charge_per_s}], and battery of robots",
+    "demand": "load: amount; what it takes on board, or below 0 puts down",
 }
 """Keys that people try, and what says it here."""
 

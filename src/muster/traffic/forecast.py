@@ -169,7 +169,7 @@ def _stops(mission: Mission, robot: Robot, route: Sequence[RouteStop]) -> Iterat
     """Where a robot enters and leaves its tasks, and how long it is at each."""
     tasks = {task.id: task for task in mission.tasks}
     for stop in route:
-        motion = motion_of(tasks[stop.task], robot)
+        motion = motion_of(tasks[stop.name], robot)
         if not isinstance(motion, TaskMotion):
             continue
         (x, y), (to_x, to_y) = motion.entry[:2], motion.exit[:2]

@@ -67,14 +67,14 @@ def _stops(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation
     """Find stops whose times are not those of the earliest schedule."""
     visits = {route.robot: {visit.task: visit for visit in route.visits} for route in verdict.routes}
     for route in plan.routes:
-        named = tuple(stop.task for stop in route.stops)
+        named = tuple(stop.name for stop in route.stops)
         if named and named != route.tasks:
             detail = f"the stops are those of {', '.join(named)}, not of the route's tasks"
             yield Violation("stop", route.robot, None, detail)
             continue
         own = visits.get(route.robot, {})
         for stop in route.stops:
-            visit = own.get(stop.task)
+            visit = own.get(stop.name)
             if visit is None:
                 continue
             stated = (stop.arrive_s, stop.begin_s, stop.end_s)
@@ -83,7 +83,7 @@ def _stops(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation
                 continue
             for name, says, is_at in zip(STOP_TIMES, stated, found, strict=True):
                 if not agrees(says, is_at, tolerance, RELATIVE_TOLERANCE):
-                    yield Violation("stop", route.robot, stop.task, f"{name}: the plan says {says}, it is {is_at}")
+                    yield Violation("stop", route.robot, stop.name, f"{name}: the plan says {says}, it is {is_at}")
 
 
 def _history(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
