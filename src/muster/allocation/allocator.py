@@ -123,12 +123,15 @@ def routes_of(problem: Problem, plan: Plan, what: str = "start") -> Routes:
         if the plan names robots or tasks that the problem does not have.
     """
     routes: Routes = [[] for _ in problem.robots]
+    stations = {station.id for station in problem.stations}
     for route in plan.routes:
         if route.robot not in problem.robot_index:
             raise ParameterError(f"{what}: robot {route.robot} is not in the mission")
         if routes[problem.robot_index[route.robot]]:
             raise ParameterError(f"{what}: robot {route.robot} has two routes")
         for task in route.tasks:
+            if task in stations:
+                continue  # which are chosen anew
             if task not in problem.task_index:
                 raise ParameterError(f"{what}: task {task} is not in the mission")
             routes[problem.robot_index[route.robot]].append(problem.task_index[task])
@@ -198,7 +201,7 @@ def scheduled(problem: Problem, routes: Routes) -> list[Route]:
 
 def _with_times(problem: Problem, routes: Routes, inspection: core.Inspection) -> list[Route]:
     return [
-        Route(robot.id, tuple(problem.tasks[j].id for j in route), usage, stops)
+        Route(robot.id, tuple(stop.name for stop in stops) or tuple(problem.tasks[j].id for j in route), usage, stops)
         for robot, route, usage, stops in zip(
             problem.robots, routes, inspection.usages, _stops(problem, inspection), strict=True
         )
@@ -207,10 +210,18 @@ def _with_times(problem: Problem, routes: Routes, inspection: core.Inspection) -
 
 def _stops(problem: Problem, inspection: core.Inspection) -> list[tuple[RouteStop, ...]]:
     """By robot the times of the earliest schedule; nothing where there is none, which is for the judge to say."""
-    stops = inspection.stops
+    stops = inspection.all_stops
     if stops is None:
         return [() for _ in problem.robots]
-    return [tuple(RouteStop(problem.tasks[j].id, at, begin, end) for j, at, begin, end in row) for row in stops]
+    return [tuple(_stop(problem, *stop) for stop in row) for row in stops]
+
+
+def _stop(problem: Problem, place: int, arrive_s: float, begin_s: float, end_s: float, charged: float) -> RouteStop:
+    if place < len(problem.tasks):
+        return RouteStop(problem.tasks[place].id, arrive_s, begin_s, end_s)
+    station = problem.stations[place - len(problem.tasks) - 2 * len(problem.robots)]
+    amount = charged if station.charges else None
+    return RouteStop(station.id, arrive_s, begin_s, end_s, is_station=True, charged=amount)
 
 
 def equality_index(usages: Sequence[float]) -> float:

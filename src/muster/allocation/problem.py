@@ -16,6 +16,7 @@ from muster import core
 from muster.allocation.charges import Charge, Drains
 from muster.allocation.lengths import Measured
 from muster.allocation.rules import RULES, Rule
+from muster.allocation.rules.load import pickups
 from muster.allocation.subproblem import cut_down
 from muster.allocation.task_geometry import TaskGeometry
 from muster.allocation.timed_arrays import timed_arrays
@@ -25,8 +26,8 @@ from muster.allocation.waiting import NO_WAITING, Waiting
 from muster.allocation.work_times import work_times
 from muster.mission.errors import ParameterError
 from muster.mission.garbage import collector_paused
-from muster.mission.ignorable_rules import ignored_rules
-from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Task
+from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
+from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Station, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
@@ -113,7 +114,8 @@ class Problem:
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
         charges = tuple(self.charges[i] for i in robots) if self.charges else ()
         n, m = len(self.tasks), len(self.robots)
-        places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots)]
+        stations = range(n + 2 * m, n + 2 * m + len(self.stations))
+        places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots), *stations]
         known = None
         if self.known is not None or self.mission.travel_rule == "map":
             known = self.measured.part(robots, places, tasks)
@@ -173,6 +175,12 @@ class Problem:
         if not self.holds("prerequisite"):
             return [[] for _ in self.tasks]
         return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
+
+    @cached_property
+    def awaited(self) -> list[list[int]]:
+        """For each task those that must be done before it: its prerequisites, and the one whose load it delivers."""
+        found = zip(self.prerequisites, pickups(self), strict=True)
+        return [sorted({*before, pickup} - {-1}) for before, pickup in found]
 
     @cached_property
     def timed_rules(self) -> TimedRules:
@@ -312,7 +320,7 @@ class Problem:
             priority=_floats(t.priority for t in self.tasks),
             allowed=self.allowed_by_kind,
             kind=self.kinds,
-            prerequisites=self.prerequisites,
+            prerequisites=self.awaited,
             entry=self._entries,
             exit=self._exits,
             place_class=self._task_geometry.classes,
@@ -410,7 +418,20 @@ class Problem:
     @property
     def _robots_places(self) -> list[Point]:
         ends = [r.place_at_end(self.mission.rules) or r.position for r in self.robots]
-        return [*(r.position for r in self.robots), *ends]
+        return [*(r.position for r in self.robots), *ends, *(station.position for station in self.stations)]
+
+    @property
+    def stations(self) -> tuple[Station, ...]:
+        return self.mission.stations
+
+    @cached_property
+    def usage_with_calls(self) -> Floats:
+        """(m, n) what a route with one task, or one transport, uses with its calls at stations; inf: it runs short.
+
+        Nothing else is looked at: no capacities, times, loads.
+        """
+        others = tuple(rule for rule in IGNORABLE if rule != "battery")
+        return core.usage_with_calls(replace(self, ignored=others, fixed=()).core, pickups(self))
 
     def value(self, routes: Sequence[Sequence[int]]) -> tuple[float, float]:
         """Weight completed and objective of routes."""

@@ -15,7 +15,7 @@ def cut_down(mission: Mission, robots: Sequence[Robot], tasks: Sequence[Task]) -
     not know. A problem has its tasks itself.
     """
     kinds = {robot.type for robot in robots}
-    names = [*(robot.id for robot in robots), *(task.id for task in tasks)]
+    names = [*(robot.id for robot in robots), *(task.id for task in tasks), *(s.id for s in mission.stations)]
     return mission.at_once(
         robots=tuple(robots),
         tasks=(),

@@ -39,9 +39,9 @@ def with_copies(problem: Problem, usable: Bools) -> Copied | None:
 
 def of_tasks(problem: Problem, copies: list[int]) -> Problem:
     """The problem of these tasks, some of them named several times; of use for lengths alone."""
-    n, m = len(problem.tasks), len(problem.robots)
+    n, m, s = len(problem.tasks), len(problem.robots), len(problem.stations)
     known = None
     if len(problem.travel[0]):
-        places = [*copies, *range(n, n + 2 * m)]
+        places = [*copies, *range(n, n + 2 * m + s)]
         known = problem.measured.part(range(m), places, copies)
     return replace(problem, tasks=tuple(problem.tasks[j] for j in copies), known=known, fixed=())

@@ -29,7 +29,8 @@ def travel_table(
     """
     types = sorted({robot.type or "" for robot in robots})
     starts = [robot.id for robot in robots]
-    names = [*(task.id for task in tasks), *starts, *starts]  # a robot ends, if anywhere, where it started
+    stations = [station.id for station in mission.stations]
+    names = [*(task.id for task in tasks), *starts, *starts, *stations]  # a robot ends, if anywhere, where it started
     tables = []
     for kind in types:
         given = mission.travel_tables[kind]

@@ -49,6 +49,7 @@ from muster.core._core import (
     nearest_in_space,
     rvo,
     squared_distances,
+    usage_with_calls,
 )
 
 __all__ = [
@@ -97,4 +98,5 @@ __all__ = [
     "nearest_in_space",
     "rvo",
     "squared_distances",
+    "usage_with_calls",
 ]

@@ -17,6 +17,7 @@ namespace muster {
 namespace {
 
 using Stops = std::vector<std::vector<std::tuple<int, double, double, double>>>;
+using AllStops = std::vector<std::vector<std::tuple<int, double, double, double, double>>>;
 
 std::optional<Stops> stops_of(Inspection& inspection) {
   const auto found = inspection.stops();
@@ -24,7 +25,20 @@ std::optional<Stops> stops_of(Inspection& inspection) {
   Stops stops;
   for (const auto& row : *found) {
     auto& own = stops.emplace_back();
-    for (const StopTimes& stop : row) own.emplace_back(stop.task, stop.arrive, stop.begin, stop.end);
+    for (const StopTimes& stop : row) {
+      if (stop.place < inspection.problem().tasks()) own.emplace_back(stop.place, stop.arrive, stop.begin, stop.end);
+    }
+  }
+  return stops;
+}
+
+std::optional<AllStops> all_stops_of(Inspection& inspection) {
+  const auto found = inspection.stops();
+  if (!found) return std::nullopt;
+  AllStops stops;
+  for (const auto& row : *found) {
+    auto& own = stops.emplace_back();
+    for (const StopTimes& stop : row) own.emplace_back(stop.place, stop.arrive, stop.begin, stop.end, stop.charged);
   }
   return stops;
 }
@@ -50,6 +64,8 @@ void bind_inspection(nb::module_& m) {
       .def_prop_ro(
           "stops", &stops_of,
           "By robot: task, arrival, begin and end of each stop of the earliest schedule; None if there is none.")
+      .def_prop_ro("all_stops", &all_stops_of,
+                   "The same with those at stations: place, arrival, begin, end and what is charged.")
       .def("cheapest_insertion", &Inspection::cheapest_insertion, "robot"_a, "task"_a,
            nb::call_guard<nb::gil_scoped_release>(),
            "The place in the robot's route where the task adds least usage and nothing deadlocks, whatever the "

@@ -2,11 +2,13 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "bindings.hpp"
@@ -57,6 +59,16 @@ std::vector<std::vector<TimeWindow>> windows_of(const Windows& windows) {
   return result;
 }
 
+using Stations = std::vector<std::tuple<double, double, bool, bool, int>>;
+
+std::vector<Station> stations_of(const Stations& stations) {
+  std::vector<Station> result;
+  for (const auto& [charge, swap_s, unloads, partial, slots] : stations) {
+    result.push_back({charge, swap_s, unloads, partial, slots});
+  }
+  return result;
+}
+
 std::vector<std::vector<TeamPart>> parts_of(const Parts& parts) {
   std::vector<std::vector<TeamPart>> result;
   for (const auto& row : parts) {
@@ -80,7 +92,9 @@ void bind_problem(nb::module_& m) {
              Numbers available_until, Numbers after, Numbers within, Indices unit, const Parts& parts,
              Numbers abilities, Numbers needs, const std::vector<std::vector<int>>& same_robot,
              const std::vector<std::vector<int>>& other_robot, Indices min_tasks, Numbers acceleration, Numbers climb,
-             Numbers turn, bool over_map, bool makespan_includes_return, Numbers waiting, Flags waits) {
+             Numbers turn, bool over_map, bool makespan_includes_return, int commodities, Numbers load, Numbers pending, Indices pickup,
+             Numbers load_capacity, Numbers load_at_start, Numbers battery, Numbers battery_at_start,
+             const Stations& stations, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 3 || entry.shape(2) != 3 || exit.ndim() != 3 || exit.shape(2) != 3 || !table_fits) {
@@ -125,6 +139,15 @@ void bind_problem(nb::module_& m) {
             data.turn = numbers(turn);
             data.over_map = over_map;
             data.makespan_includes_return = makespan_includes_return;
+            data.commodities = commodities;
+            data.load = numbers(load);
+            data.pending = numbers(pending);
+            data.pickup.assign(pickup.data(), pickup.data() + pickup.size());
+            data.load_capacity = numbers(load_capacity);
+            data.load_at_start = numbers(load_at_start);
+            data.battery = numbers(battery);
+            data.battery_at_start = numbers(battery_at_start);
+            data.stations = stations_of(stations);
             data.waiting = numbers(waiting);
             data.waits = flags(waits);
             new (self) Problem(std::move(data));
@@ -134,7 +157,8 @@ void bind_problem(nb::module_& m) {
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
           "windows"_a, "deadline"_a, "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a,
           "abilities"_a, "needs"_a, "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a,
-          "turn"_a, "over_map"_a, "makespan_includes_return"_a, "waiting"_a, "waits"_a,
+          "turn"_a, "over_map"_a, "makespan_includes_return"_a, "commodities"_a, "load"_a, "pending"_a, "pickup"_a, "load_capacity"_a,
+          "load_at_start"_a, "battery"_a, "battery_at_start"_a, "stations"_a, "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
@@ -148,7 +172,11 @@ void bind_problem(nb::module_& m) {
           "`abilities` (m, a) and `needs` (n, a); by "
           "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer "
           "than "
-          "the straight way has bends; `waiting` (n + 2m, n + 2m) seconds for others between places, of the robots "
+          "the straight way has bends; `load` and `pending` (n, commodities) what a task adds to the load, and how much "
+          "of that another delivers, `pickup` (n,) the task that takes on what a task delivers, -1 for none, "
+          "`load_capacity` and `load_at_start` (m, commodities); `battery` and `battery_at_start` (m,) in the unit of "
+          "usage, the reserve taken off, inf without a battery; `stations` (charge by second, swap_s, unloads, partial, "
+          "slots), whose places stand after the ends of robots; `waiting` (n + 2m, n + 2m) seconds for others between places, of the robots "
           "that "
           "`waits` (m,) marks. Raises ValueError if shapes do not fit.")
       .def_prop_ro("tasks", &Problem::tasks)

@@ -43,6 +43,9 @@ std::optional<UnitInsertion> best_insertion(Roster& roster, int unit, bool appen
 std::vector<std::tuple<int, int, int>> members_of(const UnitInsertion& insertion) {
   std::vector<std::tuple<int, int, int>> members;
   for (const Member& member : insertion.members) members.emplace_back(member.task, member.robot, member.at);
+  if (insertion.second_unit >= 0) {
+    members.emplace_back(insertion.second.task, insertion.second.robot, insertion.second.at);
+  }
   return members;
 }
 
@@ -50,7 +53,9 @@ std::vector<std::vector<std::tuple<int, double, double, double>>> stops_of(const
   std::vector<std::vector<std::tuple<int, double, double, double>>> stops;
   for (const auto& row : roster.stops()) {
     auto& own = stops.emplace_back();
-    for (const StopTimes& stop : row) own.emplace_back(stop.task, stop.arrive, stop.begin, stop.end);
+    for (const StopTimes& stop : row) {
+      if (stop.place < roster.problem().tasks()) own.emplace_back(stop.place, stop.arrive, stop.begin, stop.end);
+    }
   }
   return stops;
 }

@@ -20,6 +20,7 @@ class Inspection {
  public:
   Inspection(const Problem& problem, const Routes& routes);
 
+  const Problem& problem() const { return problem_; }
   bool admissible() const { return admissible_; }
   // Of the routes as they are, whatever the capacities; none if they deadlock.
   std::optional<double> objective() const { return objective_; }

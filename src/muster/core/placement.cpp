@@ -16,6 +16,7 @@ Placement::Placement(Roster& roster)
     : roster_(roster),
       problem_(roster.problem_),
       timeline_(roster.timeline_),
+      calls_(roster.calls()),
       relations_(roster),
       ranges_(problem_.robots()),
       choice_(problem_),
@@ -23,10 +24,16 @@ Placement::Placement(Roster& roster)
       busy_(problem_.robots(), 0) {}
 
 const UnitInsertion* Placement::best(int unit, const Trial& trial) {
+  if (const int other = roster_.partner(unit); other >= 0) {
+    const int task = problem_.tasks_of_unit(unit).front(), partner = problem_.tasks_of_unit(other).front();
+    const bool found = problem_.delivers(task) ? best_transport(partner, task, trial) : best_transport(task, partner, trial);
+    return found ? &best_ : nullptr;
+  }
   trial_ = &trial;
   best_.unit = unit;
   best_.score = kNever;
   best_.members.clear();
+  best_.second_unit = -1;
   labels_ = roster_.timeline_.labels_for(unit);
   if (labels_.empty()) return nullptr;
   relations_.look_at(unit, trial.robots);
@@ -41,6 +48,7 @@ const UnitInsertion* Placement::best(int unit, const Trial& trial) {
 void Placement::try_all(int unit) {
   if (alone(unit)) {
     try_alone(problem_.tasks_of_unit(unit).front());
+    judge_candidates();
   } else {
     try_cuts(unit);
   }
@@ -126,13 +134,14 @@ void Placement::try_near(int task) {
 std::pair<int, int> Placement::places(int robot) const {
   const auto& route = timeline_.route(robot);
   const int size = static_cast<int>(route.size()) - 2;
+  const bool calls = may_call(robot);
   const auto too_early = [&](int number) {  // the stop after the place
     const Visit& next = timeline_.visit(number);
-    return next.label <= labels_.low || !timeline_.in_time(ready_ + measured_work_, next.latest);
+    return next.label <= labels_.low || (!calls && !timeline_.in_time(ready_ + measured_work_, next.latest));
   };
   const auto early_enough = [&](int number) {  // the stop before it
     const Visit& last = timeline_.visit(number);
-    return last.label < labels_.high && timeline_.in_time(last.leave, latest_);
+    return last.label < labels_.high && (calls || timeline_.in_time(last.leave, latest_));
   };
   const auto first = std::partition_point(route.begin() + 1, route.end(), too_early);
   const auto last = std::partition_point(route.begin(), route.end() - 1, early_enough);
@@ -151,7 +160,7 @@ void Placement::measure_alone(int task, double work) {
 }
 
 void Placement::try_place(int robot, int task, int at) {
-  if (overlooked() || !in_reach(robot, task, at)) return;
+  if (overlooked() || !in_reach(robot, task, at) || !has_room(robot, task, at)) return;
   const double work = problem_.work_time(robot, task);
   measure_alone(task, work);
   const bool sees_usage = problem_.objective() != Objective::makespan;
@@ -172,6 +181,10 @@ void Placement::try_place(int robot, int task, int at) {
   if (value >= best_.score) return;
   if (!sees_usage) measure_usage(there, task);
   if (!problem_.fits(robot, there.usage + there.growth)) return;
+  if (may_call(robot)) {
+    const double ends = begin + std::max(tail_, work + there.onward);
+    return keep({value, there.growth, there.usage, ends, there.in + work + there.out - there.direct, robot, at, -1});
+  }
   best_.score = value;
   best_.growth = there.growth;
   best_.members.assign(1, {task, robot, at});
@@ -245,8 +258,9 @@ Offer Placement::arrival(int robot, int task, int at, double work) const {
   offer.at = at;
   offer.work = work;
   offer.in = problem_.travel_time(robot, last.place, task);
-  offer.arrive = last.leave + offer.in;
+  offer.arrive = leave(robot, at) + offer.in;
   offer.direct = next.unit >= 0 || last.unit >= 0 ? next.in : 0.0;
+  if (may_call(robot) && offer.direct > 0.0) offer.direct = problem_.travel_time(robot, last.place, next.place);
   offer.onward = next.tail;
   return offer;
 }
@@ -256,7 +270,7 @@ void Placement::go_on(Offer& offer, int task) const {
   const Visit& next = timeline_.stop(offer.robot, offer.at + 1);
   const bool goes_on = next.unit >= 0 || problem_.must_end(offer.robot);
   offer.out = goes_on ? problem_.travel_time(offer.robot, task, next.place) : 0.0;
-  offer.latest = next.latest - offer.out;
+  offer.latest = latest_begin(offer.robot, offer.at + 1) - offer.out;
   offer.onward = next.unit >= 0 || problem_.makespan_includes_return() ? offer.out + next.tail : 0.0;
   if (next.unit >= 0) offer.next = timeline_.begin_of(next.unit);
 }
@@ -271,6 +285,7 @@ void Placement::measure_usage(Offer& offer, int task) const {
   offer.growth = problem_.travel_usage(robot, last.place, task) + problem_.work_usage(robot, task);
   if (goes_on) offer.growth += problem_.travel_usage(robot, task, next.place);
   if (went_on) offer.growth -= problem_.travel_usage(robot, last.place, next.place);
+  if (may_call(robot)) offer.growth = std::min(offer.growth, growth_beside_calls(robot, task, offer.at));
   if (problem_.objective() == Objective::average) offer.late = later_arrivals(robot, task, offer.at, offer.growth);
 }
 

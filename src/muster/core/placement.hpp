@@ -34,6 +34,18 @@ class Placement {
     bool tried;
   };
 
+  // A place that is not judged with its calls yet: of a task, or of two as one transport.
+  struct Candidate {
+    double score, growth, usage;
+    double ends, takes;  // when the mission ends by it at the earliest, and what it takes of the robot's time
+    int robot, at, second_at;  // -1: one task
+  };
+  // A robot under way with the load of a transport.
+  struct Walk {
+    int robot, pickup, delivery, at, place;
+    double time, pickup_begin, pickup_end, growth, late, takes;
+  };
+
   bool alone(int unit) const;
   void try_all(int unit);
   bool suits(int unit);
@@ -46,6 +58,25 @@ class Placement {
   void try_place(int robot, int task, int at);
   void measure_alone(int task, double work);
   std::pair<int, int> places(int robot) const;
+
+  // Goods: a task that takes something on board with the one that delivers it, and loads.
+  bool best_transport(int pickup, int delivery, const Trial& trial);
+  void try_transport_with(int robot, int pickup, int delivery);
+  void try_pickup_at(int robot, int at, int pickup, int delivery);
+  void keep_to_near_robots(int pickup, int delivery);
+  bool room_for_transport(const Walk& walk, int at) const;
+  bool pass_stop(Walk& walk, int at) const;
+  void try_delivery_at(const Walk& walk, int at);
+  bool has_room(int robot, int task, int at) const;
+
+  // Energy and stations: what a place costs with the calls that the route needs then.
+  bool may_call(int robot) const { return calls_ && problem_.may_run_short(robot); }
+  double leave(int robot, int at) const;
+  double latest_begin(int robot, int at) const;
+  double growth_beside_calls(int robot, int task, int at) const;
+  void keep(Candidate&& candidate);
+  void judge_candidates();
+  void take(const Candidate& candidate, double score, double growth);
 
   // Teams.
   void try_cuts(int unit);
@@ -97,7 +128,13 @@ class Placement {
   const Problem& problem_;
   const Timeline& timeline_;
   const Trial* trial_ = nullptr;
+  StationCalls* calls_;
   UnitInsertion best_;
+  std::vector<Candidate> places_to_judge_;
+  // Of a transport.
+  Labels second_labels_{0.0, 1.0};
+  double second_ready_ = 0.0, second_latest_ = kNever, second_tail_ = 0.0, after_ = 0.0, within_ = kNever;
+  std::vector<char> may_transport_;
   // Of the unit.
   Labels labels_{0.0, 1.0};
   double ready_ = 0.0, peak_ = 0.0;

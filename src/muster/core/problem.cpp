@@ -39,7 +39,7 @@ Problem::Problem(ProblemData data)
     : data_(std::move(data)),
       tasks_(static_cast<int>(data_.priority.size())),
       robots_(static_cast<int>(data_.capacity.size())),
-      places_(tasks_ + 2 * robots_),
+      places_(tasks_ + 2 * robots_ + static_cast<int>(data_.stations.size())),
       classes_(1),
       given_table_(!data_.table.empty()),
       steady_(data_.turn.empty() && data_.waiting.empty()),
@@ -80,9 +80,12 @@ Problem::Problem(ProblemData data)
     require(data_.table.size() == classes_ * places * places, "the travel table has the wrong size");
   }
   check_times();
+  check_goods();
   dependants_ = transposed(data_.prerequisites);
   find_robots_allowed();
   find_units();
+  find_transports();
+  find_who_may_run_short();
   symmetric_ = find_symmetric();
   if (data_.table.empty() && places_ <= kMostPlacesInTable) {
     std::vector<double> table(places * places);
@@ -117,9 +120,17 @@ bool Problem::find_symmetric() const {
 
 bool Problem::alike(int robot, int other) const {
   const auto same = [&](const auto& values) { return values.empty() || values[robot] == values[other]; };
+  const auto same_loads = [&] {
+    for (int c = 0; c < data_.commodities; ++c) {
+      if (load_capacity(robot, c) != load_capacity(other, c) || load_at_start(robot, c) != load_at_start(other, c)) {
+        return false;
+      }
+    }
+    return true;
+  };
   return same(data_.kind) && same(data_.work_class) && same(data_.time_class) && same(data_.travel_class) &&
          same(data_.place_class) && same(data_.speed) && same(data_.acceleration) && same(data_.climb) &&
-         same(data_.turn) && same(data_.waits);
+         same(data_.turn) && same(data_.waits) && same(data_.battery) && same(data_.battery_at_start) && same_loads();
 }
 
 void Problem::check_times() const {
@@ -153,6 +164,44 @@ void Problem::check_times() const {
               data_.waits.size() == (data_.waiting.empty() ? 0 : robots) &&
               std::ranges::all_of(data_.waiting, [](double seconds) { return seconds >= 0.0; }),
           "waiting needs at least 0 s for each pair of places, and a flag for each robot");
+}
+
+void Problem::check_goods() const {
+  const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
+  const auto commodities = static_cast<std::size_t>(data_.commodities);
+  require(data_.load.size() == tasks * commodities && data_.pending.size() == tasks * commodities &&
+              data_.load_capacity.size() == robots * commodities && data_.load_at_start.size() == robots * commodities,
+          "loads need a value for each commodity");
+  require(data_.pickup.empty() ||
+              (data_.pickup.size() == tasks && std::ranges::all_of(data_.pickup, [&](int j) { return j < tasks_; })),
+          "deliveries need a task for each task");
+  require(data_.battery.size() == data_.battery_at_start.size() && (data_.battery.empty() || data_.battery.size() == robots),
+          "batteries need a value for each robot");
+}
+
+void Problem::find_transports() {
+  if (data_.pickup.empty()) return;
+  partner_.assign(tasks_, -1);
+  for (int task = 0; task < tasks_; ++task) {
+    if (const int pickup = data_.pickup[task]; pickup >= 0) {
+      partner_[task] = pickup;
+      partner_[pickup] = task;
+    }
+  }
+}
+
+void Problem::find_who_may_run_short() {
+  may_run_short_.assign(robots_, 0);
+  unloads_at_stations_ = data_.commodities > 0 &&
+                         std::ranges::any_of(data_.stations, [](const Station& station) { return station.unloads; });
+  for (int robot = 0; robot < robots_; ++robot) {
+    may_run_short_[robot] = unloads_at_stations_ || battery(robot) < kInfinity;
+    any_may_run_short_ |= may_run_short_[robot] != 0;
+  }
+  const auto batteries = std::ranges::count_if(data_.battery, [](double size) { return size < kInfinity; });
+  has_queues_ = std::ranges::any_of(data_.stations, [&](const Station& station) {
+    return station.gives_energy() && station.slots < batteries;
+  });
 }
 
 double Problem::leg_seconds(int robot, int from, int to, double metres) const {
@@ -193,7 +242,7 @@ void Problem::find_units() {
   }
   timed_ = has_time_limits() || !data_.after.empty() || !data_.within.empty() || !data_.unit.empty() ||
            !data_.parts.empty() || !data_.needs.empty() || !data_.same_robot.values.empty() ||
-           !data_.other_robot.values.empty() || has_min_tasks() || data_.objective == Objective::lateness ||
+           !data_.other_robot.values.empty() || has_min_tasks() || data_.commodities > 0 || !data_.battery.empty() || data_.objective == Objective::lateness ||
            (data_.makespan_includes_return && data_.objective == Objective::makespan);
 }
 

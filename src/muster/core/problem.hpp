@@ -32,7 +32,18 @@ struct TeamPart {
   std::vector<char> allowed;  // by kind
 };
 
-// Everything a Problem is made from. Places are the tasks, then the robots' starts, then the robots' ends.
+// A place where robots charge, swap batteries or unload.
+struct Station {
+  double charge = 0.0;   // of usage, by second; 0: nobody charges here
+  double swap_s = -1.0;  // how long a swap takes; below 0: nobody swaps here
+  bool unloads = false;
+  bool partial = true;  // whether a charge may end before the battery is full
+  int slots = 1;
+
+  bool gives_energy() const { return charge > 0.0 || swap_s >= 0.0; }
+};
+
+// Everything a Problem is made from. Places are the tasks, the robots' starts, the robots' ends, then the stations.
 struct ProblemData {
   Objective objective = Objective::total_max;
   bool usage_is_time = false;
@@ -72,6 +83,15 @@ struct ProblemData {
   std::vector<double> turn;                      // by robot: seconds of the turn with which a leg begins
   bool over_map = false;                         // what is longer than the straight way has bends
   bool makespan_includes_return = false;
+  // Goods: what a task adds to the load, and how much of that another task delivers (tasks x commodities); the task
+  // that takes on what a task delivers, -1: it delivers nothing; robots x commodities.
+  int commodities = 0;
+  std::vector<double> load, pending;
+  std::vector<int> pickup;
+  std::vector<double> load_capacity, load_at_start;
+  // Energy: above what a battery must keep; inf: without a battery. By robot.
+  std::vector<double> battery, battery_at_start;
+  std::vector<Station> stations;
   // What is waited for others on the way between two places (places x places, seconds), by robots that share lanes;
   // empty: nothing.
   std::vector<double> waiting;
@@ -149,6 +169,14 @@ class Problem {
     }
     return -kInfinity;
   }
+  // The end of the window in which work begins at this time.
+  double last_begin_of_window(int task, double begin) const {
+    if (data_.windows.empty() || data_.windows[task].empty()) return kInfinity;
+    for (const TimeWindow& window : data_.windows[task]) {
+      if (begin <= window.close) return window.close;
+    }
+    return kInfinity;
+  }
   // The robots that do the task together: parts of a team, or as many as have the abilities for it.
   std::span<const TeamPart> parts(int task) const {
     if (data_.parts.empty()) return {};
@@ -174,6 +202,38 @@ class Problem {
     return data_.other_robot[task];
   }
   bool makespan_includes_return() const { return data_.makespan_includes_return; }
+
+  int commodities() const { return data_.commodities; }
+  // What a task adds to the load of a robot, and what of that another task delivers: below 0 where it is the one.
+  double load(int task, int commodity) const { return data_.load[at(task, commodity)]; }
+  double pending(int task, int commodity) const { return data_.pending[at(task, commodity)]; }
+  double load_capacity(int robot, int commodity) const { return data_.load_capacity[at(robot, commodity)]; }
+  double load_at_start(int robot, int commodity) const { return data_.load_at_start[at(robot, commodity)]; }
+  // Whether a robot can have so much on board.
+  bool carries(int robot, int commodity, double load) const {
+    const double most = load_capacity(robot, commodity), rounding = 1e-12 * (most < kInfinity ? 1.0 + most : 1.0);
+    return load >= -rounding && load <= most + rounding;
+  }
+  bool has_deliveries() const { return !data_.pickup.empty(); }
+  // The task with which a task is one transport: that which takes on board what it delivers, or the one that delivers;
+  // -1: there is none.
+  int partner(int task) const { return data_.pickup.empty() ? -1 : partner_[task]; }
+  bool delivers(int task) const { return !data_.pickup.empty() && data_.pickup[task] >= 0; }
+  int stations() const { return static_cast<int>(data_.stations.size()); }
+  const Station& station(int number) const { return data_.stations[number]; }
+  int place_of_station(int number) const { return tasks_ + 2 * robots_ + number; }
+  // What a battery can hold, and holds at first, above its reserve; inf: without a battery.
+  double battery(int robot) const { return data_.battery.empty() ? kInfinity : data_.battery[robot]; }
+  double battery_at_start(int robot) const {
+    return data_.battery.empty() ? kInfinity : data_.battery_at_start[robot];
+  }
+  // Whether robots can put down goods at a station.
+  bool unloads_at_stations() const { return unloads_at_stations_; }
+  // Whether the robot may have to call at stations, or can run out of energy.
+  bool may_run_short(int robot) const { return may_run_short_[robot] != 0; }
+  bool any_may_run_short() const { return any_may_run_short_; }
+  // Whether more robots may be at a station than it serves.
+  bool has_queues() const { return has_queues_; }
   bool usage_is_time() const { return data_.usage_is_time; }
 
   int start(int robot) const { return tasks_ + robot; }
@@ -245,6 +305,12 @@ class Problem {
  private:
   void find_robots_allowed();
   void find_units();
+  void find_transports();
+  void find_who_may_run_short();
+  void check_goods() const;
+  std::size_t at(int row, int commodity) const {
+    return static_cast<std::size_t>(row) * data_.commodities + commodity;
+  }
   bool find_symmetric() const;
   void check_times() const;
   double leg_seconds(int robot, int from, int to, double metres) const;
@@ -273,6 +339,9 @@ class Problem {
   bool timed_;
   bool symmetric_;
   Rows tasks_of_unit_;
+  std::vector<int> partner_;
+  std::vector<char> may_run_short_;
+  bool unloads_at_stations_ = false, any_may_run_short_ = false, has_queues_ = false;
   Rows dependants_;
   std::vector<int> like_;  // by task: a number that tasks share which the same robots may do
   Rows robots_allowed_;    // by that number

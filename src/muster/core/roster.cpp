@@ -13,7 +13,12 @@ Roster::Roster(const Problem& problem)
       weight_(problem.units(), 0.0),
       usage_(problem.robots(), 0.0),
       listed_(problem.units(), 0),
-      touched_(problem.robots(), 0) {
+      touched_(problem.robots(), 0),
+      holds_(problem.robots(), 1),
+      highest_(problem.robots()),
+      lowest_(problem.robots()),
+      loads_(problem.robots()) {
+  if (problem.any_may_run_short()) calls_ = std::make_unique<StationCalls>(problem);
   for (int unit = 0; unit < problem.units(); ++unit) {
     for (const int task : problem.tasks_of_unit(unit)) weight_[unit] += problem.priority(task);
     vanish(unit);
@@ -26,21 +31,39 @@ Roster::~Roster() = default;
 
 bool Roster::begin(const Routes& routes) {
   commit();
-  const bool possible = timeline_.begin(routes);
+  bool possible = timeline_.begin(routes);
   absent_.clear();
   absent_weight_ = 0.0;
   for (int unit = 0; unit < problem_.units(); ++unit) {
     if (!present(unit)) vanish(unit);
   }
-  for (int robot = 0; robot < problem_.robots(); ++robot) measure(robot);
+  for (int robot = 0; robot < problem_.robots(); ++robot) {
+    touch(robot);
+    measure(robot);
+  }
+  unmeasured_.clear();
+  possible = possible && timeline_.settle() && std::ranges::find(holds_, 0) == holds_.end() && serve();
+  commit();
   return possible;
 }
 
+int Roster::partner(int unit) const {
+  if (!problem_.has_deliveries()) return -1;
+  for (const int task : problem_.tasks_of_unit(unit)) {
+    if (const int other = problem_.partner(task); other >= 0) return problem_.unit(other);
+  }
+  return -1;
+}
+
 bool Roster::ready(int unit) const {
-  return std::ranges::all_of(problem_.tasks_of_unit(unit), [&](int task) {
-    return std::ranges::all_of(problem_.prerequisites(task),
-                               [&](int before) { return present(problem_.unit(before)); });
-  });
+  const int other = partner(unit);
+  const auto there = [&](int before) {
+    const int awaited = problem_.unit(before);
+    return present(awaited) || awaited == other || (other >= 0 && awaited == unit);
+  };
+  const auto all_there = [&](int task) { return std::ranges::all_of(problem_.prerequisites(task), there); };
+  return std::ranges::all_of(problem_.tasks_of_unit(unit), all_there) &&
+         (other < 0 || std::ranges::all_of(problem_.tasks_of_unit(other), all_there));
 }
 
 bool Roster::fixed(int unit) const {
@@ -60,10 +83,20 @@ bool Roster::insert(const UnitInsertion& insertion) {
   timeline_.insert(insertion.unit, insertion.members);
   appear(insertion.unit);
   moves_.emplace_back(insertion.unit, true);
+  if (insertion.second_unit >= 0) {
+    timeline_.insert(insertion.second_unit, {&insertion.second, 1});
+    appear(insertion.second_unit);
+    moves_.emplace_back(insertion.second_unit, true);
+  }
   return settle_begins();
 }
 
 void Roster::remove(int unit) {
+  take_out(unit);
+  if (const int other = partner(unit); other >= 0 && present(other)) take_out(other);
+}
+
+void Roster::take_out(int unit) {
   for (const int number : timeline_.visits_of(unit)) touch(timeline_.visit(number).robot);
   timeline_.remove(unit);
   vanish(unit);
@@ -71,25 +104,32 @@ void Roster::remove(int unit) {
 }
 
 bool Roster::settle() {
-  measure_changed();
-  return timeline_.settle();
+  const bool holds = measure_changed();
+  return timeline_.settle() && holds;
 }
 
 bool Roster::admissible() {
-  return std::ranges::all_of(saved_,
-                             [&](const Saved& saved) { return problem_.fits(saved.robot, usage_[saved.robot]); });
+  return serve() && std::ranges::all_of(saved_, [&](const Saved& saved) {
+           return problem_.fits(saved.robot, usage_[saved.robot]);
+         });
 }
 
 // --- Figures ---------------------------------------------------------------------------------------------------------
 
 bool Roster::settle_begins() {
-  measure_changed();
-  return timeline_.settle_begins();
+  const bool holds = measure_changed();
+  return timeline_.settle_begins() && holds;
 }
 
-void Roster::measure_changed() {
-  for (const int robot : unmeasured_) measure(robot);
+// False: a robot runs short of room or energy.
+bool Roster::measure_changed() {
+  bool holds = true;
+  for (const int robot : unmeasured_) {
+    measure(robot);
+    holds = holds && holds_[robot];
+  }
   unmeasured_.clear();
+  return holds;
 }
 
 void Roster::measure(int robot) {
@@ -102,6 +142,7 @@ void Roster::measure(int robot) {
   }
   if (route.size() > 2) usage += problem_.end_usage(robot, timeline_.visit(route[route.size() - 2]).place);
   usage_[robot] = usage;
+  holds_[robot] = measure_loads(robot) && call_at_stations(robot);
 }
 
 double Roster::peak() {
@@ -174,7 +215,10 @@ Value Roster::value() {
 void Roster::touch(int robot) {
   if (std::ranges::find(unmeasured_, robot) == unmeasured_.end()) unmeasured_.push_back(robot);
   if (std::exchange(touched_[robot], 1)) return;
-  saved_.push_back({robot, usage_[robot]});
+  Saved& saved = saved_.emplace_back(robot, usage_[robot], holds_[robot] != 0);
+  if (!calls_ || !problem_.may_run_short(robot)) return;
+  saved.calls = calls_->calls(robot);
+  saved.called = {calls_->usage(robot), calls_->end_s(robot)};
 }
 
 void Roster::appear(int unit) {
@@ -208,7 +252,12 @@ void Roster::rollback() {
   }
   for (const Saved& saved : saved_) {
     usage_[saved.robot] = saved.usage;
+    holds_[saved.robot] = saved.holds;
     touched_[saved.robot] = 0;
+    measure_loads(saved.robot);
+    if (!calls_ || !problem_.may_run_short(saved.robot)) continue;
+    calls_->restore(saved.robot, tasks_of(saved.robot), saved.called, saved.calls);
+    set_ways(saved.robot, true);
   }
   saved_.clear();
   moves_.clear();
@@ -230,8 +279,10 @@ Routes Roster::routes() const {
 std::vector<std::vector<StopTimes>> Roster::stops() const {
   std::vector<std::vector<StopTimes>> stops(problem_.robots());
   for (int robot = 0; robot < problem_.robots(); ++robot) {
-    for (int at = 1; at <= timeline_.tasks_in(robot); ++at) {
+    for (int at = 1; at <= timeline_.tasks_in(robot) + 1; ++at) {
       const Visit &last = timeline_.stop(robot, at - 1), &visit = timeline_.stop(robot, at);
+      add_calls(robot, at, stops[robot]);
+      if (visit.unit < 0) continue;
       stops[robot].push_back({visit.place, last.leave + visit.in, timeline_.begin_of(visit.unit), visit.leave});
     }
   }

@@ -8,16 +8,20 @@
 
 #include "draft.hpp"
 #include "random.hpp"
+#include "station_calls.hpp"
 #include "timeline.hpp"
 
 namespace muster {
 
 // A unit of work with the robots that do it. `score` is what the objective grows by, ties broken by the routes' growth.
+// With a transport both of its units are placed: `members` says where the first goes, `second` where the other goes then.
 struct UnitInsertion {
   int unit = -1;
   double score = kNever;
   double growth = 0.0;  // of usage, all members together
   std::vector<Member> members;
+  int second_unit = -1;
+  Member second;
 };
 
 // Where `best_insertion` looks.
@@ -32,8 +36,9 @@ struct Trial {
 };
 
 struct StopTimes {
-  int task;
+  int place;  // a task or a station
   double arrive, begin, end;
+  double charged = 0.0;
 };
 
 // Working routes of a timed problem on a Timeline, with the team of every task, usages and undo. Everything that
@@ -49,7 +54,9 @@ class Roster {
   const Problem& problem() const { return problem_; }
   const Timeline& timeline() const { return timeline_; }
   bool present(int unit) const { return timeline_.present(unit); }
-  // Whether all that a unit waits for is present.
+  // The unit with which a unit is one transport; -1: none.
+  int partner(int unit) const;
+  // Whether all that a unit waits for is present, its partner aside.
   bool ready(int unit) const;
   // Whether a unit stays where it is.
   bool fixed(int unit) const;
@@ -58,12 +65,18 @@ class Roster {
   double absent_weight() const { return absent_weight_; }
   double weight(int unit) const { return weight_[unit]; }
   double usage(int robot) const { return usage_[robot]; }
+  // What a robot has on board after so many tasks; and the most and the least from there on.
+  double load(int robot, int at, int commodity) const { return loads_[robot][index(at, commodity)]; }
+  double highest_load(int robot, int at, int commodity) const { return highest_[robot][index(at, commodity)]; }
+  double lowest_load(int robot, int at, int commodity) const { return lowest_[robot][index(at, commodity)]; }
+  StationCalls* calls() { return calls_.get(); }
 
   // The team and the places at which an absent unit costs least; null where there are none. All that it waits for must
   // be present. The answer lasts until the next call.
   const UnitInsertion* best_insertion(int unit, const Trial& trial = {});
   // False: no schedule exists; then only `rollback` helps. Begins are propagated at once.
   bool insert(const UnitInsertion& insertion);
+  // Takes out a unit, and its partner.
   void remove(int unit);
   // Takes out what a plan cannot hold when nothing more comes to it: what stands without its prerequisites, with
   // everything that waits for it. `trial` says where what is taken out may be tried again. False: no schedule exists
@@ -73,7 +86,8 @@ class Roster {
   bool settle();
   // The same for begins alone, on which objectives depend.
   bool settle_begins();
-  // Whether the routes changed since the last commit are within the robots' capacities.
+  // Whether the routes changed since the last commit are within the robots' capacities, and stations serve everybody in
+  // time.
   bool admissible();
 
   // Whether every present unit has all of its tasks, prerequisites and robots, and relations hold: of routes that
@@ -100,16 +114,32 @@ class Roster {
   struct Saved {
     int robot;
     double usage;
+    bool holds;
+    std::vector<Call> calls;
+    Called called;
   };
 
   void touch(int robot);
-  void measure_changed();
+  bool measure_changed();
   void measure(int robot);
+  bool measure_loads(int robot);
+  bool call_at_stations(int robot);
+  void set_ways(int robot, bool restored);
+  void add_calls(int robot, int at, std::vector<StopTimes>& stops) const;
+  bool serve();
+  bool crowded() const;
+  double arrival(int robot, std::size_t number) const;
+  void take_out(int unit);
+  bool comes_after(int task, int other) const;
+  const std::vector<int>& tasks_of(int robot);
   void appear(int unit);
   void vanish(int unit);
   double total() const;
   double lateness() const;
   double arrivals() const;
+  std::size_t index(int at, int commodity) const {
+    return static_cast<std::size_t>(at) * problem_.commodities() + commodity;
+  }
 
   const Problem& problem_;
   Timeline timeline_;
@@ -123,6 +153,11 @@ class Roster {
   std::vector<Saved> saved_;
   std::vector<char> touched_;
   std::vector<int> unmeasured_;
+  // Goods and energy.
+  std::unique_ptr<StationCalls> calls_;  // where any robot may run short
+  std::vector<char> holds_;              // by robot, whether loads and energy last
+  std::vector<std::vector<double>> highest_, lowest_, loads_;  // by robot, of loads (stops, commodities) from a stop on
+  std::vector<int> tasks_;
   std::unique_ptr<class Placement> placement_;
 };
 

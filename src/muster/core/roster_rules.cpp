@@ -136,7 +136,7 @@ class ShortRoutes {
     for (bool more = true; more;) {
       more = false;
       for (int& unit : units) {
-        if (unit < 0 || !roster_.ready(unit)) continue;
+        if (unit < 0 || roster_.present(unit) || !roster_.ready(unit)) continue;
         const UnitInsertion* insertion = nullptr;
         for (const Trial& trial : trials) {
           if (!insertion) insertion = roster_.best_insertion(unit, trial);
@@ -178,6 +178,10 @@ bool Roster::keeps_rules() const {
     if (!present(unit)) continue;
     const std::vector<int> team = team_of(task);
     if (!ready(unit) || !choice.does(task, team)) return false;
+    if (const int other = problem_.partner(task); other >= 0) {
+      if (!present(problem_.unit(other)) || team_of(other) != team) return false;
+      if (problem_.delivers(task) && !comes_after(task, other)) return false;
+    }
     if (!std::ranges::all_of(team, [&](int robot) { return problem_.allowed(robot, task); })) return false;
     for (const int other : problem_.same_robot(task)) {
       if (present(problem_.unit(other)) && team_of(other) != team) return false;
@@ -191,15 +195,25 @@ bool Roster::keeps_rules() const {
   return true;
 }
 
+// Whether one task comes after another in the same route.
+bool Roster::comes_after(int task, int other) const {
+  const auto at = [&](int each) { return timeline_.visit(timeline_.visits_of(problem_.unit(each)).front()).at; };
+  return at(task) > at(other);
+}
+
 void Roster::drop_orphans() {
-  if (!problem_.has_prerequisites() || absent_.empty()) return;
+  if ((!problem_.has_prerequisites() && !problem_.has_deliveries()) || absent_.empty()) return;
   std::vector<int> gone = absent_;
   for (std::size_t k = 0; k < gone.size(); ++k) {
+    if (const int other = partner(gone[k]); other >= 0 && present(other)) {
+      take_out(other);
+      gone.push_back(other);
+    }
     for (const int task : problem_.tasks_of_unit(gone[k])) {
       for (const int dependant : problem_.dependants(task)) {
         const int unit = problem_.unit(dependant);
         if (!present(unit)) continue;
-        remove(unit);
+        take_out(unit);
         gone.push_back(unit);
       }
     }

@@ -76,7 +76,7 @@ void ScheduleSearch::fill() {
   for (bool more = true; more;) {
     more = false;
     for (int& unit : units) {
-      if (unit < 0 || !roster_.ready(unit)) continue;
+      if (unit < 0 || roster_.present(unit) || !roster_.ready(unit)) continue;
       const UnitInsertion* insertion = roster_.best_insertion(std::exchange(unit, -1), trial_);
       if (!insertion) continue;
       if (roster_.insert(*insertion)) {

@@ -169,7 +169,7 @@ void Placement::make_offers(int unit, std::size_t candidate) {
     made.robot = -1;
     if (at_[candidate] < problem_.fixed(robot) || !usable(robot, tasks[k], static_cast<int>(k))) continue;
     if (trial_->append_only && at_[candidate] < timeline_.tasks_in(robot)) continue;
-    if (!in_reach(robot, tasks[k], at_[candidate])) continue;
+    if (!in_reach(robot, tasks[k], at_[candidate]) || !has_room(robot, tasks[k], at_[candidate])) continue;
     const double work = problem_.work_time(robot, tasks[k]);
     made = arrival(robot, tasks[k], at_[candidate], work);
     if (!may_join(made, tasks[k])) made.robot = -1;
@@ -313,6 +313,12 @@ void Placement::judge(int unit) {
   for (const Part& part : team_) score.add(*part.offer, begin, works_[part.task], growth(part));
   const double value = score.value(begin, timeline_.tail_after(unit, works_), lateness_of_team(unit, begin));
   if (value >= best_.score || !may_begin(unit, begin)) return;
+  for (const Part& part : team_) {
+    const int robot = part.offer->robot;
+    if (!may_call(robot)) continue;
+    const Called called = calls_->with_task(robot, tasks[part.task], part.offer->at, timeline_.works());
+    if (called.usage == kNever) return;
+  }
   best_.score = value;
   best_.growth = score.growth();
   best_.members.clear();

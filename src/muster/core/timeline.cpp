@@ -190,6 +190,16 @@ void Timeline::join(int number, int next) {
   to.in = goes_there ? problem_.travel_time(to.robot, from.place, to.place) : 0.0;
 }
 
+void Timeline::set_way(int robot, int at, double seconds) {
+  Visit& to = visits_[routes_[robot][at]];
+  if (to.in == seconds) return;
+  to.in = seconds;
+  const int last = before(to).unit;
+  if (to.unit >= 0) queue_forward(to.unit);
+  if (last >= 0) queue_backward(last);
+  if (to.unit < 0 && last >= 0) queue_forward(last);
+}
+
 // A team's task takes as long as for its slowest member.
 void Timeline::measure_work(int unit) {
   for (const int number : nodes_[unit].visits) work_[visits_[number].place] = 0.0;

@@ -88,6 +88,12 @@ class Timeline {
     return begin <= latest + kRounding * (latest < 1.0 ? 1.0 : latest);
   }
 
+  std::span<const double> works() const { return work_; }
+  // The way to a stop takes so long, with what the robot does on it. Begins are propagated later, as of `insert`.
+  void set_way(int robot, int at, double seconds);
+  // The same, where all times are already those of these ways.
+  void restore_way(int robot, int at, double seconds) { visits_[routes_[robot][at]].in = seconds; }
+
   // Both leave times as they were until `settle`. A unit goes in at a label between those of its neighbours in every
   // route, and within `labels_for`.
   void insert(int unit, std::span<const Member> members);

@@ -8,8 +8,10 @@ phrases are loops over these. What a search has to know of a rule in its hot loo
 from __future__ import annotations
 
 from muster.allocation.rules.action import Action
+from muster.allocation.rules.battery import Battery
 from muster.allocation.rules.capacity import Capacity
 from muster.allocation.rules.deadline import Deadline
+from muster.allocation.rules.load import Load
 from muster.allocation.rules.lock import Lock
 from muster.allocation.rules.min_tasks import MinTasks
 from muster.allocation.rules.prerequisite import Prerequisite
@@ -36,6 +38,8 @@ RULES: tuple[Rule, ...] = (
     Shift(),
     Team(),
     Relation(),
+    Load(),
     Capacity(),
+    Battery(),
     MinTasks(),
 )

@@ -1,0 +1,90 @@
+"""A battery never holds less than its reserve; stations charge and swap it on the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_robot
+from muster.mission.model import Robot
+
+
+@dataclass(frozen=True)
+class LargerBattery(Change):
+    """What the robot's battery would have to hold."""
+
+    capacity: float
+    unit: str
+
+    @property
+    def plain(self) -> float:
+        return self.capacity
+
+    @property
+    def short(self) -> str:
+        return f"a battery of {self.capacity:.2f} {self.unit}"
+
+    def robot(self, robot: Robot) -> Robot:
+        if robot.battery is None:
+            return robot
+        return replace(robot, battery=replace(robot.battery, capacity=self.capacity))
+
+
+class Battery(Rule):
+    """`battery` falls with usage, is filled at stations, and is never below `reserve * capacity`."""
+
+    word: ClassVar[str] = "battery"
+    asked = ("battery",)
+    lifted_late = True
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        if not problem.holds(self.word):
+            return {"battery": None}
+        return {"battery": first_robot(problem, "battery", lambda i: problem.robots[i].battery)}
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        stations = [
+            (s.charge_per_s or 0.0, s.swap_s if s.swaps else -1.0, s.unloads, s.partial, s.slots)
+            for s in problem.mission.stations
+        ]
+        robots = problem.robots
+        if not problem.holds(self.word) or all(robot.battery is None for robot in robots):
+            return {"battery": np.empty(0), "battery_at_start": np.empty(0), "stations": stations}
+        return {
+            "battery": np.array([_room(robot) for robot in robots]),
+            "battery_at_start": np.array([_at_start(robot) for robot in robots]),
+            "stations": stations,
+        }
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return problem.robots[i].battery if problem.holds(self.word) else None
+
+    def possible(self, limits: Limits) -> Bools | None:
+        if not any(robot.battery for robot in limits.problem.robots):
+            return None
+        return np.asarray(np.isfinite(limits.problem.usage_with_calls) | ~limits.usable)
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        battery = problem.robots[i].battery
+        if battery is None or np.isfinite(problem.usage_with_calls[i, j]) or math.isinf(outlook.least):
+            return None
+        least, unit = outlook.least, problem.usage_unit
+        holds = f"its battery holds {_at_start(problem.robots[i]):.2f} {unit} above its reserve"
+        if not problem.mission.stations:
+            return f"takes at least {least:.2f} {unit}, {holds}"
+        return f"takes at least {least:.2f} {unit}, {holds}, and no station is near enough"
+
+    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        return plan.kept_out(self.word, i, j)
+
+
+def _room(robot: Robot) -> float:
+    return math.inf if robot.battery is None else robot.battery.capacity - robot.battery.least
+
+
+def _at_start(robot: Robot) -> float:
+    return math.inf if robot.battery is None else robot.battery.level_at_start - robot.battery.least
