@@ -92,8 +92,8 @@ void bind_problem(nb::module_& m) {
              Numbers available_until, Numbers after, Numbers within, Indices unit, const Parts& parts,
              Numbers abilities, Numbers needs, const std::vector<std::vector<int>>& same_robot,
              const std::vector<std::vector<int>>& other_robot, Indices min_tasks, Numbers acceleration, Numbers climb,
-             Numbers turn, bool over_map, bool makespan_includes_return, int commodities, Numbers load, Numbers pending, Indices pickup,
-             Numbers load_capacity, Numbers load_at_start, Numbers battery, Numbers battery_at_start,
+             Numbers turn, bool over_map, bool makespan_includes_return, int commodities, Numbers load, Numbers pending,
+             Indices pickup, Numbers load_capacity, Numbers load_at_start, Numbers battery, Numbers battery_at_start,
              const Stations& stations, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
@@ -157,8 +157,8 @@ void bind_problem(nb::module_& m) {
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
           "windows"_a, "deadline"_a, "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a,
           "abilities"_a, "needs"_a, "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a,
-          "turn"_a, "over_map"_a, "makespan_includes_return"_a, "commodities"_a, "load"_a, "pending"_a, "pickup"_a, "load_capacity"_a,
-          "load_at_start"_a, "battery"_a, "battery_at_start"_a, "stations"_a, "waiting"_a, "waits"_a,
+          "turn"_a, "over_map"_a, "makespan_includes_return"_a, "commodities"_a, "load"_a, "pending"_a, "pickup"_a,
+          "load_capacity"_a, "load_at_start"_a, "battery"_a, "battery_at_start"_a, "stations"_a, "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
@@ -172,11 +172,14 @@ void bind_problem(nb::module_& m) {
           "`abilities` (m, a) and `needs` (n, a); by "
           "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer "
           "than "
-          "the straight way has bends; `load` and `pending` (n, commodities) what a task adds to the load, and how much "
+          "the straight way has bends; `load` and `pending` (n, commodities) what a task adds to the load, and how "
+          "much "
           "of that another delivers, `pickup` (n,) the task that takes on what a task delivers, -1 for none, "
           "`load_capacity` and `load_at_start` (m, commodities); `battery` and `battery_at_start` (m,) in the unit of "
-          "usage, the reserve taken off, inf without a battery; `stations` (charge by second, swap_s, unloads, partial, "
-          "slots), whose places stand after the ends of robots; `waiting` (n + 2m, n + 2m) seconds for others between places, of the robots "
+          "usage, the reserve taken off, inf without a battery; `stations` (charge by second, swap_s, unloads, "
+          "partial, "
+          "slots), whose places stand after the ends of robots; `waiting` (n + 2m, n + 2m) seconds for others between "
+          "places, of the robots "
           "that "
           "`waits` (m,) marks. Raises ValueError if shapes do not fit.")
       .def_prop_ro("tasks", &Problem::tasks)

@@ -26,7 +26,8 @@ Placement::Placement(Roster& roster)
 const UnitInsertion* Placement::best(int unit, const Trial& trial) {
   if (const int other = roster_.partner(unit); other >= 0) {
     const int task = problem_.tasks_of_unit(unit).front(), partner = problem_.tasks_of_unit(other).front();
-    const bool found = problem_.delivers(task) ? best_transport(partner, task, trial) : best_transport(task, partner, trial);
+    const bool found =
+        problem_.delivers(task) ? best_transport(partner, task, trial) : best_transport(task, partner, trial);
     return found ? &best_ : nullptr;
   }
   trial_ = &trial;

@@ -37,7 +37,7 @@ class Placement {
   // A place that is not judged with its calls yet: of a task, or of two as one transport.
   struct Candidate {
     double score, growth, usage;
-    double ends, takes;  // when the mission ends by it at the earliest, and what it takes of the robot's time
+    double ends, takes;        // when the mission ends by it at the earliest, and what it takes of the robot's time
     int robot, at, second_at;  // -1: one task
   };
   // A robot under way with the load of a transport.

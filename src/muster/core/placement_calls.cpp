@@ -16,7 +16,8 @@ bool Placement::has_room(int robot, int task, int at) const {
   if (problem_.unloads_at_stations()) return true;  // which is judged with the calls
   for (int c = 0; c < problem_.commodities(); ++c) {
     const double load = problem_.load(task, c);
-    if (load > 0.0 && !problem_.carries(robot, c, std::max(0.0, roster_.highest_load(robot, at, c) + load))) return false;
+    if (load > 0.0 && !problem_.carries(robot, c, std::max(0.0, roster_.highest_load(robot, at, c) + load)))
+      return false;
     if (load < 0.0 && roster_.lowest_load(robot, at, c) + load < -1e-12 * (1.0 - load)) return false;
   }
   return true;
@@ -67,10 +68,9 @@ void Placement::judge_candidates() {
     if (candidate.score >= best_.score || judged++ >= kMostJudged) break;
     const int robot = candidate.robot;
     const int task = problem_.tasks_of_unit(best_.unit).front();
-    const Called called =
-        candidate.second_at < 0
-            ? calls_->with_task(robot, task, candidate.at, timeline_.works())
-            : calls_->with_pair(robot, task, candidate.at, problem_.partner(task), candidate.second_at, timeline_.works());
+    const Called called = candidate.second_at < 0 ? calls_->with_task(robot, task, candidate.at, timeline_.works())
+                                                  : calls_->with_pair(robot, task, candidate.at, problem_.partner(task),
+                                                                      candidate.second_at, timeline_.works());
     if (called.usage == kNever || !problem_.fits(robot, called.usage)) continue;
     const double growth = called.usage - roster_.usage(robot), more = growth - candidate.growth;
     double score = candidate.score;

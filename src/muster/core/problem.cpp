@@ -170,12 +170,15 @@ void Problem::check_goods() const {
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
   const auto commodities = static_cast<std::size_t>(data_.commodities);
   require(data_.load.size() == tasks * commodities && data_.pending.size() == tasks * commodities &&
-              data_.load_capacity.size() == robots * commodities && data_.load_at_start.size() == robots * commodities,
+              data_.load_capacity.size() == robots * commodities &&
+              data_.load_at_start.size() == robots * commodities &&
+              (data_.pending_at_start.empty() || data_.pending_at_start.size() == robots * commodities),
           "loads need a value for each commodity");
   require(data_.pickup.empty() ||
               (data_.pickup.size() == tasks && std::ranges::all_of(data_.pickup, [&](int j) { return j < tasks_; })),
           "deliveries need a task for each task");
-  require(data_.battery.size() == data_.battery_at_start.size() && (data_.battery.empty() || data_.battery.size() == robots),
+  require(data_.battery.size() == data_.battery_at_start.size() &&
+              (data_.battery.empty() || data_.battery.size() == robots),
           "batteries need a value for each robot");
 }
 
@@ -199,9 +202,8 @@ void Problem::find_who_may_run_short() {
     any_may_run_short_ |= may_run_short_[robot] != 0;
   }
   const auto batteries = std::ranges::count_if(data_.battery, [](double size) { return size < kInfinity; });
-  has_queues_ = std::ranges::any_of(data_.stations, [&](const Station& station) {
-    return station.gives_energy() && station.slots < batteries;
-  });
+  has_queues_ = std::ranges::any_of(
+      data_.stations, [&](const Station& station) { return station.gives_energy() && station.slots < batteries; });
 }
 
 double Problem::leg_seconds(int robot, int from, int to, double metres) const {
@@ -242,7 +244,8 @@ void Problem::find_units() {
   }
   timed_ = has_time_limits() || !data_.after.empty() || !data_.within.empty() || !data_.unit.empty() ||
            !data_.parts.empty() || !data_.needs.empty() || !data_.same_robot.values.empty() ||
-           !data_.other_robot.values.empty() || has_min_tasks() || data_.commodities > 0 || !data_.battery.empty() || data_.objective == Objective::lateness ||
+           !data_.other_robot.values.empty() || has_min_tasks() || data_.commodities > 0 || !data_.battery.empty() ||
+           data_.objective == Objective::lateness ||
            (data_.makespan_includes_return && data_.objective == Objective::makespan);
 }
 

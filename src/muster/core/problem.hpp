@@ -89,6 +89,7 @@ struct ProblemData {
   std::vector<double> load, pending;
   std::vector<int> pickup;
   std::vector<double> load_capacity, load_at_start;
+  std::vector<double> pending_at_start;  // what of the load at first tasks deliver; empty: nothing
   // Energy: above what a battery must keep; inf: without a battery. By robot.
   std::vector<double> battery, battery_at_start;
   std::vector<Station> stations;
@@ -209,6 +210,9 @@ class Problem {
   double pending(int task, int commodity) const { return data_.pending[at(task, commodity)]; }
   double load_capacity(int robot, int commodity) const { return data_.load_capacity[at(robot, commodity)]; }
   double load_at_start(int robot, int commodity) const { return data_.load_at_start[at(robot, commodity)]; }
+  double pending_at_start(int robot, int commodity) const {
+    return data_.pending_at_start.empty() ? 0.0 : data_.pending_at_start[at(robot, commodity)];
+  }
   // Whether a robot can have so much on board.
   bool carries(int robot, int commodity, double load) const {
     const double most = load_capacity(robot, commodity), rounding = 1e-12 * (most < kInfinity ? 1.0 + most : 1.0);
@@ -224,9 +228,7 @@ class Problem {
   int place_of_station(int number) const { return tasks_ + 2 * robots_ + number; }
   // What a battery can hold, and holds at first, above its reserve; inf: without a battery.
   double battery(int robot) const { return data_.battery.empty() ? kInfinity : data_.battery[robot]; }
-  double battery_at_start(int robot) const {
-    return data_.battery.empty() ? kInfinity : data_.battery_at_start[robot];
-  }
+  double battery_at_start(int robot) const { return data_.battery.empty() ? kInfinity : data_.battery_at_start[robot]; }
   // Whether robots can put down goods at a station.
   bool unloads_at_stations() const { return unloads_at_stations_; }
   // Whether the robot may have to call at stations, or can run out of energy.
@@ -308,9 +310,7 @@ class Problem {
   void find_transports();
   void find_who_may_run_short();
   void check_goods() const;
-  std::size_t at(int row, int commodity) const {
-    return static_cast<std::size_t>(row) * data_.commodities + commodity;
-  }
+  std::size_t at(int row, int commodity) const { return static_cast<std::size_t>(row) * data_.commodities + commodity; }
   bool find_symmetric() const;
   void check_times() const;
   double leg_seconds(int robot, int from, int to, double metres) const;

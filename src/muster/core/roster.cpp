@@ -109,9 +109,8 @@ bool Roster::settle() {
 }
 
 bool Roster::admissible() {
-  return serve() && std::ranges::all_of(saved_, [&](const Saved& saved) {
-           return problem_.fits(saved.robot, usage_[saved.robot]);
-         });
+  return serve() && std::ranges::all_of(
+                        saved_, [&](const Saved& saved) { return problem_.fits(saved.robot, usage_[saved.robot]); });
 }
 
 // --- Figures ---------------------------------------------------------------------------------------------------------

@@ -14,7 +14,8 @@
 namespace muster {
 
 // A unit of work with the robots that do it. `score` is what the objective grows by, ties broken by the routes' growth.
-// With a transport both of its units are placed: `members` says where the first goes, `second` where the other goes then.
+// With a transport both of its units are placed: `members` says where the first goes, `second` where the other goes
+// then.
 struct UnitInsertion {
   int unit = -1;
   double score = kNever;
@@ -154,8 +155,8 @@ class Roster {
   std::vector<char> touched_;
   std::vector<int> unmeasured_;
   // Goods and energy.
-  std::unique_ptr<StationCalls> calls_;  // where any robot may run short
-  std::vector<char> holds_;              // by robot, whether loads and energy last
+  std::unique_ptr<StationCalls> calls_;                        // where any robot may run short
+  std::vector<char> holds_;                                    // by robot, whether loads and energy last
   std::vector<std::vector<double>> highest_, lowest_, loads_;  // by robot, of loads (stops, commodities) from a stop on
   std::vector<int> tasks_;
   std::unique_ptr<class Placement> placement_;

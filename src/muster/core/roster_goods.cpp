@@ -34,7 +34,8 @@ bool Roster::measure_loads(int robot) {
   }
   if (problem_.unloads_at_stations()) return true;
   for (int c = 0; c < commodities; ++c) {
-    if (!problem_.carries(robot, c, highest[index(0, c)]) || !problem_.carries(robot, c, lowest[index(0, c)])) return false;
+    if (!problem_.carries(robot, c, highest[index(0, c)]) || !problem_.carries(robot, c, lowest[index(0, c)]))
+      return false;
   }
   return true;
 }

@@ -40,7 +40,8 @@ bool StationCalls::measure(int robot, std::span<const int> route, std::span<cons
   return true;
 }
 
-void StationCalls::restore(int robot, std::span<const int> route, const Called& called, const std::vector<Call>& calls) {
+void StationCalls::restore(int robot, std::span<const int> route, const Called& called,
+                           const std::vector<Call>& calls) {
   Route& own = routes_[robot];
   own.tasks.assign(route.begin(), route.end());
   own.labelled = false;
@@ -127,7 +128,7 @@ void StationCalls::begin(int robot, Labels& labels) {
   if (!unloads_) return;
   for (int c = 0; c < problem_.commodities(); ++c) {
     labels.loads.push_back(problem_.load_at_start(robot, c));
-    labels.pending.push_back(0.0);
+    labels.pending.push_back(problem_.pending_at_start(robot, c));
   }
 }
 
@@ -166,7 +167,8 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   }
   const int best = best_of(labels);
   const Label& last = labels.all[best];
-  if (moves && last.frontier.first().time > problem_.available_until(robot) * (1.0 + kRounding)) return {kNever, kNever};
+  if (moves && last.frontier.first().time > problem_.available_until(robot) * (1.0 + kRounding))
+    return {kNever, kNever};
   return {last.usage, last.frontier.first().time};
 }
 

@@ -13,11 +13,11 @@ namespace muster {
 
 // A visit of a station on the way to a stop of a route.
 struct Call {
-  int at;           // before the task of this number in the route, or the end
-  int station;      // its number
-  double charged;   // in the unit of usage
-  double takes_s;   // of service
-  double waits_s;   // for a slot
+  int at;          // before the task of this number in the route, or the end
+  int station;     // its number
+  double charged;  // in the unit of usage
+  double takes_s;  // of service
+  double waits_s;  // for a slot
 };
 
 // What a route comes to with its calls; usage is infinite where the robot runs short wherever it calls.

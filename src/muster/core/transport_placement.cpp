@@ -81,8 +81,8 @@ void Placement::try_transport_with(int robot, int pickup, int delivery) {
 void Placement::try_pickup_at(int robot, int at, int pickup, int delivery) {
   const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
   Walk walk{robot, pickup, delivery, at, pickup, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  walk.pickup_begin =
-      timeline_.open(problem_.unit(pickup), std::max(ready_, leave(robot, at) + problem_.travel_time(robot, last.place, pickup)));
+  walk.pickup_begin = timeline_.open(
+      problem_.unit(pickup), std::max(ready_, leave(robot, at) + problem_.travel_time(robot, last.place, pickup)));
   if (!timeline_.in_time(walk.pickup_begin, latest_)) return;
   walk.time = walk.pickup_end = walk.pickup_begin + problem_.work_time(robot, pickup);
   // The way there; what is left out of the route as it was, and the way on, follow with the delivery.
@@ -92,7 +92,9 @@ void Placement::try_pickup_at(int robot, int at, int pickup, int delivery) {
   if (!room_for_transport(walk, at)) return;
   const int size = timeline_.tasks_in(robot);
   const bool goes_on = next.unit >= 0 || problem_.must_end(robot);
-  const double then = goes_on ? problem_.travel_usage(robot, pickup, next.place) - problem_.travel_usage(robot, last.place, next.place) : 0.0;
+  const double then =
+      goes_on ? problem_.travel_usage(robot, pickup, next.place) - problem_.travel_usage(robot, last.place, next.place)
+              : 0.0;
   const bool total = problem_.objective() == Objective::total;
   for (int second_at = at;; ++second_at) {
     if (timeline_.stop(robot, second_at).label >= second_labels_.high) return;
@@ -131,8 +133,12 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   const Visit &first = timeline_.stop(robot, walk.at), &behind = timeline_.stop(robot, walk.at + 1);
   const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
   const auto on = [&](const Visit& to) { return to.unit >= 0 || problem_.must_end(robot); };
-  const auto usage = [&](int from, const Visit& to) { return on(to) ? problem_.travel_usage(robot, from, to.place) : 0.0; };
-  const auto seconds = [&](int from, const Visit& to) { return on(to) ? problem_.travel_time(robot, from, to.place) : 0.0; };
+  const auto usage = [&](int from, const Visit& to) {
+    return on(to) ? problem_.travel_usage(robot, from, to.place) : 0.0;
+  };
+  const auto seconds = [&](int from, const Visit& to) {
+    return on(to) ? problem_.travel_time(robot, from, to.place) : 0.0;
+  };
   const double in = problem_.travel_time(robot, walk.place, delivery), work = problem_.work_time(robot, delivery);
   const double out = seconds(delivery, next);
   const double arrive = std::max({second_ready_, walk.pickup_end + after_, walk.time + in});
@@ -140,8 +146,8 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   if (!timeline_.in_time(begin, second_latest_) || begin - walk.pickup_end > within_) return;
   if (!timeline_.in_time(begin + work + out, latest_begin(robot, at + 1))) return;
   const bool beside = at == walk.at, empty = timeline_.tasks_in(robot) == 0;
-  double growth = walk.growth + problem_.travel_usage(robot, walk.place, delivery) + problem_.work_usage(robot, delivery) +
-                  usage(delivery, next);
+  double growth = walk.growth + problem_.travel_usage(robot, walk.place, delivery) +
+                  problem_.work_usage(robot, delivery) + usage(delivery, next);
   double takes = walk.takes + in + work + out;
   if (!empty) {
     growth -= usage(first.place, behind);
@@ -151,7 +157,9 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
       takes += seconds(walk.pickup, behind) - seconds(last.place, next);
     }
   }
-  if (may_call(robot)) growth = std::min(growth, growth_beside_calls(robot, walk.pickup, walk.at) + growth_beside_calls(robot, delivery, at));
+  if (may_call(robot))
+    growth =
+        std::min(growth, growth_beside_calls(robot, walk.pickup, walk.at) + growth_beside_calls(robot, delivery, at));
   const double before = roster_.usage(robot);
   if (!problem_.fits(robot, before + growth)) return;
   Offer offer;
@@ -178,7 +186,8 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   const double tail = std::max(second_tail_, walk.pickup_begin + tail_ - begin);
   const double value = score.value(begin, tail, late);
   if (value >= best_.score) return;
-  const Candidate candidate{value, growth, before, begin + std::max(tail, work + offer.onward), takes, robot, walk.at, at};
+  const Candidate candidate{value, growth, before,  begin + std::max(tail, work + offer.onward),
+                            takes, robot,  walk.at, at};
   if (may_call(robot)) return keep(Candidate(candidate));
   take(candidate, value, growth);
 }

@@ -39,6 +39,16 @@ class RouteStop:
     is_station: bool = False
     charged: float | None = None
 
+    @property
+    def task(self) -> str | None:
+        """The id of the task; None: a station."""
+        return None if self.is_station else self.name
+
+    @property
+    def station(self) -> str | None:
+        """The id of the station; None: a task."""
+        return self.name if self.is_station else None
+
     def as_dict(self) -> dict[str, Any]:
         """The stop as plan files hold it."""
         place = {"station" if self.is_station else "task": self.name}

@@ -70,7 +70,7 @@ class Load(Rule):
             "pending": taken_on.reshape(own.shape) - put_down,
             "pickup": np.array(pickup if delivered else [], dtype=np.int32),
             "load_capacity": np.array([[room_for(robot, name) for name in names] for robot in problem.robots]),
-            "load_at_start": np.array([[_at_start(robot).get(name, 0.0) for name in names] for robot in problem.robots]),
+            "load_at_start": np.array([[_at_start(one).get(name, 0.0) for name in names] for one in problem.robots]),
         }
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
