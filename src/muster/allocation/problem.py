@@ -78,6 +78,7 @@ class Problem:
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
     known: Measured | None = None  # what the problem of which this is a part knew
     charges: tuple[Charge | None, ...] = ()  # measured, for each robot; empty: none at all
+    aboard: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that deliver what it carries; empty: none at all
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
     waiting: Waiting = NO_WAITING  # that is expected on ways
 
@@ -126,6 +127,7 @@ class Problem:
             tasks=work,
             fixed=fixed,
             charges=charges,
+            aboard=tuple(tuple(number_in[j] for j in self.aboard[i]) for i in robots) if self.aboard else (),
             known=known,
             waiting=self.waiting.part(robots, places),
         )

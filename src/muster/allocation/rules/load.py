@@ -13,6 +13,7 @@ from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Robot, Task
 
 Amounts = Mapping[str, float]
+_ARRAYS = ("load", "pending", "load_capacity", "load_at_start", "pending_at_start")
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ class Load(Rule):
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         names, none = commodities(problem), np.empty(0)
         if not names:
-            arrays: dict[str, Any] = dict.fromkeys(("load", "pending", "load_capacity", "load_at_start"), none)
+            arrays: dict[str, Any] = dict.fromkeys(_ARRAYS, none)
             return arrays | {"commodities": 0, "pickup": np.empty(0, dtype=np.int32)}
         pickup = pickups(problem)
         delivered = {k for k in pickup if k >= 0}
@@ -64,12 +65,19 @@ class Load(Rule):
         own = own.reshape(len(problem.tasks), len(names))
         put_down = np.array([own[k] if k >= 0 else np.zeros(len(names)) for k in pickup]).reshape(own.shape)
         taken_on = np.array([own[j] if j in delivered else np.zeros(len(names)) for j in range(len(own))])
+        taken_on = taken_on.reshape(own.shape)
+        aboard = np.zeros((len(problem.robots), len(names)))
+        for i, deliveries in enumerate(problem.aboard):
+            for j in deliveries:
+                aboard[i] -= own[j]
+                taken_on[j] = own[j]
         return {
             "commodities": len(names),
             "load": own - put_down,
-            "pending": taken_on.reshape(own.shape) - put_down,
+            "pending": taken_on - put_down,
             "pickup": np.array(pickup if delivered else [], dtype=np.int32),
             "load_capacity": np.array([[room_for(robot, name) for name in names] for robot in problem.robots]),
+            "pending_at_start": aboard,
             "load_at_start": np.array([[_at_start(one).get(name, 0.0) for name in names] for one in problem.robots]),
         }
 
