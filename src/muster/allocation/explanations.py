@@ -122,8 +122,8 @@ class Alternative:
 
 def alternatives(problem: Problem, routes: Sequence[Sequence[int]], j: int) -> tuple[Alternative, ...]:
     """For every robot, in mission order, what giving it task j instead would do, the rest of the plan as it is."""
-    rest = [[k for k in route if k != j] for route in routes]
-    plan = in_plan(problem, rest)
+    moved = problem.with_partner(j)
+    plan = in_plan(problem, [[k for k in route if k not in moved] for route in routes])
     return tuple(_alternative(problem, plan, problem.robot_index[robot.id], j) for robot in problem.mission.robots)
 
 

@@ -78,7 +78,7 @@ class Problem:
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
     known: Measured | None = None  # what the problem of which this is a part knew
     charges: tuple[Charge | None, ...] = ()  # measured, for each robot; empty: none at all
-    aboard: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that deliver what it carries; empty: none at all
+    aboard: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that deliver what it has on board; empty: none
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
     waiting: Waiting = NO_WAITING  # that is expected on ways
 
@@ -177,6 +177,22 @@ class Problem:
         if not self.holds("prerequisite"):
             return [[] for _ in self.tasks]
         return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
+
+    @cached_property
+    def partners(self) -> list[int | None]:
+        """For each task the other one of its transport: which takes on what it delivers, or delivers its load."""
+        found: list[int | None] = [None] * len(self.tasks)
+        for j, pickup in enumerate(pickups(self)):
+            if pickup >= 0:
+                found[j], found[pickup] = pickup, j
+        return found
+
+    def with_partner(self, j: int) -> tuple[int, ...]:
+        """A task, with the other one of its transport in the order in which they are done."""
+        other = self.partners[j]
+        if other is None:
+            return (j,)
+        return (other, j) if self.tasks[j].delivers is not None else (j, other)
 
     @cached_property
     def awaited(self) -> list[list[int]]:

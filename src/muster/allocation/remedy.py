@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from muster.allocation.allocator import Routes, scheduled
+from muster.allocation.problem import Problem
 from muster.allocation.rules import RULES, Change
 from muster.allocation.rules.capacity import CapacityChange
-from muster.mission.plan import Route
+from muster.mission.plan import Plan, Route
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,8 @@ class Remedy:
     `enough` tells whether a plan with all this was found and judged; its routes are in `routes`. `unable` tells why the
     robot cannot do the task's action, whatever changes; empty if it can. `unreachable` tells that there is no way to
     the task, `impossible` that no capacity is enough beside the other changes: both are proven. Of many robots only
-    those that seem to need least are `searched` for plans in which other tasks are moved.
+    those that seem to need least are `searched` for plans in which other tasks are moved. `calls` are those at stations
+    that the robot makes in that plan, and not in the one without the task.
     """
 
     robot: str
@@ -41,6 +44,7 @@ class Remedy:
     searched: bool = True
     capacity: CapacityChange
     enough: bool = False
+    calls: tuple[str, ...] = ()
     routes: tuple[Route, ...] = field(default=(), repr=False)
 
     @property
@@ -73,6 +77,24 @@ class Remedy:
             **{name: getattr(self, name) for name in others},
             "capacity": asdict(self.capacity),
             "enough": self.enough,
+            **({"calls": list(self.calls)} if self.calls else {}),
             "routes": [asdict(route) for route in self.routes],
             "kinds": self.kinds,
         }
+
+
+def more_calls(problem: Problem, routes: Routes, plan: Plan, i: int) -> tuple[str, ...]:
+    """The calls at stations of robot i in a plan that its route did not have: `a charge of 200 s at dock`."""
+    if not problem.stations:
+        return ()
+    before = [stop.name for stop in scheduled(problem, routes)[i].stops]
+    found = []
+    for stop in next(route for route in plan.routes if route.robot == problem.robots[i].id).stops:
+        if not stop.is_station:
+            continue
+        if stop.name in before:
+            before.remove(stop.name)
+            continue
+        what = "a charge" if stop.charged is not None else "a call"
+        found.append(f"{what} of {stop.end_s - stop.begin_s:.0f} s at {stop.name}")
+    return tuple(found)

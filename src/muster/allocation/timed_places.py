@@ -79,7 +79,7 @@ class TimedPlaces(InPlan):
 
     def _outcome(self, i: int, j: int) -> Outcome:
         """The place of task j with the least usage of robot i, or why there is none."""
-        missing = self._left_out_with(j)
+        missing = self._left_out_with(j) or self._left_out_before_partner(j)
         if missing:
             return Outcome(word="relation", detail=missing)
         places = self.places(i, j)
@@ -99,6 +99,16 @@ class TimedPlaces(InPlan):
             before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done]
             if before:
                 return f"begins together with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
+        return ""
+
+    def _left_out_before_partner(self, j: int) -> str:
+        """What the other task of a transport lacks; empty: nothing."""
+        problem = self.problem
+        own = problem.with_partner(j)
+        for k in own:
+            before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done and b not in own]
+            if k != j and before:
+                return f"is one transport with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
         return ""
 
     @staticmethod
@@ -192,6 +202,8 @@ class TimedPlaces(InPlan):
 
     def places(self, i: int, j: int) -> list[Place]:
         """Ways to put task j into the route of robot i; of teams those that can begin first."""
+        if self.problem.partners[j] is not None:
+            return list(self._of_transport(i, j))
         found: list[Place] = []
         for team in itertools.islice(self._teams(i, j), _MOST_TEAMS):
             gaps = [self._gaps(robot) for robot, _ in team]
@@ -203,6 +215,17 @@ class TimedPlaces(InPlan):
             if len(team) > 1 and len(found) >= _MOST_PLACES:
                 break
         return found
+
+    def _of_transport(self, i: int, j: int) -> Iterator[Place]:
+        """All places of both tasks of a transport."""
+        first, second = self.problem.with_partner(j)
+        if not all(self._keeps_relations(i, k) and self.problem.may(i, k) for k in (first, second)):
+            return
+        route = self.routes[i]
+        for at, then in itertools.combinations_with_replacement(self._gaps(i), 2):
+            with_both = [*route[:at], first, *route[at:then], second, *route[then:]]
+            routes = [with_both if k == i else other for k, other in enumerate(self.routes)]
+            yield Place(with_both.index(j), routes)
 
     def _put(self, i: int, team: Sequence[Member], at: Sequence[int]) -> Place:
         routes = list(self.routes)

@@ -15,8 +15,9 @@ from muster.allocation.allocator import Routes
 from muster.allocation.changed_problem import changed, pair_changes, with_capacity
 from muster.allocation.feasibility import impossible, limits_of
 from muster.allocation.problem import Problem
-from muster.allocation.remedy import Before, Remedy
+from muster.allocation.remedy import Before, Remedy, more_calls
 from muster.allocation.rules import RULES, Change
+from muster.allocation.rules.battery import LargerBattery
 from muster.allocation.rules.capacity import CapacityChange
 from muster.allocation.rules.deadline import LaterDeadline
 from muster.allocation.rules.relation import Untied
@@ -45,7 +46,8 @@ def timed_remedy(
     first = _first(problem, routes, i, j)
     if first.unable:
         return replace(first, impossible=True)
-    rest = [[k for k in route if k != j] for route in routes]
+    moved = problem.with_partner(j)
+    rest = [[k for k in route if k not in moved] for route in routes]
     for wider in _wider(problem, first, rest, i, j):
         if due():
             return replace(first, searched=False)
@@ -60,7 +62,9 @@ def timed_remedy(
 def _first(problem: Problem, routes: Routes, i: int, j: int) -> Remedy:
     """What stands between the robot and the task by themselves, and the prerequisites that are left out."""
     robot, done = problem.robots[i], {k for route in routes for k in route}
-    missing = [k for k in closed(problem, problem.prerequisites[j]) if k not in done]
+    own = problem.with_partner(j)
+    awaited = closed(problem, [before for k in own for before in problem.prerequisites[k]])
+    missing = [k for k in awaited if k not in done and k not in own]
     never = {item.task for item in impossible(problem)} if missing else set()
     now = None if math.isinf(problem.capacity[i]) else robot.work_capacity
     return Remedy(
@@ -126,8 +130,12 @@ def _lifted_and_tried(
         return None
     needed = _needed(problem, opened, found, i, j, remedy, as_is=not searched)
     target = changed(problem, needed, i, j)
-    plan = bare_plan(target, _as_named(opened, target, found))
-    return replace(needed, enough=True, routes=plan.routes) if judge(target.mission, plan, target.ignored) else None
+    target_routes = _as_named(opened, target, found)
+    plan = bare_plan(target, target_routes)
+    if not judge(target.mission, plan, target.ignored):
+        return None
+    calls = more_calls(problem, rest, plan, i)
+    return replace(needed, enough=True, routes=plan.routes, calls=calls)
 
 
 def _without_limits(problem: Problem, i: int, j: int) -> dict[str, Change]:
@@ -154,7 +162,8 @@ def _placed(problem: Problem, opened: Problem, rest: Routes, i: int, j: int, at:
     """The place beside the rest of the plan that needs least."""
     plan = TimedPlaces(opened, rest)
     done = {k for route in rest for k in route}
-    if not done.issuperset(opened.prerequisites[of]):
+    own = opened.with_partner(of)
+    if not done.union(own).issuperset(before for k in own for before in opened.prerequisites[k]):
         return None
     tried = ((place, core.Inspection(opened.core, place.routes)) for place in plan.places(at, of))
     admissible = [(place, found) for place, found in tried if found.admissible]
@@ -209,6 +218,8 @@ def _needed(
     begin, end, over = _times(opened, routes, inspection, at, of)
     limits, rules = limits_of(opened, timed=True), problem.timed_rules
     narrowed = {word: change.narrowed(len(routes[at])) for word, change in remedy.changes.items()}
+    if isinstance(battery := narrowed.get("battery"), LargerBattery):
+        narrowed["battery"] = battery.for_usage(problem.robots[i], inspection.usages[at])
     changes = {word: change for word, change in narrowed.items() if change is not None}
     if rules.windows[j] and begin > rules.windows[j][-1][1] * (1 + ROUNDING):
         changes["window"] = LongerWindow(rules.windows[j][-1][1], begin, float(limits.pair_begin[at, of]))

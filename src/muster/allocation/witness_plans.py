@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from muster.allocation import search
-from muster.allocation.allocator import Routes
+from muster.allocation.allocator import Routes, scheduled
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Progress, Stop
 from muster.mission.clock import Clock
@@ -22,12 +22,12 @@ _OTHERS_WEIGHT = 1e-6  # of a task that only shortens ways
 
 
 def closed(problem: Problem, tasks: Iterable[int]) -> list[int]:
-    """Tasks with all that must come before them or begin with them, in order."""
+    """Tasks with all that must come before them, begin with them or deliver their goods, in order."""
     needed, rules = set(tasks), problem.timed_rules
     waiting = list(needed)
     while waiting:
         j = waiting.pop()
-        new = {*problem.prerequisites[j], *rules.beginning_with(j)} - needed
+        new = {*problem.prerequisites[j], *rules.beginning_with(j), *problem.with_partner(j)} - needed
         needed |= new
         waiting += new
     return sorted(needed)
@@ -87,11 +87,14 @@ def _searched(
 
 
 def bare_plan(problem: Problem, routes: Routes) -> Plan:
-    """A plan of nothing but routes."""
-    by_robot = {
-        robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route))
-        for robot, route in zip(problem.robots, routes, strict=True)
-    }
+    """A plan of nothing but routes, with what is charged at stations."""
+    if problem.stations:
+        by_robot = {route.robot: route for route in scheduled(problem, routes)}
+    else:
+        by_robot = {
+            robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route))
+            for robot, route in zip(problem.robots, routes, strict=True)
+        }
     return Plan(routes=tuple(by_robot[robot.id] for robot in problem.mission.robots), ignored=problem.ignored)
 
 

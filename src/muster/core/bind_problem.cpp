@@ -93,8 +93,8 @@ void bind_problem(nb::module_& m) {
              Numbers abilities, Numbers needs, const std::vector<std::vector<int>>& same_robot,
              const std::vector<std::vector<int>>& other_robot, Indices min_tasks, Numbers acceleration, Numbers climb,
              Numbers turn, bool over_map, bool makespan_includes_return, int commodities, Numbers load, Numbers pending,
-             Indices pickup, Numbers load_capacity, Numbers load_at_start, Numbers pending_at_start, Numbers battery, Numbers battery_at_start,
-             const Stations& stations, Numbers waiting, Flags waits) {
+             Indices pickup, Numbers load_capacity, Numbers load_at_start, Numbers pending_at_start, Numbers battery,
+             Numbers battery_at_start, const Stations& stations, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 3 || entry.shape(2) != 3 || exit.ndim() != 3 || exit.shape(2) != 3 || !table_fits) {
@@ -159,7 +159,8 @@ void bind_problem(nb::module_& m) {
           "windows"_a, "deadline"_a, "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a,
           "abilities"_a, "needs"_a, "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a,
           "turn"_a, "over_map"_a, "makespan_includes_return"_a, "commodities"_a, "load"_a, "pending"_a, "pickup"_a,
-          "load_capacity"_a, "load_at_start"_a, "pending_at_start"_a, "battery"_a, "battery_at_start"_a, "stations"_a, "waiting"_a, "waits"_a,
+          "load_capacity"_a, "load_at_start"_a, "pending_at_start"_a, "battery"_a, "battery_at_start"_a, "stations"_a,
+          "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "

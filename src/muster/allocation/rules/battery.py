@@ -3,19 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_robot
+from muster import core
+from muster.allocation.rules.rule import (
+    Bools,
+    Change,
+    InPlan,
+    Limits,
+    Outlook,
+    Question,
+    Routes,
+    Rule,
+    first_robot,
+)
 from muster.mission.model import Robot
 
 
 @dataclass(frozen=True)
 class LargerBattery(Change):
-    """What the robot's battery would have to hold."""
+    """What the robot's battery would have to hold; inf: without an end."""
 
     capacity: float
     unit: str
@@ -29,9 +40,17 @@ class LargerBattery(Change):
         return f"a battery of {self.capacity:.2f} {self.unit}"
 
     def robot(self, robot: Robot) -> Robot:
-        if robot.battery is None:
-            return robot
+        if robot.battery is None or math.isinf(self.capacity):
+            return replace(robot, battery=None)
         return replace(robot, battery=replace(robot.battery, capacity=self.capacity))
+
+    def for_usage(self, robot: Robot, usage: float) -> LargerBattery | None:
+        """What is enough for a route that uses so much, without calls; None: the battery as it is."""
+        battery = robot.battery
+        if battery is None:
+            return None
+        needed = usage / (battery.at_start - battery.reserve)
+        return replace(self, capacity=needed) if needed > battery.capacity else None
 
 
 class Battery(Rule):
@@ -40,6 +59,7 @@ class Battery(Rule):
     word: ClassVar[str] = "battery"
     asked = ("battery",)
     lifted_late = True
+    key = "battery"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         if not problem.holds(self.word):
@@ -77,6 +97,18 @@ class Battery(Rule):
         if not problem.mission.stations:
             return f"takes at least {least:.2f} {unit}, {holds}"
         return f"takes at least {least:.2f} {unit}, {holds}, and no station is near enough"
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+        usage, unit = min(found.usages[i] for _, found in places), problem.usage_unit
+        holds = f"its battery holds {_at_start(problem.robots[i]):.2f} {unit} above its reserve"
+        stations = ", and no calls at stations make up for that" if problem.mission.stations else ""
+        return f"at least {usage:.2f} {unit} with it, {holds}{stations}"
+
+    def lifted(self, problem: Question, i: int) -> LargerBattery | None:
+        battery = problem.robots[i].battery
+        if battery is None or battery.at_start <= battery.reserve:
+            return None
+        return LargerBattery(math.inf, problem.usage_unit)
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         return plan.kept_out(self.word, i, j)

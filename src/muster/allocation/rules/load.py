@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_robot, first_task
+from muster import core
+from muster.allocation.rules.rule import (
+    Bools,
+    Change,
+    InPlan,
+    Limits,
+    Outlook,
+    Question,
+    Routes,
+    Rule,
+    first_robot,
+    first_task,
+)
 from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Robot, Task
 
@@ -110,7 +122,7 @@ class Load(Rule):
         refused = self.refusal(problem, i, j)
         if refused is not None:
             return refused
-        other = partner_of(problem, j)
+        other = problem.partners[j]
         if other is None or outlook.limits.usable[i, other]:
             return None
         return f"it cannot do {problem.tasks[other].id}, which {_is_to(problem, j)}"
@@ -118,6 +130,9 @@ class Load(Rule):
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         refused = self.refusal(plan.problem, i, j)
         return refused or plan.kept_out(self.word, i, j)
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+        return "at every place in its route it would carry more than it can, or put down more than it has"
 
     def change(self, problem: Question, robot: Robot, task: Task) -> MoreRoom | None:
         if not self._holds(problem):
@@ -140,15 +155,6 @@ def pickups(problem: Question) -> list[int]:
     """For each task the one whose load it delivers; -1: none, or one that is not in the problem."""
     index = {task.id: j for j, task in enumerate(problem.tasks)} if problem.holds("load") else {}
     return [index.get(task.delivers, -1) if task.delivers is not None else -1 for task in problem.tasks]
-
-
-def partner_of(problem: Question, j: int) -> int | None:
-    """The task with which a task is one transport."""
-    task = problem.tasks[j]
-    if not problem.holds("load"):
-        return None
-    named = (k for k, other in enumerate(problem.tasks) if task.id == other.delivers or task.delivers == other.id)
-    return next(named, None)
 
 
 def room_for(robot: Robot, commodity: str) -> float:

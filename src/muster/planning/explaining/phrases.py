@@ -61,7 +61,8 @@ def smallest_change(problem: Problem, changes: Sequence[Remedy]) -> str:
     if best is None:
         return ""
     needs = f"smallest change: {best.robot}: {short(problem, best)}"
-    return needs if best.kinds else f"no change is needed: {best.robot} can do it beside all else"
+    calls = f", with {', '.join(best.calls)}" if best.calls else ""
+    return needs if best.kinds else f"no change is needed: {best.robot} can do it beside all else{calls}"
 
 
 def ignored(problem: Problem) -> list[str]:
@@ -82,6 +83,7 @@ def short(problem: Problem, remedy: Remedy) -> str:
     if remedy.before:
         parts.append(_first(remedy))
     capacity = remedy.capacity.short(problem.usage_unit)
+    parts += [f"with {call}" for call in remedy.calls]
     return "; ".join([*parts, *([capacity] if capacity else [])]) or "none is needed"
 
 
@@ -106,6 +108,7 @@ def lines(problem: Problem, remedy: Remedy) -> list[str]:
         fits = capacity.as_is is not None and (capacity.now is None or capacity.as_is <= capacity.now * (1 + 1e-9))
         where = "it fits into the plan as it is" if fits else "a plan was found in which other tasks are moved"
         lines.append(f"nothing else: {where}" if lines else f"nothing: {where}")
+    lines += [f"with {call}" for call in remedy.calls]
     if remedy.impossible and all(before.possible for before in remedy.before):
         lines.append("no plan can do it with that, whatever the capacity (proven)")
     elif not remedy.enough and not remedy.impossible:
