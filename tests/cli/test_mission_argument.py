@@ -57,6 +57,8 @@ def test_tsplib(muster):
             "eil51: --suitability given; expected no --suitability",
         ),
         (["yard.yaml", "--depot", "2"], "--depot given; expected it together with --salesmen"),
+        (["none.txt"], "none.txt: No such file or directory; expected a file to read"),
+        (["none.vrp"], "none.vrp: No such file or directory; expected a file to read"),
         (["none.yaml"], "none.yaml: No such file or directory; expected a file to read"),
         (
             ["31T-6R5"],
@@ -70,6 +72,18 @@ def test_flags_that_do_not_fit(verb, arguments, message, muster):
     assert (code, out) == (2, "")
     assert err.startswith(message)
     assert len(err.splitlines()) == 1
+
+
+def test_instance_files_have_robots_of_their_own(muster):
+    Path("tiny.txt").write_text(
+        "2 20 1\n0 0 0 0 0 90 0 0 0\n1 3 4 5 0 50 1 0 2\n2 6 8 -5 0 80 1 1 0\n", encoding="utf-8"
+    )
+    assert muster("check", "tiny.txt")[1].startswith("tiny-2: 2 robots, 2 tasks; no errors")
+    assert muster("check", "tiny.txt", "--salesmen", 5)[1].startswith("tiny-5: 5 robots")
+    code, _, err = muster("check", "tiny.txt", "--salesmen", 5, "--depot", 2)
+    assert (code, err) == (2, "tiny.txt: --depot given; expected no --depot with this kind of mission\n")
+    assert muster("solve", "tiny.txt", "--iterations", 5, "-o", "p.json")[0] == 0
+    assert muster("verify", "tiny.txt", "p.json")[0] == 0
 
 
 def test_suffixes_in_capitals(muster):

@@ -61,7 +61,7 @@ class MissionFile:
         if self.depot is not None and self.salesmen is None:
             raise ParameterError("--depot given; expected it together with --salesmen")
         flags = {name: getattr(self, name) for name in ("robots", "suitability", "salesmen")}
-        loaded = load(self.name, **flags, depot=self.depot or "1")
+        loaded = load(self.name, **flags, depot=self.depot)
         if verbose:
             amount = f"{len(loaded.robots)} robots, {len(loaded.tasks)} tasks"
             click.echo(f"read {loaded.source.file}: mission {loaded.name}, {amount}", err=True)
@@ -94,7 +94,12 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
         click.argument("mission", required=required),
         click.option("--robots", type=_FILE, metavar="CSV", help="Robots of a task-list CSV."),
         click.option("--suitability", type=_FILE, metavar="CSV", help="Suitability of a task-list CSV."),
-        click.option("--salesmen", type=click.IntRange(min=1), metavar="M", help="Robots of a TSPLIB mission."),
+        click.option(
+            "--salesmen",
+            type=click.IntRange(min=1),
+            metavar="M",
+            help="Robots of an instance file: TSPLIB, VRPLIB, ...",
+        ),
         click.option("--depot", metavar="NODE", help="Start and end of a TSPLIB mission.  [default: 1]"),
     )
     decorated: Any = with_mission

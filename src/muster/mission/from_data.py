@@ -6,18 +6,23 @@ prerequisite three tasks later.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from muster.mission.clock_times import clock_times_to_seconds
 from muster.mission.consistency import inconsistencies
 from muster.mission.degrees import degrees_to_metres, in_degrees
 from muster.mission.errors import MissionError
 from muster.mission.model import Mission
 from muster.mission.records import Record, findings
+from muster.mission.site import TravelTable
 from muster.mission.source import Source
 from muster.mission.travel_csv import read_travel_tables
 from muster.mission.value_types import Fault, Path
 
 
-def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
+def mission_from(
+    data: object, source: Source, faults: list[Fault], tables: Mapping[str, TravelTable] | None = None
+) -> Mission:
     """The mission that plain data describes.
 
     Parameters
@@ -29,6 +34,8 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
         where the values came from; files named in the data are found from the folder of its file.
     faults
         what was wrong with the form of the file already.
+    tables
+        the travel tables that the data names; without them they are read from their files.
 
     Raises
     ------
@@ -42,7 +49,8 @@ def mission_from(data: object, source: Source, faults: list[Fault]) -> Mission:
     mission: Mission = Record(Mission, "a mission").read(data, (), faults)
     object.__setattr__(mission, "source", source)
     if mission.travel_rule == "matrix" and mission.travel:
-        object.__setattr__(mission, "travel_tables", read_travel_tables(mission.travel, source, faults))
+        read = tables or read_travel_tables(mission.travel, source, faults)
+        object.__setattr__(mission, "travel_tables", read)
     # Where a value is known to be wrong a filler stands in its place: nothing more is said of it.
     wrong = {fault.path for fault in faults}
     around = {start for path in wrong for start in _prefixes(path)}

@@ -1,24 +1,28 @@
-"""TSPLIB (`.tsp`, EUC_2D) as closed multiple-salesmen missions.
+"""TSPLIB (`.tsp`, `.atsp`) [reinelt1991] as closed multiple-salesmen missions.
 
-Distances stay real-valued: TSPLIB's rounding to whole numbers is not applied. The depot's node is where all robots
+EUC_2D is the straight distance, without TSPLIB's rounding to whole numbers, as in studies of several salesmen. All
+other types of edge weights become a travel table: lengths are those of TSPLIB. The depot's node is where all robots
 start and return to; every other node is a task whose id is the node's number.
 """
 
 from __future__ import annotations
 
-import math
 from pathlib import Path as FilePath
+from typing import Any
 
-from muster.mission.csv_files import number
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
+from muster.mission.keyword_files import KeywordFile, read_keyword_file
 from muster.mission.model import SCHEMA, Mission
+from muster.mission.site import TravelTable
 from muster.mission.source import Place, Source
-from muster.mission.text_files import read_text
-from muster.mission.value_types import Fault, Path, shown
+from muster.mission.value_types import Path, shown
+from muster.mission.weighted_nodes import NODE_SECTIONS, WeightedNodes, weighted_nodes
 
-_MOST_SALESMEN = 100_000
-_NEEDED = {"TYPE": "TSP", "EDGE_WEIGHT_TYPE": "EUC_2D"}
+MOST_SALESMEN = 100_000
+TABLED_TYPE = "vehicle"
+"""The type of robots whose travel is by the table of an instance."""
+_TYPES = ("TSP", "ATSP")
 
 
 def read_tsplib(path: FilePath, salesmen: int, depot: str = "1") -> Mission:
@@ -29,77 +33,51 @@ def read_tsplib(path: FilePath, salesmen: int, depot: str = "1") -> Mission:
     MissionError
         with every finding: file, line, field, value, what was expected.
     """
-    faults: list[Fault] = []
-    places: dict[Path, Place] = {}
-    head, nodes = _parts(path)
-    found = _head_findings(path, head, len(nodes))
-    if nodes and depot not in [node for _, node, _ in nodes]:
+    file = read_keyword_file(path)
+    found = [] if file.value("TYPE") in _TYPES else [file.wrong("TYPE", " or ".join(_TYPES))]
+    graph: WeightedNodes | None = None
+    try:
+        file.require_known_sections(NODE_SECTIONS)
+        graph = weighted_nodes(file, exact=True)
+    except MissionError as error:
+        found += error.findings
+    if graph is not None and depot not in [node.id for node in graph.nodes]:
         found.append(Finding(str(path), None, "depot", shown(depot), "the number of a node"))
-    if not 1 <= salesmen <= _MOST_SALESMEN:
-        found.append(Finding(str(path), None, "salesmen", str(salesmen), f"a whole number from 1 to {_MOST_SALESMEN}"))
-    if found:
+    if not 1 <= salesmen <= MOST_SALESMEN:
+        found.append(Finding(str(path), None, "salesmen", str(salesmen), f"a whole number from 1 to {MOST_SALESMEN}"))
+    if found or graph is None:
         raise MissionError(found)
-    start = next(position for _, node, position in nodes if node == depot)
-    tasks = [(line, node, position) for line, node, position in nodes if node != depot]
-    places |= {("tasks", k): (str(path), line) for k, (line, _, _) in enumerate(tasks)}
+    return _mission(file, graph, salesmen, depot)
+
+
+def _mission(file: KeywordFile, graph: WeightedNodes, salesmen: int, depot: str) -> Mission:
+    start = next(node.position for node in graph.nodes if node.id == depot)
+    tasks = [node for node in graph.nodes if node.id != depot]
+    robots = [f"r_{k}" for k in range(salesmen)]
+    kind, rules, tables = tabled(file, graph, robots, depot)
     data = {
         "schema": SCHEMA,
-        "name": f"{head.get('NAME', (0, path.stem))[1]}-{salesmen}",
-        "rules": {"return_to_start": True},
-        "robots": [{"id": f"r_{k}", "position": start} for k in range(salesmen)],
-        "tasks": [{"id": node, "position": position} for _, node, position in tasks],
+        "name": f"{file.value('NAME') or file.path.stem}-{salesmen}",
+        **rules,
+        "robots": [{"id": name, "position": start, **kind} for name in robots],
+        "tasks": [{"id": node.id, "position": node.position} for node in tasks],
     }
-    return mission_from(data, Source(str(path), places), faults)
+    data["rules"] = {"return_to_start": True, **rules.get("rules", {})}
+    places: dict[Path, Place] = {("tasks", k): (str(file.path), node.line) for k, node in enumerate(tasks)}
+    return mission_from(data, Source(str(file.path), places), [], tables)
 
 
-def _parts(path: FilePath) -> tuple[dict[str, tuple[int, str]], list[tuple[int, str, list[object]]]]:
-    """The head (keyword to line and value) and the nodes (line, number, coordinates)."""
-    head: dict[str, tuple[int, str]] = {}
-    nodes: list[tuple[int, str, list[object]]] = []
-    seen: set[str] = set()
-    in_nodes = False
-    for line, text in enumerate(read_text(path).splitlines(), 1):
-        words = text.split()
-        if not words or words == ["EOF"]:
-            continue
-        if in_nodes and words[0][0].isdigit():
-            x_y = [number(word) for word in words[1:]]
-            if len(x_y) != 2 or not all(isinstance(value, float) and math.isfinite(value) for value in x_y):
-                raise _refusal(path, line, shown(text.strip()), "number, x, y")
-            if words[0] in seen:
-                raise _refusal(path, line, f"node {words[0]} for the second time", "each node once")
-            seen.add(words[0])
-            nodes.append((line, words[0], x_y))
-        elif words == ["NODE_COORD_SECTION"]:
-            in_nodes = True
-        elif ":" in text:
-            keyword, _, value = text.partition(":")
-            head[keyword.strip().upper()] = (line, value.strip())
-        elif not in_nodes and words[0].isdigit():
-            raise _refusal(path, line, "missing", "this line before the first node")
-        else:
-            raise MissionError(
-                [Finding(str(path), line, "", shown(text.strip()), "TSPLIB: KEYWORD : value, or a node")]
-            )
-    return head, nodes
+def tabled(
+    file: KeywordFile, graph: WeightedNodes, robots: list[str], depot: str
+) -> tuple[dict[str, Any], dict[str, Any], dict[str, TravelTable]]:
+    """What robots, and what the mission, say of travel by the weights of a file; and the table.
 
-
-def _refusal(path: FilePath, line: int, value: str, expected: str) -> MissionError:
-    return MissionError([Finding(str(path), line, "NODE_COORD_SECTION", value, expected)])
-
-
-def _head_findings(path: FilePath, head: dict[str, tuple[int, str]], nodes: int) -> list[Finding]:
-    found = [
-        Finding(str(path), head.get(keyword, (None, ""))[0], keyword, head.get(keyword, (0, "missing"))[1], value)
-        for keyword, value in _NEEDED.items()
-        if head.get(keyword, (0, ""))[1] != value
-    ]
-    if not nodes:
-        return [*found, Finding(str(path), None, "NODE_COORD_SECTION", "missing", "a line for each node: number, x, y")]
-    line, dimension = head.get("DIMENSION", (None, "missing"))
-    if dimension != str(nodes):
-        found.append(Finding(str(path), line, "DIMENSION", dimension, f"{nodes}, the number of nodes in the file"))
-    return found
+    All are empty where travel is straight.
+    """
+    if graph.weights is None:
+        return {}, {}, {}
+    rules = {"rules": {"travel": "matrix"}, "travel": {TABLED_TYPE: file.path.name}}
+    return {"type": TABLED_TYPE}, rules, {TABLED_TYPE: graph.travel_table(robots, depot)}
 
 
 def write_tsplib(mission: Mission, path: FilePath) -> None:

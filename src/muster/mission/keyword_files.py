@@ -1,0 +1,107 @@
+"""Files of keywords and sections: the form that TSPLIB [reinelt1991] and VRPLIB share."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+
+from muster.mission.errors import Finding, MissionError
+from muster.mission.number_rows import Row, row_numbers
+from muster.mission.text_files import read_text
+from muster.mission.value_types import shown
+
+_END = "_SECTION"
+
+
+@dataclass(frozen=True)
+class KeywordFile:
+    """The head, by keyword the line and value; and the sections, by title the rows that hold something."""
+
+    path: FilePath
+    head: Mapping[str, tuple[int, str]]
+    sections: Mapping[str, list[Row]]
+    titles: Mapping[str, int]
+    """The line of each section's title."""
+
+    def value(self, keyword: str) -> str | None:
+        """The value of a keyword of the head; None where it is absent."""
+        return self.head[keyword][1] if keyword in self.head else None
+
+    def line(self, keyword: str) -> int | None:
+        """The line of a keyword or of a section's title."""
+        return self.head[keyword][0] if keyword in self.head else self.titles.get(keyword)
+
+    def wrong(self, keyword: str, expected: str) -> Finding:
+        """What to say of a keyword whose value is wrong or missing."""
+        return Finding(str(self.path), self.line(keyword), keyword, self.value(keyword) or "missing", expected)
+
+    def number(self, keyword: str, *, above: float = 0.0) -> float | None:
+        """The number after a keyword; None where the keyword is absent.
+
+        Raises
+        ------
+        MissionError
+            if the value is no finite number above `above`.
+        """
+        if keyword not in self.head:
+            return None
+        line, text = self.head[keyword]
+        value = row_numbers([text])
+        if value is None or not value[0] > above:
+            raise MissionError(
+                [Finding(str(self.path), line, keyword, shown(text), f"a finite number above {above:g}")]
+            )
+        return value[0]
+
+    def require_known_sections(self, known: Collection[str]) -> None:
+        """Refuse sections that would change what the file asks for.
+
+        Raises
+        ------
+        MissionError
+            with each of them.
+        """
+        expected = f"the sections {', '.join(known)}"
+        unknown = {title: line for title, line in self.titles.items() if title not in known}
+        if unknown:
+            found = [Finding(str(self.path), line, title, "not supported", expected) for title, line in unknown.items()]
+            raise MissionError(found)
+
+
+def read_keyword_file(path: FilePath, what: str = "TSPLIB") -> KeywordFile:
+    """Read the head and the sections of a file.
+
+    Raises
+    ------
+    MissionError
+        if the file cannot be read, or a line is neither a keyword with its value, nor a section's title or row.
+    """
+    head: dict[str, tuple[int, str]] = {}
+    sections: dict[str, list[Row]] = {}
+    titles: dict[str, int] = {}
+    rows: list[Row] | None = None
+    for line, text in enumerate(read_text(path).splitlines(), 1):
+        words = text.split()
+        if not words or words == ["EOF"]:
+            continue
+        title = text.strip().rstrip(" :").upper()
+        if title.endswith(_END) and len(title.split()) == 1:
+            if title in titles:
+                raise _refusal(path, line, title, "for the second time", "each section once")
+            titles[title] = line
+            rows = sections[title] = []
+        elif ":" in text:
+            keyword, _, value = text.partition(":")
+            head[keyword.strip().upper()] = (line, value.strip())
+        elif rows is not None and (words[0][0].isdigit() or words[0][0] in "+-."):
+            rows.append(Row(line, words))
+        elif rows is None and words[0].isdigit():
+            raise _refusal(path, line, "NODE_COORD_SECTION", "missing", "this line before the first node")
+        else:
+            raise _refusal(path, line, "", shown(text.strip()), f"{what}: KEYWORD : value, or a node")
+    return KeywordFile(path, head, sections, titles)
+
+
+def _refusal(path: FilePath, line: int, field: str, value: str, expected: str) -> MissionError:
+    return MissionError([Finding(str(path), line, field, value, expected)])
