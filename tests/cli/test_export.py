@@ -71,7 +71,7 @@ def test_quiet_writes_without_a_word(export):
     assert export("--to", "qgc", "-o", "plans", "-q") == (0, "", "")
 
 
-@pytest.mark.parametrize("form", ["geojson", "gpx", "kml", "csv"])
+@pytest.mark.parametrize("form", ["geojson", "gpx", "kml", "csv", "sol"])
 def test_one_file_goes_to_standard_output_or_where_it_is_told(form, export):
     code, out, err = export("--to", form)
     assert (code, err) == (0, "")
@@ -100,7 +100,7 @@ def test_a_plan_of_another_mission(export, muster, plan):
 def test_an_unknown_format(export):
     code, out, err = export("--to", "geojsn")
     assert (code, out) == (2, "")
-    assert "'geojsn' is not one of qgc, geojson, gpx, kml, csv; did you mean 'geojson'?" in err
+    assert "'geojsn' is not one of qgc, geojson, gpx, kml, csv, sol; did you mean 'geojson'?" in err
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ def command(
 ) -> None:
     """Say why tasks are left out of a PLAN; with --task, why a task is done by this robot and not by another."""
     loaded = mission.load(verbose=verbose)
-    given = read_plan(plan)
+    given = read_plan(plan, loaded)
     found = backend.explain(loaded, given, task, ignore, str(plan), time_limit)
     say_of_plan(given, plan, loaded, ignore, quiet=quiet, verbose=verbose)
     _print(form, found)

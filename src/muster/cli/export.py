@@ -83,8 +83,8 @@ def command(
 ) -> int:
     """Write a PLAN of a MISSION for other tools: ground stations, maps, spreadsheets.
 
-    All but csv need the mission's origin_wgs84. Without -o the file goes to standard output; qgc writes a file for each
-    robot into a folder.
+    All but csv and sol need the mission's origin_wgs84. Without -o the file goes to standard output; qgc writes a file
+    for each robot into a folder.
     """
     if form == "qgc":
         if output is None:

@@ -98,7 +98,7 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
             "--salesmen",
             type=click.IntRange(min=1),
             metavar="M",
-            help="Robots of an instance file: TSPLIB, VRPLIB, ...",
+            help="Robots of an instance file (TSPLIB, VRPLIB, ...).",
         ),
         click.option("--depot", metavar="NODE", help="Start and end of a TSPLIB mission.  [default: 1]"),
     )
@@ -117,7 +117,7 @@ def require_none_without_mission(**of_mission: object) -> None:
 
 def load_plan(file: Path, mission: Mission, ignore: tuple[str, ...] = (), *, quiet: bool, verbose: bool) -> Plan:
     """Read a plan file and print what `say_of_plan` prints."""
-    plan = read_plan(file)
+    plan = read_plan(file, mission)
     say_of_plan(plan, file, mission, ignore, quiet=quiet, verbose=verbose)
     return plan
 

@@ -164,7 +164,7 @@ def _require_taken(allocator: str, named: Mapping[str, Any]) -> None:
 
 def request_of(options: PlanningOptions, mission: Mission, start: Path | None, fixed: Path | None) -> Request:
     """The request for a mission, with the plans of --start and --fixed."""
-    plans = {name: read_plan(file) for name, file in (("start", start), ("fixed", fixed)) if file is not None}
+    plans = {name: read_plan(file, mission) for name, file in (("start", start), ("fixed", fixed)) if file is not None}
     return Request.of(options, mission, **plans)
 
 

@@ -196,7 +196,7 @@ def command(
     if negotiate:
         planned, speed = _negotiation(loaded, method, transport, options), speed or 1.0
     elif plan is not None:
-        planned = read_plan(plan)
+        planned = read_plan(plan, loaded)
         say_of_plan(planned, plan, loaded, options.ignore, quiet=quiet, verbose=verbose)
         planned = _judged(loaded, planned, plan, options.ignore, quiet=quiet)
     else:

@@ -72,6 +72,7 @@ FORMATS: Registry[Exporter] = Registry(
         "gpx": "muster.exchange.files:gpx_file",
         "kml": "muster.exchange.files:kml_file",
         "csv": "muster.exchange.files:csv_file",
+        "sol": "muster.exchange.files:sol_file",
     },
     _checked,
 )

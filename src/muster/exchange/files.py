@@ -21,6 +21,7 @@ from muster.exchange.spreadsheet import csv_text
 from muster.exchange.thinning import thinned
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
+from muster.mission.sol_files import sol_text
 from muster.motion.map_world import body_of
 from muster.motion.robot_paths import RobotPaths
 from muster.verification import Verdict
@@ -50,6 +51,11 @@ def exported(mission: Mission, verdict: Verdict, form: str, options: QgcOptions)
 def csv_file(mission: Mission, verdict: Verdict) -> str:
     """The stops as a table; with places on Earth where the mission has its own."""
     return csv_text(mission, verdict, None if mission.origin_wgs84 is None else Earth.of(mission, "--to csv"))
+
+
+def sol_file(mission: Mission, verdict: Verdict) -> str:
+    """The routes as a solution of vehicle routing, stations in place; the cost is the total usage."""
+    return sol_text(mission, (route.tasks for route in verdict.routes), verdict.total_cost)
 
 
 def geojson_file(mission: Mission, verdict: Verdict) -> str:

@@ -11,14 +11,18 @@ from typing import Any
 from muster.mission.auction_book import Award, Book
 from muster.mission.errors import Finding, MissionError, ParameterError, PlanError
 from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule
+from muster.mission.model import Mission
 from muster.mission.plan import PLAN_SCHEMA, STOP_TIMES, Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.rules import OBJECTIVES
+from muster.mission.sol_files import is_sol, read_sol
 from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 
 
-def read_plan(path: str | Path) -> Plan:
+def read_plan(path: str | Path, mission: Mission | None = None) -> Plan:
     """Read a plan file. One from elsewhere needs only `schema` and `routes`.
+
+    With the mission that it is for, it may be a solution of vehicle routing (`.sol`): `Route #1: 5 3 2`.
 
     Raises
     ------
@@ -27,9 +31,13 @@ def read_plan(path: str | Path) -> Plan:
     """
     file = Path(path)
     try:
-        data = json.loads(read_text(file))
+        text = read_text(file)
     except MissionError as error:
         raise PlanError(error.findings) from None
+    if mission is not None and (file.suffix.lower() == ".sol" or is_sol(text)):
+        return read_sol(file, mission)
+    try:
+        data = json.loads(text)
     except json.JSONDecodeError as error:
         raise PlanError([Finding(str(file), error.lineno, "", error.msg, "a plan in JSON")]) from None
     except (RecursionError, ValueError) as error:

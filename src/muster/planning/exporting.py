@@ -33,7 +33,7 @@ def export(
     plan
         a plan; or a mapping, as for `verify`.
     to
-        qgc, geojson, gpx, kml, csv, or a format of an installed package.
+        qgc, geojson, gpx, kml, csv, sol, or a format of an installed package.
     path
         where it is written: a file, or a folder for a format that makes several files, such as qgc; None: nowhere.
     ignore

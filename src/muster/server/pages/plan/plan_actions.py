@@ -18,6 +18,7 @@ from muster.server.services.archives import archive_of
 _FORMATS = {
     "": "Plan file (JSON)",
     "csv": "Table of visits (CSV)",
+    "sol": "Solution of vehicle routing (SOL)",
     "geojson": "GeoJSON",
     "kml": "KML",
     "gpx": "GPX",
