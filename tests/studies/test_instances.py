@@ -1,26 +1,11 @@
 """Missions of the field's benchmarks: the published instances, number for number."""
 
-import math
-
 import pytest
 
 import muster
 from muster_studies.instances.coalitions import ONE_SKILL, SEVERAL_SKILLS, SKILL_SETS, counted_teams
-from muster_studies.instances.solomon import REFERENCES, solomon_instance, solomon_mission
+from muster_studies.instances.solomon import REFERENCES, solomon_instance
 from muster_studies.instances.waiting import lattice_mission, windows_mission
-
-SMALL = """TINY
-
-VEHICLE
-NUMBER     CAPACITY
-  25         200
-
-CUSTOMER
-CUST NO.  XCOORD.   YCOORD.    DEMAND   READY TIME  DUE DATE   SERVICE TIME
-
-    0      40         50          0          0       1236          0
-    1      45         68         10        912        967         90
-"""
 
 
 @pytest.mark.parametrize(("name", "robots"), REFERENCES)
@@ -29,24 +14,10 @@ def test_a_shipped_instance_is_a_mission(name, robots):
     assert (len(mission.robots), len(mission.tasks)) == (robots, 100)
     assert mission.rules.objective == "total"
     assert mission.rules.return_to_start
+    assert mission.name == f"{name}-{robots}"
+    assert {robot.load_capacity for robot in mission.robots} == {task.load for task in mission.tasks} == {None}
     assert {robot.position for robot in mission.robots} == {(40.0, 50.0) if "C" in name else (35.0, 35.0)}
     assert all(task.duration_s > 0 and len(task.window_s) == 1 for task in mission.tasks)
-
-
-def test_an_instance_file_is_read():
-    mission = solomon_mission(SMALL, 2, "tiny")
-    (task,) = mission.tasks
-    assert (task.id, task.position, task.window_s, task.duration_s) == ("1", (45.0, 68.0), ((912.0, 967.0),), 90.0)
-    assert [robot.available_until_s for robot in mission.robots] == [1236.0, 1236.0]
-    plan = muster.solve(mission, "greedy")
-    assert plan.objective_value == pytest.approx(2 * math.hypot(5, 18))
-
-
-def test_a_row_that_is_not_one_is_told():
-    with pytest.raises(muster.ParameterError, match="customer 1: '1 45 68'; expected customer, x, y, demand"):
-        solomon_mission(SMALL.replace("68         10        912        967         90", "68"), 2, "tiny")
-    with pytest.raises(muster.ParameterError, match="no customers"):
-        solomon_mission("nothing", 2, "tiny")
 
 
 def test_an_instance_that_is_not_shipped_is_told():

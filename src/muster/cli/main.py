@@ -134,7 +134,7 @@ def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
 
 _HELP = """Plan missions of robot teams: who does what, in which order.
 
-A MISSION is a file (mission YAML, a task-list CSV, TSPLIB) or the name of a mission that comes with Muster:
+A MISSION is a file (YAML, a task-list CSV, TSPLIB, VRPLIB, ...) or the name of a mission that comes with Muster:
 
 \b
   muster solve 31T-6R50 --plot plan.png

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from importlib.resources import files
+from collections.abc import Mapping
+from dataclasses import replace
+from importlib.resources import as_file, files
 from types import MappingProxyType
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.model import Mission
+from muster.mission.solomon import read_solomon
 
 _FOLDER = "solomon_instances"
-_COLUMNS = 7
-_COLUMN_NAMES = "customer, x, y, demand, ready time, due date, service time"
 
 REFERENCES: Mapping[tuple[str, int], float] = MappingProxyType(
     {
@@ -28,7 +28,7 @@ REFERENCES: Mapping[tuple[str, int], float] = MappingProxyType(
 
 
 def solomon_instance(name: str, robots: int) -> Mission:
-    """A shipped instance: C101, C201, R101, R201 or RC101.
+    """A shipped instance, C101, C201, R101, R201 or RC101, with so many robots and without its demands.
 
     Raises
     ------
@@ -39,50 +39,14 @@ def solomon_instance(name: str, robots: int) -> Mission:
     if not file.is_file():
         names = sorted({instance for instance, _ in REFERENCES})
         raise ParameterError(f"instance: {name}; expected {' or '.join(names)}")
-    return solomon_mission(file.read_text(encoding="utf-8"), robots, f"{name}-{robots}")
+    with as_file(file) as path:
+        return without_loads(read_solomon(path, robots))
 
 
-def solomon_mission(text: str, robots: int, name: str) -> Mission:
-    """The text of an instance file as a mission of so many robots.
-
-    A customer is a task: its service time is the work, which begins between ready time and due date. A vehicle is a
-    robot that starts and ends at the depot, by the depot's due date. Demands are left out. Robots move at 1 m/s, as
-    distance and time are the same number.
-
-    Raises
-    ------
-    ParameterError
-        if a customer has not all seven numbers, or there is none.
-    """
-    depot, *customers = _customers(text)
-    _, x, y, _, opens, closes, _ = depot
-    team = (
-        Robot(id=f"r_{k}", position=(x, y), available_from_s=opens, available_until_s=closes) for k in range(robots)
+def without_loads(mission: Mission) -> Mission:
+    """The mission of vehicles that carry any amount."""
+    return replace(
+        mission,
+        robots=tuple(replace(robot, load_capacity=None) for robot in mission.robots),
+        tasks=tuple(replace(task, load=None) for task in mission.tasks),
     )
-    return Mission(
-        name=name,
-        rules=Rules(objective="total", return_to_start=True),
-        robots=tuple(team),
-        tasks=tuple(map(_task, customers)),
-    )
-
-
-def _task(customer: Sequence[float]) -> Task:
-    number, x, y, _, ready, due, service = customer
-    return Task(id=str(int(number)), position=(x, y), duration_s=service, window_s=((ready, due),))
-
-
-def _customers(text: str) -> list[list[float]]:
-    """The rows of the table of customers, the depot first."""
-    rows = []
-    _, _, table = text.partition("CUSTOMER")
-    for line in table.splitlines():
-        words = line.split()
-        if not words or not words[0].isdecimal():
-            continue
-        if len(words) != _COLUMNS:
-            raise ParameterError(f"customer {words[0]}: {' '.join(words)!r}; expected {_COLUMN_NAMES}")
-        rows.append([float(word) for word in words])
-    if len(rows) <= 1:
-        raise ParameterError(f"instance: no customers; expected lines of {_COLUMN_NAMES} after CUSTOMER")
-    return rows
