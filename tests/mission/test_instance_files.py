@@ -262,6 +262,24 @@ def test_a_mission_is_saved_as_yaml(kind, loaded, tmp_path):
     assert muster.load(tmp_path / "again.yaml") == mission
 
 
+@pytest.mark.parametrize("layout", ["vrp", "atsp"])
+def test_a_mission_with_a_table_is_saved_beside_its_instance(layout, loaded, tmp_path):
+    matrix = "EDGE_WEIGHT_TYPE: EXPLICIT\nEDGE_WEIGHT_FORMAT: FULL_MATRIX\nEDGE_WEIGHT_SECTION\n9 1 2\n3 9 4\n5 6 9\n"
+    text = CVRP if layout == "vrp" else f"TYPE: ATSP\nDIMENSION: 3\n{matrix}"
+    mission = loaded(text, f"three.{layout}", salesmen=2)
+    (tmp_path / "plans").mkdir()
+    mission.save(tmp_path / "plans" / "again.yaml")
+    again = muster.load(tmp_path / "plans" / "again.yaml")
+    assert again.travel == {"vehicle": f"../three.{layout}"}
+    assert (again.tasks, again.robots, again.travel_tables) == (mission.tasks, mission.robots, mission.travel_tables)
+    assert muster.verify(again, muster.solve(mission, "greedy")).valid
+    file = tmp_path / "plans" / "again.yaml"
+    kept = [line for line in file.read_text(encoding="utf-8").splitlines() if "{id: 3," not in line]
+    file.write_text("\n".join(kept), encoding="utf-8")
+    with pytest.raises(MissionError, match=r"2 nodes that are no tasks of the mission; expected one, where the robots"):
+        muster.load(file)
+
+
 scraps = st.sampled_from(
     [
         "",

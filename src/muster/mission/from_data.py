@@ -49,7 +49,7 @@ def mission_from(
     mission: Mission = Record(Mission, "a mission").read(data, (), faults)
     object.__setattr__(mission, "source", source)
     if mission.travel_rule == "matrix" and mission.travel:
-        read = tables or read_travel_tables(mission.travel, source, faults)
+        read = tables or read_travel_tables(mission.travel, source, faults, *_places(mission))
         object.__setattr__(mission, "travel_tables", read)
     # Where a value is known to be wrong a filler stands in its place: nothing more is said of it.
     wrong = {fault.path for fault in faults}
@@ -62,6 +62,12 @@ def mission_from(
     if faults:
         raise MissionError(findings(faults, source))
     return mission
+
+
+def _places(mission: Mission) -> tuple[list[str], set[str]]:
+    """The ids of robots; and those of tasks and stations."""
+    others = {place.id for places in (mission.tasks, mission.stations) for place in places}
+    return [robot.id for robot in mission.robots], others
 
 
 def _in_doubt(fault: Fault, wrong: set[Path]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
@@ -12,6 +13,7 @@ from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 
 _END = "_SECTION"
+_FIRST_BYTES = 8192
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,15 @@ class KeywordFile:
         if unknown:
             found = [Finding(str(self.path), line, title, "not supported", expected) for title, line in unknown.items()]
             raise MissionError(found)
+
+
+def is_keyword_file(path: FilePath) -> bool:
+    """Whether a file says of what type its edge weights are; False where it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return re.search(rb"^EDGE_WEIGHT_TYPE\s*:", file.read(_FIRST_BYTES), re.MULTILINE) is not None
+    except (OSError, ValueError):
+        return False
 
 
 def read_keyword_file(path: FilePath, what: str = "TSPLIB") -> KeywordFile:

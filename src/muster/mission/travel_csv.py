@@ -1,33 +1,60 @@
-"""Travel tables: CSV with place ids in the first line and column; the cell is the distance from row to column."""
+"""Travel tables: CSV with place ids in the first line and column; the cell is the distance from row to column.
+
+A file of TSPLIB or VRPLIB is a travel table too, of the weights of its edges.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path as FilePath
 
 from muster.mission.csv_files import number, read_table
 from muster.mission.errors import Finding, MissionError
+from muster.mission.keyword_files import is_keyword_file, read_keyword_file
 from muster.mission.site import TravelTable
 from muster.mission.source import Source
 from muster.mission.value_types import Fault, shown
 
 
-def read_travel_tables(files: Mapping[str, str], source: Source, faults: list[Fault]) -> dict[str, TravelTable]:
+def read_travel_tables(
+    files: Mapping[str, str],
+    source: Source,
+    faults: list[Fault],
+    robots: Sequence[str] = (),
+    others: Collection[str] = (),
+) -> dict[str, TravelTable]:
     """The travel table of each robot type; `files` are found from the folder of the mission's file.
 
-    A cell is metres, or `inf` where there is no way. What is wrong is appended to `faults`.
+    A cell is metres, or `inf` where there is no way. `robots` and `others`, tasks and stations, are the places of the
+    mission, which a file of TSPLIB or VRPLIB does not tell apart. What is wrong is appended to `faults`.
     """
     tables: dict[str, TravelTable] = {}
     for kind, name in files.items():
+        path = FilePath(source.file).parent / name
         try:
-            tables[kind] = read_travel_table(FilePath(source.file).parent / name)
+            if is_keyword_file(path):
+                tables[kind] = _table_of_instance(path, robots, others)
+            else:
+                tables[kind] = read_travel_table(path)
         except MissionError as error:
             faults.extend(
                 Fault(("travel", kind), f"{finding.place}: {finding.value}", finding.expected)
                 for finding in error.findings
             )
     return tables
+
+
+def _table_of_instance(path: FilePath, robots: Sequence[str], others: Collection[str]) -> TravelTable:
+    """The table of an instance file, in which robots start at the one node that is neither task nor station."""
+    from muster.mission.weighted_nodes import weighted_nodes  # NumPy is not loaded for other missions
+
+    nodes = weighted_nodes(read_keyword_file(path), exact=False)
+    depots = [node.id for node in nodes.nodes if node.id not in others]
+    if len(depots) != 1 or nodes.weights is None:
+        value = f"{len(depots)} nodes that are no tasks of the mission"
+        raise MissionError([Finding(str(path), None, "", value, "one, where the robots start")])
+    return nodes.travel_table(robots, depots[0])
 
 
 def read_travel_table(path: FilePath) -> TravelTable:
