@@ -68,6 +68,17 @@ def test_a_mission_is_uploaded(http):
     assert (made.status_code, made.json()["text"]) == (201, MISSION)
 
 
+def test_an_instance_file_is_uploaded(http):
+    """One whose distances are its own stays with the mission as its travel table."""
+    text = b"2 20 1\n0 0 0 0 0 90 0 0 0\n1 3 4 5 0 50 1 0 2\n2 6 8 -5 0 80 1 1 0\n"
+    made = http.post("/missions/upload", files={"file": ("tiny.txt", text)})
+    assert (made.status_code, "delivers: 1" in made.json()["text"]) == (201, True)
+    nodes = b"NODE_COORD_SECTION\n1 0 0\n2 3 4\n3 6 1\nDEMAND_SECTION\n1 0\n2 4\n3 5\n"
+    text = b"TYPE : CVRP\nDIMENSION : 3\nEDGE_WEIGHT_TYPE : EUC_2D\nCAPACITY : 9\n" + nodes
+    made = http.post("/missions/upload", files={"file": ("three.vrp", text)})
+    assert made.status_code == 201
+
+
 def test_a_plan_is_made_judged_explained_and_drawn(http, yard, plan):
     entry = http.get(f"/plans/{plan}").json()
     assert entry["plan"]["schema"] == "muster-plan/1"

@@ -138,7 +138,7 @@ async def upload(
     services: TheServices,
     who: TheUser,
     response: Response,
-    file: Annotated[UploadFile, File(description="YAML, CSV, TSPLIB, or .plan.")],
+    file: Annotated[UploadFile, File(description="YAML, CSV, an instance file (TSPLIB, VRPLIB, ...), or .plan.")],
 ) -> MissionText:
     """A file of any format that Muster reads; it is converted to a mission file."""
     made = await services.missions.upload(who, _base_name(file.filename), await file.read())

@@ -27,7 +27,7 @@ from muster.server.services.uploads import as_text, check_sizes, findings_of, mi
 from muster.server.store import Store
 
 _READ_AS_THEY_ARE = (".yaml", ".yml")
-_CONVERTED = (".csv", ".tsp", ".plan")
+_CONVERTED = (".csv", ".tsp", ".atsp", ".vrp", ".txt", ".plan")
 
 
 class Workers(Protocol):
@@ -194,7 +194,7 @@ class Missions:
     async def upload(
         self, who: User, filename: str, data: bytes, beside: Mapping[str, bytes] | None = None, **options: Any
     ) -> MissionVersion:
-        """Create a mission from a file: YAML as it is; task-list CSV, TSPLIB and plans of QGroundControl converted.
+        """Create a mission from a file: YAML as it is; task lists, instance files and QGroundControl's plans converted.
 
         `beside` are further files that the file needs. `options` are those of the worker task `convert`: `robots` and
         `suitability` (names of files of `beside`), `salesmen`, `depot`.
@@ -209,16 +209,16 @@ class Missions:
             require_file_name(filename)
             path = PurePath(filename)
             if path.suffix.lower() in _READ_AS_THEY_ARE:
-                text = as_text(filename, data)
+                text, kept = as_text(filename, data), dict(beside or {})
             elif path.suffix.lower() in _CONVERTED:
                 files = {**(beside or {}), filename: data}
                 check_sizes("", files)
                 packed = {name: base64.b64encode(content).decode("ascii") for name, content in files.items()}
-                text = (await self._pool.run("convert", {"name": filename, "files": packed, **options}))["text"]
+                made = await self._pool.run("convert", {"name": filename, "files": packed, **options})
+                text, kept = made["text"], {name: files[name] for name in made.get("needs", ())}
             else:
                 expected = f"a name that ends in {', '.join((*_READ_AS_THEY_ARE, *_CONVERTED))}"
                 raise ParameterError(f"{filename}: no mission; expected {expected}")
-            kept = (beside or {}) if path.suffix.lower() in _READ_AS_THEY_ARE else {}
             return await self._create(who, text, kept, None, file=path.stem)
 
     async def _create(

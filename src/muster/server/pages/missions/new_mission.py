@@ -39,7 +39,7 @@ _STARTS = {
     "": (EMPTY, "A small start: two robots, one task"),
     "/3-D": (EMPTY_IN_SPACE, "A small start in 3-D: two drones, one task"),
 }
-_ACCEPT = ".yaml,.yml,.csv,.tsp,.plan,.png,.pgm,.jpg"
+_ACCEPT = ".yaml,.yml,.csv,.tsp,.atsp,.vrp,.txt,.plan,.png,.pgm,.jpg"
 _MOST_BYTES = 16 * 2**20
 _REJECTED = "entries => emit(entries.map(entry => [entry.failedPropValidation, entry.file.name, entry.file.size]))"
 _CSV = (  # as `mission.thesis_csv` reads them
@@ -76,8 +76,8 @@ async def open_new_mission() -> None:
 def _uploading() -> None:
     ui.label("Or from a file").classes("dialog-title")
     ui.label(
-        "A mission (YAML, with the files that it names), tasks and robots (CSV, chosen together), a problem of TSPLIB, "
-        "or a plan of QGroundControl."
+        "A mission (YAML, with the files that it names), tasks and robots (CSV, chosen together), an instance file "
+        "(TSPLIB, VRPLIB, Solomon, ...), or a plan of QGroundControl."
     ).classes("quiet small")
     with ui.element("details").classes("more small"):
         with ui.element("summary"):
@@ -149,7 +149,7 @@ def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str,
         for a task-list CSV without robots.
     """
     kind = PurePath(name).suffix.lower()
-    if kind == ".tsp":
+    if kind in (".tsp", ".atsp"):
         return {"salesmen": salesmen, "depot": "1"}
     if kind != ".csv":
         return {}
@@ -169,5 +169,7 @@ def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
         if named_so and len(names) > 1:
             beside[kind] = named_so[0]
     rest = [name for name in names if name not in beside.values()]
-    rest.sort(key=lambda name: not name.lower().endswith((".yaml", ".yml", ".tsp", ".plan", ".csv")))
+    rest.sort(
+        key=lambda name: not name.lower().endswith((".yaml", ".yml", ".tsp", ".atsp", ".vrp", ".txt", ".plan", ".csv"))
+    )
     return rest[0], beside

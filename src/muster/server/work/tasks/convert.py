@@ -12,16 +12,16 @@ from muster.mission.value_types import shown
 from muster.mission.yaml_writer import yaml_text
 from muster.server.work.missions import written_files
 
-_SUFFIXES = (".csv", ".tsp", ".plan")
+_SUFFIXES = (".csv", ".tsp", ".atsp", ".vrp", ".txt", ".plan")
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"name", "files", ...}` -> `{"text", "name"}`: a mission as YAML, and what it is called.
+    """`{"name", "files", ...}` -> `{"text", "name", "needs"}`: a mission as YAML, its name, the files that it names.
 
     `name` is which of `files` (base64, by name) is the mission: a task-list CSV, with `robots` and perhaps
-    `suitability`, which name others of them; TSPLIB, with `salesmen` and perhaps `depot`; a `.plan` of QGroundControl,
-    of which all `.plan` files are taken together.
+    `suitability`, which name others of them; an instance file, perhaps with `salesmen` and `depot`, of which TSPLIB
+    needs the first; a `.plan` of QGroundControl, of which all `.plan` files are taken together.
     """
     name, files = arguments["name"], arguments["files"]
     options = {key: arguments[key] for key in _OPTIONS if arguments.get(key) is not None}
@@ -33,7 +33,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
         raise MissionError([Finding(shown(name), None, "", "not known", f"a file in {', '.join(_SUFFIXES)}")])
     written_files(files)
     mission = load(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
-    return {"text": yaml_text(mission), "name": mission.name}
+    return {"text": yaml_text(mission), "name": mission.name, "needs": sorted(set((mission.travel or {}).values()))}
 
 
 def _folder_of_plans(files: Mapping[str, str]) -> Path:
