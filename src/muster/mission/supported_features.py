@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from muster.mission.errors import NotSupportedError
+from muster.mission.goods import by_commodity
 from muster.mission.model import Action, Mission, Point, Task
 from muster.mission.records import findings
 from muster.mission.value_types import Fault, shown
@@ -46,6 +47,7 @@ def _bound(mission: Mission) -> float:
     """What no sum in any plan is above; inf where one may be beyond float64."""
     robots, tasks = mission.robots, mission.tasks
     points = [*(p for r in robots for p in (r.position, r.end_position)), *(p for t in tasks for p in _portals(t))]
+    points += [station.position for station in mission.stations]
     points += [robot.camera.mount for robot in robots if robot.camera is not None]
     points += [] if mission.lanes is None else mission.lanes.nodes.values()
     sizes = [(t.action.side_m, t.action.spacing_m, t.action.height_m, t.action.width_m) for t in tasks if t.action]
@@ -61,7 +63,19 @@ def _bound(mission: Mission) -> float:
     slowest = min(1.0, *(r.speed_mps for r in robots), *(r.efficiency for r in robots))
     legs = float(len(tasks) + 2 * len(robots))
     whole = (legs * metres + work) / slowest + max(r.available_from_s for r in robots)
-    return whole * legs + sum(t.priority for t in tasks)
+    return whole * legs + sum(t.priority for t in tasks) + _service_bound(mission) + _load_bound(mission)
+
+
+def _service_bound(mission: Mission) -> float:
+    """Seconds that one visit of each station takes at most, with what the batteries hold."""
+    held = sum(robot.battery.capacity for robot in mission.robots if robot.battery)
+    return held + sum(station.swap_s + held / (station.charge_per_s or math.inf) for station in mission.stations)
+
+
+def _load_bound(mission: Mission) -> float:
+    """What all amounts of goods sum to."""
+    amounts = [*(t.load for t in mission.tasks), *(r.load_at_start for r in mission.robots)]
+    return sum(abs(value) for amount in amounts for value in by_commodity(amount).values())
 
 
 def _portals(task: Task) -> tuple[Point, ...]:

@@ -11,10 +11,11 @@ from muster.verification.agreement import agrees
 from muster.verification.verdict import Violation
 
 
-def _done_by(plan: Plan) -> dict[str, str]:
+def _done_by(mission: Mission, plan: Plan) -> dict[str, str]:
     """For each task the robot that does it, or the names of its team as an auction writes them."""
     teams = teams_of((route.robot, route.tasks) for route in plan.routes)
-    return {task: "+".join(team[k] for k in tie_order(team)) for task, team in teams.items()}
+    stations = {station.id for station in mission.stations}
+    return {task: "+".join(team[k] for k in tie_order(team)) for task, team in teams.items() if task not in stations}
 
 
 def _is_coalition(known: set[str], name: str) -> bool:
@@ -25,7 +26,7 @@ def book_faults(mission: Mission, plan: Plan) -> Iterator[Violation]:
     """Find where the account of an auction contradicts the routes, or itself."""
     if plan.book is None:
         return
-    robot_of = _done_by(plan)
+    robot_of = _done_by(mission, plan)
     times = Counter(award.task for award in plan.book.awards)
     known = {robot.id for robot in mission.robots}
     for award in plan.book.awards:

@@ -51,6 +51,30 @@ class Case:
         return members
 
     @cached_property
+    def task(self) -> dict[str, Task]:
+        """The tasks of the mission by id."""
+        return {task.id: task for task in self.mission.tasks}
+
+    @cached_property
+    def deliverer(self) -> dict[str, str]:
+        """For each task whose load another delivers the id of that."""
+        return {task.delivers: task.id for task in self.mission.tasks if task.delivers is not None}
+
+    def is_paired(self, task: Task) -> bool:
+        """Whether a task is in a plan only together with another, done by the same robot."""
+        return task.delivers is not None or task.id in self.deliverer
+
+    @cached_property
+    def has_goods(self) -> bool:
+        """Whether tasks change what is on board."""
+        return any(task.load is not None or task.delivers is not None for task in self.mission.tasks)
+
+    @cached_property
+    def has_energy(self) -> bool:
+        """Whether robots have batteries."""
+        return any(robot.battery is not None for robot in self.mission.robots)
+
+    @cached_property
     def beginning_with(self) -> dict[str, list[str]]:
         """For each task those that name it in their `starts_with`."""
         named: dict[str, list[str]] = {}
@@ -100,9 +124,9 @@ class Case:
 
     @cached_property
     def is_timed(self) -> bool:
-        """Whether anything but prerequisites and capacities depends on times, teams or relations."""
+        """Whether anything but prerequisites and capacities depends on times, teams, relations, goods or energy."""
         late = any(robot.available_until_s is not None for robot in self.mission.robots)
-        return late or any(
+        return (late or self.has_goods or self.has_energy) or any(
             task.window_s
             or task.deadline_s is not None
             or task.lags
@@ -134,12 +158,13 @@ class Case:
         return {}
 
     def first_gap(self, route: MeasuredRoute, task: Task) -> int:
-        """The number of tasks in a route that come before a task wherever it is put in it.
+        """The number of stops in a route that come before a task wherever it is put in it.
 
         These are the ones that must be done before a prerequisite of the task can be done.
         """
         before = self._before(task.id)
-        return max((k for k, step in enumerate(route.steps, 1) if step.task.id in before), default=0)
+        names = enumerate((stop.place_id for stop in route.stops), 1)
+        return max((k for k, name in names if name in before), default=0)
 
     def _before(self, task: str) -> frozenset[str]:
         """The tasks in the plan that are done before a task can begin, by prerequisites and routes."""
@@ -165,6 +190,9 @@ class Case:
             task.id: [name for name in task.prerequisites if linked and name in self.done]
             for task in self.mission.tasks
         }
+        if self.holds("load"):
+            for pickup, deliverer in self.deliverer.items():
+                before[deliverer] += [pickup] if pickup in self.done else []
         for route in self.routes:
             for first, second in pairwise(route.steps):
                 before[second.task.id].append(first.task.id)

@@ -9,12 +9,12 @@ import numpy as np
 from muster.mission.model import Mission, Point, Task
 from muster.motion.grid import Floats
 from muster.motion.leg_times import LegTimes
-from muster.verification.measure import MeasuredRoute, work_seconds
+from muster.verification.measure import MeasuredRoute, Step, place_of_stop, work_seconds
 from muster.verification.travel import Place, Travel, place_at_end, place_of_start, place_of_task
 
 
 class Insertions:
-    """The gaps of a route in which a task can be put: before each of its tasks, and after the last one.
+    """The gaps of a route in which a task can be put: before each of its stops, and after the last one.
 
     Methods look at the gaps from number `first` on.
     """
@@ -25,11 +25,11 @@ class Insertions:
         self._in_time = mission.rules.usage == "time"
         self._pace = 1 / route.robot.speed_mps if self._in_time else 1.0  # usage a metre
         end = place_at_end(route.robot, mission.rules)
-        stops = [place_of_start(route.robot), *(place_of_task(step.task, route.robot) for step in route.steps)]
-        legs = [*(step.leg for step in route.steps), route.last_leg]
+        stops = [place_of_start(route.robot), *(place_of_stop(stop, route.robot) for stop in route.stops)]
+        legs = [*(stop.leg for stop in route.stops), route.last_leg]
         self._gaps = list(zip(stops, [*stops[1:], end], strict=True))
         self._legs = np.array([leg.usage / self._pace if leg else 0.0 for leg in legs])
-        self._passable = all(step.leg.exists and step.passable for step in route.steps)
+        self._passable = all(stop.leg.exists and (not isinstance(stop, Step) or stop.passable) for stop in route.stops)
         self._from = _rows([before.exit for before, _ in self._gaps])
         self._to = _rows([(after or before).entry for before, after in self._gaps])
         self._goes_on = np.array([after is not None for _, after in self._gaps])

@@ -17,22 +17,24 @@ from muster.verification.book import book_faults
 from muster.verification.case import Case
 from muster.verification.known_routes import known_routes, other_mission
 from muster.verification.left_out import left_out_faults
-from muster.verification.measure import MeasuredRoute, all_measured, equality_index
+from muster.verification.loads import Hold
+from muster.verification.measure import MeasuredRoute, Service, Step, all_measured, equality_index
 from muster.verification.rules import rules_that_hold
 from muster.verification.schedule import Deadlock, Times, schedule
 from muster.verification.statements import false_statements
 from muster.verification.travel import Travel
-from muster.verification.verdict import RouteFigures, Verdict, Violation, Visit
+from muster.verification.verdict import RouteFigures, Stop, Verdict, Violation, Visit
 
 TimesOf = Mapping[str, Sequence[Times]]
-"""By robot those at the tasks of its route, in order."""
+"""By robot those at the stops of its route, in order."""
 
 
 @collector_paused()
 def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), objective: str | None = None) -> Verdict:
     """Judge a plan: recompute its figures and find everything that is wrong with it (docs/design.md, Meaning).
 
-    A task or robot that does not exist, or stands twice, is left out, and the rest is judged. A leg without a way
+    A task, station or robot that does not exist, and a task or robot that stands twice, is left out, and the rest is
+    judged. A leg without a way
     counts nothing.
 
     Parameters
@@ -56,9 +58,9 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     objective = mission.rules.objective if objective is None else objective
     if objective not in OBJECTIVES:
         raise ParameterError(f"objective: {shown(objective)}; expected {' or '.join(OBJECTIVES)}")
-    tasks_of, violations = known_routes(mission, plan, teams="team" not in ignored)
+    stops_of, violations = known_routes(mission, plan, teams="team" not in ignored)
     travel = Travel(mission)
-    routes = all_measured(mission, travel, tasks_of)
+    routes = all_measured(mission, travel, stops_of)
     found = schedule(routes, ignored)
     case = Case(
         mission=mission,
@@ -95,7 +97,7 @@ def _verdict(case: Case, objective: str, times: TimesOf | None) -> Verdict:
         arrivals[step.task.id] = max(step.arrival_usage, arrivals.get(step.task.id, 0.0))
     ends = {} if times is None else dict(_ends(case.routes, times))
     late = lateness((done[name].priority, end, done[name].due_s) for name, end in ends.items())
-    routes = tuple(_figures(route, case.capacity_of(route.robot), times) for route in case.routes)
+    routes = tuple(_figures(case, route, times) for route in case.routes)
     back = [route.back_s for route in routes if route.back_s is not None]
     returns = back if case.mission.rules.makespan_includes_return else []
     values = objective_values(usages, list(arrivals.values()), [*ends.values(), *returns], late)
@@ -119,25 +121,45 @@ def _verdict(case: Case, objective: str, times: TimesOf | None) -> Verdict:
 
 def _ends(routes: Sequence[MeasuredRoute], times: TimesOf) -> Iterator[tuple[str, float]]:
     for route in routes:
-        for step, time in zip(route.steps, times[route.robot.id], strict=True):
-            yield step.task.id, time.ends
+        for stop, time in zip(route.stops, times[route.robot.id], strict=True):
+            if isinstance(stop, Step):
+                yield stop.task.id, time.ends
 
 
-def _figures(route: MeasuredRoute, capacity: float | None, times: TimesOf | None) -> RouteFigures:
-    visits = tuple(_visits(route, times[route.robot.id])) if times is not None else ()
+def _figures(case: Case, route: MeasuredRoute, times: TimesOf | None) -> RouteFigures:
+    own = None if times is None else times[route.robot.id]
     return RouteFigures(
         robot=route.robot.id,
         tasks=tuple(step.task.id for step in route.steps),
         travel=route.travel,
         work=route.work,
         usage=route.usage,
-        capacity=capacity,
+        capacity=case.capacity_of(route.robot),
         leaves_s=route.robot.available_from_s,
-        visits=visits,
-        back_s=visits[-1].ends_s + route.last_leg.seconds if visits and route.last_leg else None,
+        visits=() if own is None else tuple(_visits(route, own)),
+        back_s=own[-1].ends + route.last_leg.seconds if own and route.last_leg else None,
+        stops=() if own is None else tuple(_stops(case, route, own)),
     )
 
 
 def _visits(route: MeasuredRoute, times: Sequence[Times]) -> Iterator[Visit]:
-    for step, time in zip(route.steps, times, strict=True):
-        yield Visit(step.task.id, time.arrives, time.starts, time.ends, step.arrival_usage)
+    for stop, time in zip(route.stops, times, strict=True):
+        if isinstance(stop, Step):
+            yield Visit(stop.task.id, time.arrives, time.starts, time.ends, stop.arrival_usage)
+
+
+def _stops(case: Case, route: MeasuredRoute, times: Sequence[Times]) -> Iterator[Stop]:
+    loads = Hold(route, case.task, case.deliverer).along_route()
+    for stop, time, load in zip(route.stops, times, loads, strict=True):
+        energy = stop.energy
+        yield Stop(
+            name=stop.place_id,
+            is_station=isinstance(stop, Service),
+            arrives_s=time.arrives,
+            starts_s=time.starts,
+            ends_s=time.ends,
+            arrival_level=None if energy is None else energy.arrives,
+            level_after=None if energy is None else energy.leaves,
+            charged=stop.charge.amount if isinstance(stop, Service) and stop.is_charged else None,
+            load_after=load,
+        )

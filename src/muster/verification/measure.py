@@ -5,12 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
-from muster.mission.model import Mission, Robot, Task
+from muster.mission.model import Mission, Robot, Station, Task
 from muster.motion.actions import TaskMotion
 from muster.motion.leg_times import LegTimes
-from muster.verification.travel import Place, Travel, doing_at, place_at_end, place_of_start, place_of_task, rise_m
+from muster.verification.energy import NO_CHARGE, Charge, Energy, Gauge
+from muster.verification.known_routes import Call, Planned
+from muster.verification.travel import (
+    Place,
+    Travel,
+    doing_at,
+    place_at_end,
+    place_of_start,
+    place_of_station,
+    place_of_task,
+    rise_m,
+)
 
 
 class Leg(NamedTuple):
@@ -25,6 +37,7 @@ class Step(NamedTuple):
     """One task of a route: the way there, the usage on arrival, and how long the work takes.
 
     It is passable if there is a way along the way points of its action; without one the work's metres count nothing.
+    `energy` is None for a robot without a battery.
     """
 
     task: Task
@@ -32,17 +45,72 @@ class Step(NamedTuple):
     arrival_usage: float
     work_s: float
     passable: bool
+    energy: Energy | None = None
+
+    @property
+    def place_id(self) -> str:
+        return self.task.id
+
+    @property
+    def seconds(self) -> float:
+        """How long the robot stays once it has begun."""
+        return self.work_s
+
+
+class Service(NamedTuple):
+    """One visit of a station: the way there, the usage on arrival, and what the station adds to the battery."""
+
+    call: Call
+    leg: Leg
+    arrival_usage: float
+    charge: Charge
+    energy: Energy | None
+
+    @property
+    def station(self) -> Station:
+        return self.call.station
+
+    @property
+    def place_id(self) -> str:
+        return self.station.id
+
+    @property
+    def is_charged(self) -> bool:
+        """Whether a battery is charged there, or swapped."""
+        return self.energy is not None and self.station.gives_energy
+
+    @property
+    def seconds(self) -> float:
+        """How long the robot stays once it has begun."""
+        return self.charge.seconds
+
+
+MeasuredStop = Step | Service
 
 
 @dataclass(frozen=True)
 class MeasuredRoute:
-    """One robot's route with its costs; `last_leg` goes to where the route must end, if it must and has tasks."""
+    """One robot's route with its costs; `last_leg` goes to where the route must end, if it must and has stops.
+
+    `energy_at_end` is what the battery holds there, or after the last stop; None for a robot without a battery.
+    """
 
     robot: Robot
-    steps: tuple[Step, ...]
+    stops: tuple[MeasuredStop, ...]
     last_leg: Leg | None
     travel: float
     work: float
+    energy_at_end: Energy | None = None
+
+    @cached_property
+    def steps(self) -> tuple[Step, ...]:
+        """The stops at tasks."""
+        return tuple(stop for stop in self.stops if isinstance(stop, Step))
+
+    @property
+    def planned(self) -> tuple[Planned, ...]:
+        """The stops as the plan has them."""
+        return tuple(stop.task if isinstance(stop, Step) else stop.call for stop in self.stops)
 
     @property
     def usage(self) -> float:
@@ -50,39 +118,81 @@ class MeasuredRoute:
         return self.travel + self.work
 
 
-def all_measured(mission: Mission, travel: Travel, tasks_of: Mapping[str, Sequence[Task]]) -> tuple[MeasuredRoute, ...]:
+def all_measured(
+    mission: Mission, travel: Travel, stops_of: Mapping[str, Sequence[Planned]]
+) -> tuple[MeasuredRoute, ...]:
     """Measure the routes of all robots, in mission order. A task takes as long as for the slowest of its team."""
     slowest: dict[str, float] = {}
     for robot in mission.robots:
         times = LegTimes.in_mission(robot, mission)
-        for task in tasks_of.get(robot.id, ()):
-            seconds = work_seconds(times, travel, robot, task)
-            slowest[task.id] = max(seconds, slowest.get(task.id, 0.0))
-    return tuple(measured(mission, travel, robot, tasks_of.get(robot.id, ()), slowest) for robot in mission.robots)
+        for task in stops_of.get(robot.id, ()):
+            if isinstance(task, Task):
+                seconds = work_seconds(times, travel, robot, task)
+                slowest[task.id] = max(seconds, slowest.get(task.id, 0.0))
+    return tuple(measured(mission, travel, robot, stops_of.get(robot.id, ()), slowest) for robot in mission.robots)
 
 
 def measured(
-    mission: Mission, travel: Travel, robot: Robot, tasks: Sequence[Task], work_s: Mapping[str, float]
+    mission: Mission, travel: Travel, robot: Robot, stops: Sequence[Planned], work_s: Mapping[str, float]
 ) -> MeasuredRoute:
     """Measure one robot's route; `work_s` is how long each task takes."""
-    in_time = mission.rules.usage == "time"
-    times = LegTimes.in_mission(robot, mission)
-    steps: list[Step] = []
-    travelled = worked = 0.0
-    here = place_of_start(robot)
-    for task in tasks:
-        there = place_of_task(task, robot)
-        leg = leg_between(travel, robot, here, there, times, in_time)
-        travelled += leg.usage
-        metres = travel.work_metres(robot, task)
-        seconds = work_s[task.id]
-        steps.append(Step(task, leg, travelled + worked, seconds, passable=metres is not None))
-        worked += seconds if in_time else metres or 0.0
-        here = there
-    end = place_at_end(robot, mission.rules) if steps else None
-    last_leg = None if end is None else leg_between(travel, robot, here, end, times, in_time)
-    travelled += last_leg.usage if last_leg else 0.0
-    return MeasuredRoute(robot, tuple(steps), last_leg, travelled, worked)
+    return _Measuring(mission, travel, robot, work_s).route(stops)
+
+
+class _Measuring:
+    """Goes along one route, and adds up what it costs."""
+
+    def __init__(self, mission: Mission, travel: Travel, robot: Robot, work_s: Mapping[str, float]) -> None:
+        self._mission, self._travel, self._robot, self._work_s = mission, travel, robot, work_s
+        self._in_time = mission.rules.usage == "time"
+        self._times = LegTimes.in_mission(robot, mission)
+        self._gauge = None if robot.battery is None else Gauge(robot.battery)
+        self._here = place_of_start(robot)
+        self._travelled = self._worked = 0.0
+
+    def route(self, planned: Sequence[Planned]) -> MeasuredRoute:
+        # One after the other: what is here is added to what was before.
+        stops = tuple([self._at_task(one) if isinstance(one, Task) else self._at_station(one) for one in planned])
+        end = place_at_end(self._robot, self._mission.rules) if stops else None
+        last_leg = None if end is None else self._leg(end)
+        return MeasuredRoute(self._robot, stops, last_leg, self._travelled, self._worked, self._energy())
+
+    def _energy(self) -> Energy | None:
+        return None if self._gauge is None else self._gauge.now
+
+    def _leg(self, there: Place) -> Leg:
+        leg = leg_between(self._travel, self._robot, self._here, there, self._times, self._in_time)
+        self._here = there
+        self._travelled += leg.usage
+        if self._gauge is not None:
+            self._gauge.draw(leg.usage)
+        return leg
+
+    def _at_task(self, task: Task) -> Step:
+        leg = self._leg(place_of_task(task, self._robot))
+        arrival_usage, energy = self._travelled + self._worked, self._energy()
+        metres = self._travel.work_metres(self._robot, task)
+        seconds = self._work_s[task.id]
+        work = seconds if self._in_time else metres or 0.0
+        self._worked += work
+        if self._gauge is not None and energy is not None:
+            self._gauge.draw(work)
+            energy = self._gauge.now._replace(arrives=energy.arrives)
+        return Step(task, leg, arrival_usage, seconds, metres is not None, energy)
+
+    def _at_station(self, call: Call) -> Service:
+        leg = self._leg(place_of_station(call.station))
+        arrival_usage, energy = self._travelled + self._worked, self._energy()
+        charge = NO_CHARGE
+        if self._gauge is not None and energy is not None and call.station.gives_energy:
+            charge = self._gauge.visit(call.station, call.charged, self._travel.tolerance)
+            energy = energy._replace(leaves=self._gauge.level)
+        return Service(call, leg, arrival_usage, charge, energy)
+
+
+def place_of_stop(stop: MeasuredStop, robot: Robot) -> Place:
+    """Return the place of a stop for a robot."""
+    return place_of_task(stop.task, robot) if isinstance(stop, Step) else place_of_station(stop.station)
 
 
 def leg_between(travel: Travel, robot: Robot, start: Place, end: Place, times: LegTimes, in_time: bool) -> Leg:

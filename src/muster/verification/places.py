@@ -64,9 +64,12 @@ class Places:
         """Whether a robot can do a task at some place, with a team where it needs one; None: undecided.
 
         Undecided are tasks with many teams or places, plans that break a rule themselves, and limits that are kept or
-        broken by less than the margin.
+        broken by less than the margin. So are tasks that come in pairs, and all where robots charge or go to stations:
+        other tasks, and other visits, may have to come with them.
         """
-        close = False
+        case, close = self.case, False
+        if case.is_paired(task) or case.has_energy or case.mission.stations:
+            return None
         try:
             if self.stops_left < 0 or not self._is_sure:
                 return None

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from muster.mission.model import OBJECTIVES
-from muster.mission.plan import STOP_TIMES, Plan
+from muster.mission.plan import STOP_TIMES, Plan, RouteStop
 from muster.verification.agreement import ABSOLUTE_TOLERANCE, RELATIVE_TOLERANCE, agrees
-from muster.verification.verdict import Verdict, Violation
+from muster.verification.verdict import Stop, Verdict, Violation
 
 
 def false_statements(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
@@ -64,26 +64,47 @@ def _usages(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violatio
 
 
 def _stops(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:
-    """Find stops whose times are not those of the earliest schedule."""
-    visits = {route.robot: {visit.task: visit for visit in route.visits} for route in verdict.routes}
+    """Find stops that are not those of the earliest schedule."""
+    figures = {route.robot: route for route in verdict.routes}
     for route in plan.routes:
         named = tuple(stop.name for stop in route.stops)
         if named and named != route.tasks:
             detail = f"the stops are those of {', '.join(named)}, not of the route's tasks"
             yield Violation("stop", route.robot, None, detail)
-            continue
-        own = visits.get(route.robot, {})
-        for stop in route.stops:
-            visit = own.get(stop.name)
-            if visit is None:
-                continue
-            stated = (stop.arrive_s, stop.begin_s, stop.end_s)
-            found = (visit.arrives_s, visit.starts_s, visit.ends_s)
-            if stated == found:  # as most are
-                continue
-            for name, says, is_at in zip(STOP_TIMES, stated, found, strict=True):
-                if not agrees(says, is_at, tolerance, RELATIVE_TOLERANCE):
-                    yield Violation("stop", route.robot, stop.name, f"{name}: the plan says {says}, it is {is_at}")
+        elif named and route.robot in figures:
+            for stated, found in _judged(route.stops, figures[route.robot].stops):
+                yield from _stop(route.robot, stated, found, tolerance)
+
+
+def _judged(stated: Sequence[RouteStop], found: Sequence[Stop]) -> Iterator[tuple[RouteStop, Stop]]:
+    """Each stop of a route that was judged, with its figures: stations in turn, as a robot may come again and again."""
+    left: dict[str, list[Stop]] = {}
+    for one in reversed(found):
+        left.setdefault(one.name, []).append(one)
+    for stop in stated:
+        own = left.get(stop.name)
+        if own:
+            yield stop, (own.pop() if len(own) > 1 else own[0])
+
+
+def _stop(robot: str, stated: RouteStop, found: Stop, tolerance: float) -> Iterator[Violation]:
+    if stated.is_station != found.is_station:
+        names = ("station", "task") if stated.is_station else ("task", "station")
+        yield Violation("stop", robot, stated.name, "the plan says that it is a {}, it is a {}".format(*names))
+    if stated.charged and found.charged is None:
+        detail = f"charged: the plan says {stated.charged}, where no battery is charged"
+        yield Violation("stop", robot, stated.name, detail)
+    for name, says, is_at in zip(STOP_TIMES, _times_stated(stated), _times_found(found), strict=True):
+        if says != is_at and not agrees(says, is_at, tolerance, RELATIVE_TOLERANCE):
+            yield Violation("stop", robot, stated.name, f"{name}: the plan says {says}, it is {is_at}")
+
+
+def _times_stated(stop: RouteStop) -> tuple[float, float, float]:
+    return stop.arrive_s, stop.begin_s, stop.end_s
+
+
+def _times_found(stop: Stop) -> tuple[float, float, float]:
+    return stop.arrives_s, stop.starts_s, stop.ends_s
 
 
 def _history(plan: Plan, verdict: Verdict, tolerance: float) -> Iterator[Violation]:

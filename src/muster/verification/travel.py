@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from muster.mission.model import Mission, Point, Robot, Rules, Task
+from muster.mission.model import Mission, Point, Robot, Rules, Station, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
 from muster.verification.map_paths import MapPaths
 
@@ -49,6 +49,10 @@ def place_of_start(robot: Robot) -> Place:
     return Place(robot.id, entry=robot.position, exit=robot.position)
 
 
+def place_of_station(station: Station) -> Place:
+    return Place(station.id, entry=station.position, exit=station.position)
+
+
 def place_at_end(robot: Robot, rules: Rules) -> Place | None:
     """Return where the robot's route must end, or None. In a travel table it is the row of the robot: its start."""
     point = robot.place_at_end(rules)
@@ -59,6 +63,7 @@ def _points(mission: Mission) -> list[Point]:
     """All points where a leg of some route, or of the work on a task, may begin or end."""
     ends = [place_at_end(robot, mission.rules) for robot in mission.robots]
     points = [place.entry for place in (*map(place_of_start, mission.robots), *filter(None, ends))]
+    points += [station.position for station in mission.stations]
     for task in mission.tasks:
         points += [task.entry or task.position, task.exit or task.position]
         doings = (doing_at(robot, task) for robot in mission.robots)

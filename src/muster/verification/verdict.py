@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.data_frames import data_frame
@@ -57,13 +58,34 @@ class Visit:
 
 
 @dataclass(frozen=True)
+class Stop:
+    """One stop of a route, at a task or a station, in time: seconds.
+
+    `arrival_level` and `level_after` are what the battery holds on arrival and at the end of work or service, and
+    `charged` is what a station added, in the unit of usage; None for a robot without a battery, and `charged` also
+    where nothing is charged. `load_after` is what is on board then, by commodity.
+    """
+
+    name: str
+    is_station: bool
+    arrives_s: float
+    starts_s: float
+    ends_s: float
+    arrival_level: float | None = None
+    level_after: float | None = None
+    charged: float | None = None
+    load_after: Mapping[str, float] = field(default_factory=dict, hash=False)
+
+
+@dataclass(frozen=True)
 class RouteFigures:
     """One robot's route, recomputed.
 
     `travel`, `work`, `usage` (their sum) and `capacity` are in the unit of usage. `capacity` is what the robot may
-    use, the reserve taken off; None where it is unlimited or ignored. `visits` is empty, and `back_s` None, where the
-    plan has no schedule because of a deadlock. `back_s` is when the robot is where its route must end; None where it
-    may end anywhere, or stays because it has no tasks.
+    use, the reserve taken off; None where it is unlimited or ignored. `visits` are those of tasks, and `stops` those of
+    tasks and stations, in order. Both are empty, and `back_s` None, where the plan has no schedule because of a
+    deadlock. `back_s` is when the robot is where its route must end; None where it may end anywhere, or stays because
+    its route has no stops.
     """
 
     robot: str
@@ -75,6 +97,7 @@ class RouteFigures:
     leaves_s: float
     visits: tuple[Visit, ...]
     back_s: float | None
+    stops: tuple[Stop, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,8 +14,10 @@ from muster.mission.model import Task
 from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute
 from muster.verification.rules.action import Action
+from muster.verification.rules.battery import Battery
 from muster.verification.rules.capacity import Capacity
 from muster.verification.rules.deadline import Deadline
+from muster.verification.rules.load import Load
 from muster.verification.rules.lock import Lock
 from muster.verification.rules.min_tasks import MinTasks
 from muster.verification.rules.prerequisite import Prerequisite
@@ -61,6 +63,8 @@ RULES: tuple[Rule, ...] = (
     Prerequisite(),
     Unreachable(),
     Capacity(),
+    Load(),
+    Battery(),
     Window(),
     Deadline(),
     Shift(),

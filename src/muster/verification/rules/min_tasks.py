@@ -22,7 +22,7 @@ class MinTasks:
             yield Violation(self.kind, route.robot.id, None, f"{done} in its route, at least {least} or none")
 
     def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
-        """Whether the route would still be too short; undecided where other robots have to work with it."""
+        """Whether the route would still be too short; undecided where other robots or tasks have to come with it."""
         if len(route.steps) + 1 < route.robot.min_tasks:
-            return True
+            return None if case.is_paired(task) else True
         return None if case.needs_others(task) and any(robot.min_tasks > 1 for robot in case.mission.robots) else False
