@@ -211,12 +211,15 @@ class _Graph:
     def _delayed_by_lags(
         self, orders: Mapping[str, Sequence[Turn]], stated: Mapping[str, Sequence[Turn]]
     ) -> Schedule | Deadlock:
-        """The earliest schedule in which the orders are those of arrival, where greatest lags delay arrivals."""
+        """The earliest schedule in which the orders are those of arrival, where greatest lags delay arrivals.
+
+        An order in which bounds raise each other for ever says by these who arrives later.
+        """
         for _ in range(_MOST_ORDERS):
             order = self._order(orders)
-            found = order if isinstance(order, Deadlock) else self._least(order)
-            if isinstance(found, Deadlock):
-                return found
+            if isinstance(order, Deadlock):
+                return order
+            found = self._least(order)
             arrives = {turn: self._arrives(turn) for turn in self.stations.visits}
             by_arrival = {
                 station: list(stated[station]) if station in stated else self.stations.by_arrival(turns, arrives)
