@@ -1,0 +1,287 @@
+"""The best plan of a tiny mission with goods, batteries and stations, by trying all routes. The judge is the oracle.
+
+It is for four tasks, two robots and two stations at most, of which no task is for a team. Between two tasks a robot
+goes to two stations at most, and to none where nothing changes on board or in the battery: without travel tables that
+is only a detour. A charge is full; where times count it may also be just what is needed up to the next station that
+gives energy, or to the end of the route. Where times count all orders in which stations serve are tried as well.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+from muster.mission.goods import by_commodity
+from muster.mission.plan import Plan, Route, RouteStop
+from muster.verification import Verdict, verify
+
+TINY = 1e-9
+LASTING = {"skill", "suitability", "lock", "unreachable", "capacity", "window", "deadline", "shift"}
+"""Kinds of violation by one route that no more stops take away, where the triangle inequality holds."""
+
+
+@dataclass(frozen=True)
+class Best:
+    """A best plan, its weight and the value of its objective."""
+
+    weight: float
+    objective: float
+    plan: Plan
+
+
+@dataclass(frozen=True)
+class Own:
+    """One robot's route, with the amounts that it charges, and the figures that it has alone."""
+
+    names: tuple[str, ...]
+    charged: tuple[float | None, ...]
+    tasks: tuple[str, ...]
+    usage: float
+    arrivals: float
+    ends: float
+    late: float
+
+
+def best_plan(mission, ignore=()):
+    """The best of all plans that the judge finds valid; the empty one is among them."""
+    return _Search(mission, ignore).best()
+
+
+class _Search:
+    def __init__(self, mission, ignore):
+        assert mission.travel_rule != "matrix"
+        assert not any(task.is_for_team for task in mission.tasks)
+        self.mission, self.ignore = mission, ignore
+        self.tasks = {task.id: task for task in mission.tasks}
+        self.stations = {station.id: station for station in mission.stations}
+
+    @cached_property
+    def times_count(self):
+        """Whether when something happens makes a difference, beside who does what in which order."""
+        limits = any(t.window_s or t.deadline_s is not None or t.lags or t.starts_with for t in self.mission.tasks)
+        late = any(robot.available_until_s is not None for robot in self.mission.robots)
+        return limits or late or self.mission.rules.objective in ("makespan", "lateness")
+
+    # --- routes of one robot ---------------------------------------------------------------------------------------
+
+    def routes(self, robot):
+        """The routes of one robot that break no rule by themselves; the empty one first."""
+        found = [self._own(robot, (), ())]
+        self._grow(robot, (), found)
+        if self.times_count:
+            return found
+        best = {}
+        for own in found:  # of stations only the detour counts
+            key = (own.usage, own.arrivals) if self.mission.rules.objective != "average" else (own.arrivals, own.usage)
+            if own.tasks not in best or key < best[own.tasks][0]:
+                best[own.tasks] = (key, own)
+        return [own for _, own in best.values()]
+
+    def _grow(self, robot, names, found):
+        for name in self._next(robot, names):
+            longer = (*names, name)
+            if not self._may_go_on(robot, longer):
+                continue
+            if self._is_whole(robot, longer):
+                found.extend(self._own(robot, longer, charged) for charged in self._amounts(robot, longer))
+            self._grow(robot, longer, found)
+
+    def _next(self, robot, names):
+        yield from (name for name, task in self.tasks.items() if name not in names and task.delivers in (None, *names))
+        gap = []
+        for name in reversed(names):
+            if name in self.tasks:
+                break
+            gap.append(name)
+        if len(gap) < 2:
+            yield from (name for name in self.stations if name not in gap)
+
+    def _may_go_on(self, robot, names):
+        """Whether the last stop of a route keeps its rules, and changes something if it is a station."""
+        verdict = self._judge([Route(robot.id, names)])
+        if any(fault.kind in LASTING for fault in verdict.violations):
+            return False
+        stops = next(route.stops for route in verdict.routes if route.robot == robot.id)
+        if not stops:
+            return False
+        last = stops[-1]
+        before = stops[-2].load_after if len(stops) > 1 else by_commodity(robot.load_at_start)
+        if any("has on board" in fault.detail for fault in verdict.violations):
+            return False
+        if robot.battery is not None and "battery" not in self.ignore:
+            least = robot.battery.least - TINY * robot.battery.capacity
+            if min(last.arrival_level, last.level_after) < least:
+                return False
+        charges = last.charged is not None and last.charged > TINY
+        unloads = dict(before) != dict(last.load_after)
+        return not last.is_station or charges or unloads
+
+    def _is_whole(self, robot, names):
+        """Whether a route may end so: pairs in it, and no station last where the robot need not go on."""
+        delivered = {task.delivers for task in self.tasks.values() if task.delivers in names}
+        pairs = all(any(self.tasks[n].delivers == p for n in names if n in self.tasks) for p in delivered)
+        needless = names[-1] in self.stations and robot.place_at_end(self.mission.rules) is None
+        return (pairs or "load" in self.ignore) and not needless
+
+    def _amounts(self, robot, names):
+        """What is charged at each stop: None for a full charge, and where no charge is."""
+        verdict = self._judge([Route(robot.id, names)])
+        route = next(route for route in verdict.routes if route.robot == robot.id)
+        partial = [k for k, stop in enumerate(route.stops) if stop.charged and self._is_partial(stop.name)]
+        full = (None,) * len(names)
+        yield full
+        if not self.times_count or not partial:
+            return
+        for chosen in product((False, True), repeat=len(partial)):
+            amounts = self._needed(robot, route, {k for k, is_needed in zip(partial, chosen, strict=True) if is_needed})
+            if amounts is not None and amounts != full:
+                yield amounts
+
+    def _is_partial(self, name):
+        station = self.stations.get(name)
+        return station is not None and station.charges and station.partial
+
+    def _needed(self, robot, route, chosen):
+        """The amounts with which a battery is at its reserve where the next charge begins, or at the end of the route.
+
+        None where that is more than there is room for, or nothing.
+        """
+        leaving = [robot.battery.level_at_start, *(stop.level_after for stop in route.stops)]
+        draws = [start - stop.arrival_level for start, stop in zip(leaving, route.stops, strict=False)]
+        works = [stop.arrival_level - stop.level_after if not stop.is_station else 0.0 for stop in route.stops]
+        last = route.usage - sum(draws) - sum(works)
+        level, amounts = robot.battery.level_at_start, []
+        for k, stop in enumerate(route.stops):
+            level -= draws[k] + works[k]
+            amount = None
+            if stop.charged is not None and k in chosen:
+                until = next((n for n in range(k + 1, len(draws)) if route.stops[n].charged is not None), None)
+                ahead = range(k + 1, len(draws) if until is None else until + 1)
+                need = sum(draws[n] + works[n] for n in ahead) + (last if until is None else 0.0)
+                amount = need + robot.battery.least - level
+                if not 0 < amount <= robot.battery.capacity - level:
+                    return None
+                level += amount
+            elif stop.charged is not None:
+                level = robot.battery.capacity
+            amounts.append(amount)
+        return tuple(amounts)
+
+    def _own(self, robot, names, charged):
+        verdict = self._judge([self._stated(robot.id, names, charged, range(len(names)))])
+        route = next(route for route in verdict.routes if route.robot == robot.id)
+        ends = [visit.ends_s for visit in route.visits]
+        if self.mission.rules.makespan_includes_return and route.back_s is not None:
+            ends.append(route.back_s)
+        return Own(
+            names=names,
+            charged=charged,
+            tasks=route.tasks,
+            usage=route.usage,
+            arrivals=sum(visit.arrival_usage for visit in route.visits),
+            ends=max(ends, default=0.0),
+            late=verdict.lateness or 0.0,
+        )
+
+    # --- plans -----------------------------------------------------------------------------------------------------
+
+    def best(self):
+        """Go through all plans from the highest weight and the lowest bound on; the first valid one bounds the rest."""
+        classes = {}
+        for plan in product(*map(self.routes, self.mission.robots)):
+            done = [name for own in plan for name in own.tasks]
+            if len(set(done)) == len(done) and self._keeps_together(set(done)):
+                weight = sum(self.tasks[name].priority for name in done)
+                classes.setdefault(round(weight, 9), []).append(plan)
+        for weight in sorted(classes, reverse=True):
+            best = None
+            for plan in sorted(classes[weight], key=self._bound):
+                if best is not None and self._bound(plan) >= best.objective - TINY:
+                    break
+                for found in self._judged(plan):
+                    if best is None or found.objective < best.objective:
+                        best = found
+            if best is not None:
+                return best
+        raise AssertionError("the empty plan is valid")
+
+    def _keeps_together(self, done):
+        links = [(task, name) for task in self.tasks.values() for name in task.prerequisites]
+        together = all(name in done for task, name in links if task.id in done)
+        return together or "prerequisite" in self.ignore
+
+    def _bound(self, plan):
+        """The objective of a plan, as if no robot waited for another."""
+        usages = [own.usage for own in plan]
+        count = sum(len(own.tasks) for own in plan)
+        values = {
+            "total": sum(usages),
+            "max": max(usages),
+            "total+max": sum(usages) + max(usages),
+            "average": sum(own.arrivals for own in plan) / max(1, count),
+            "makespan": max(own.ends for own in plan),
+            "lateness": sum(own.late for own in plan),
+        }
+        return values[self.mission.rules.objective]
+
+    def _judged(self, plan):
+        """The plan as far as the judge finds it valid: in order of arrival, and where times count in all orders."""
+        routes = list(zip(self.mission.robots, plan, strict=True))
+        if not self.times_count:
+            bare = [Route(robot.id, own.names) for robot, own in routes]
+            yield from self._valid(bare)
+            return
+        for turns in product(*(self._orders(plan, name) for name in self.stations)):
+            numbers = {place: number for order in turns for number, place in enumerate(order)}
+            stated = [
+                self._stated(robot.id, own.names, own.charged, [numbers.get((i, k), 0) for k in range(len(own.names))])
+                for i, (robot, own) in enumerate(routes)
+            ]
+            yield from self._valid(self._with_times(stated))
+
+    def _orders(self, plan, station):
+        """All orders in which a station may serve: of visits (robot, place in its route)."""
+        visits = [[(i, k) for k, name in enumerate(own.names) if name == station] for i, own in enumerate(plan)]
+        for merged in _merges([len(own) for own in visits]):
+            yield [visits[i][number] for i, number in merged]
+
+    def _stated(self, robot, names, charged, begins):
+        """A route that says who is served when, by numbers in place of times."""
+        stops = [
+            RouteStop(name, 0, begin, 0, name in self.stations, amount)
+            for name, amount, begin in zip(names, charged, begins, strict=True)
+        ]
+        return Route(robot, names, stops=tuple(stops))
+
+    def _with_times(self, routes):
+        """The routes with the times of the schedule in the place of numbers."""
+        verdict = self._judge(routes)
+        times = {route.robot: route.stops for route in verdict.routes}
+        return [
+            replace(
+                route,
+                stops=tuple(
+                    replace(stop, arrive_s=found.arrives_s, begin_s=found.starts_s, end_s=found.ends_s)
+                    for stop, found in zip(route.stops, times[route.robot], strict=bool(times[route.robot]))
+                ),
+            )
+            for route in routes
+        ]
+
+    def _valid(self, routes):
+        verdict = self._judge(routes)
+        if verdict.valid:
+            yield Best(verdict.weight_completed, verdict.value(), Plan(routes=tuple(routes)))
+
+    def _judge(self, routes) -> Verdict:
+        return verify(self.mission, Plan(routes=tuple(routes)), self.ignore)
+
+
+def _merges(lengths):
+    """All orders of items (list, place in it) that keep those of some lists."""
+    if not any(lengths):
+        yield []
+        return
+    for i, length in enumerate(lengths):
+        if length:
+            for merged in _merges([*lengths[:i], length - 1, *lengths[i + 1 :]]):
+                yield [*merged, (i, length - 1)]
