@@ -105,7 +105,7 @@ class _Search:
             return False
         last = stops[-1]
         before = stops[-2].load_after if len(stops) > 1 else by_commodity(robot.load_at_start)
-        if any("has on board" in fault.detail for fault in verdict.violations):
+        if any(" on board after" in fault.detail for fault in verdict.violations):
             return False
         if robot.battery is not None and "battery" not in self.ignore:
             least = robot.battery.least - TINY * robot.battery.capacity

@@ -21,24 +21,24 @@ def test_a_load_above_capacity_is_named_once_for_all_stops_that_it_lasts():
     given = mission([robot(load_capacity=5)], tasks)
     verdict = judged(given, r="a b c d e")
     assert faults(verdict) == [
-        ("load", "r", "b", "after it has on board 8; expected 0 to 5"),
-        ("load", "r", "e", "after it has on board 5.5; expected 0 to 5"),
+        ("load", "r", "b", "8 on board after it; expected 0 to 5"),
+        ("load", "r", "e", "5.5 on board after it; expected 0 to 5"),
     ]
     assert judged(given, "load", r="a b c d e").valid
 
 
 def test_less_than_nothing_cannot_be_on_board():
     given = mission([robot(load_capacity=5, load_at_start=2)], [task("a", load=-3)])
-    assert faults(judged(given, r="a")) == [("load", "r", "a", "after it has on board -1; expected 0 to 5")]
+    assert faults(judged(given, r="a")) == [("load", "r", "a", "-1 on board after it; expected 0 to 5")]
 
 
 def test_a_commodity_that_a_capacity_does_not_name_is_not_carried_and_without_capacities_all_is():
     tasks = [task("a", load={"sand_kg": 1})]
     verdict = judged(mission([robot(load_capacity={"parcels": 9})], tasks), r="a")
-    assert faults(verdict) == [("load", "r", "a", "after it has on board 1 sand_kg; expected 0 to 0 sand_kg")]
+    assert faults(verdict) == [("load", "r", "a", "1 sand_kg on board after it; expected 0 to 0 sand_kg")]
     assert judged(mission([robot()], tasks), r="a").valid
     below = judged(mission([robot()], [task("a", load={"sand_kg": -1})]), r="a")
-    assert faults(below) == [("load", "r", "a", "after it has on board -1 sand_kg; expected 0 to any amount")]
+    assert faults(below) == [("load", "r", "a", "-1 sand_kg on board after it; expected 0 to any amount")]
 
 
 def test_rounding_is_no_breach():

@@ -69,6 +69,7 @@ def test_robots_are_served_in_order_of_arrival(slots, served):
     verdict = judged(mission(THREE, [], [swapper(swap_s=10, slots=slots)]), r="rack", s="rack", t="rack")
     assert verdict.valid
     assert begins(verdict, "rack") == served
+    assert verdict.waiting_s == sum(starts - arrives for _, arrives, starts, _ in served)
 
 
 def test_ties_go_by_ids_of_robots():
@@ -246,3 +247,12 @@ def test_a_plan_that_states_what_the_judge_found_is_valid_with_every_number_of_s
             stated = stating(given, bare, charged=charged)
             assert verify(given, stated).valid
             assert verify(given, stated).routes == verify(given, bare).routes
+
+
+def test_many_visits():
+    """Deeper than Python recurses, and in time that grows with their number."""
+    given = mission(fleet([f"r{k}" for k in range(40)]), [], [swapper(swap_s=10, slots=3), charger("dock", 5)])
+    bare = plan(**{robot.id: "rack dock " * 60 for robot in given.robots})
+    verdict = verify(given, stating(given, bare, charged=True))
+    assert verdict.valid
+    assert verdict.routes == verify(given, bare).routes

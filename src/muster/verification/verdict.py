@@ -138,10 +138,10 @@ class Verdict:
 
     @property
     def waiting_s(self) -> float | None:
-        """How long robots wait at tasks, in all; None where they deadlock."""
+        """How long robots wait at tasks and stations, in all; None where they deadlock."""
         if self.makespan_s is None:
             return None
-        return sum(visit.starts_s - visit.arrives_s for route in self.routes for visit in route.visits)
+        return sum(stop.starts_s - stop.arrives_s for route in self.routes for stop in route.stops)
 
     def value(self, name: str | None = None) -> float | None:
         """Return the value of an objective, by default the one judged by; None for a time of a deadlocked plan.

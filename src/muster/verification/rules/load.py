@@ -19,8 +19,9 @@ class Load:
     ignorable = True
 
     def violations(self, case: Case, route: MeasuredRoute) -> Iterator[Violation]:
+        place = {step.task.id: k for k, step in enumerate(route.steps)}
         for step in route.steps:
-            for detail in _wrong_pair(case, route, step.task):
+            for detail in _wrong_pair(case, place, step.task):
                 yield Violation(self.kind, route.robot.id, step.task.id, detail)
         wrong: set[str] = set()
         for task, where, load, most in _loads(case, route):
@@ -28,7 +29,7 @@ class Load:
             new = {name: value for name, value in unfit.items() if name not in wrong}  # said once for each run of stops
             wrong = set(unfit)
             if new:
-                detail = f"{where} has on board {shown_amounts(new)}; expected 0 to {_capacity(route.robot, new)}"
+                detail = f"{shown_amounts(new)} on board {where}; expected 0 to {_capacity(route.robot, new)}"
                 yield Violation(self.kind, route.robot.id, task, detail)
 
     def prevents(self, case: Case, route: MeasuredRoute, task: Task) -> bool | None:
@@ -48,8 +49,8 @@ class Load:
         return True if any(too_much) else None
 
 
-def _wrong_pair(case: Case, route: MeasuredRoute, task: Task) -> Iterator[str]:
-    """What is wrong with the other task of a pair."""
+def _wrong_pair(case: Case, place: Mapping[str, int], task: Task) -> Iterator[str]:
+    """What is wrong with the other task of a pair; `place` holds the places of tasks in the route."""
     deliverer = case.deliverer.get(task.id)
     if deliverer is not None and deliverer not in case.done:
         yield f"takes on board what {deliverer} delivers, which is not in the plan"
@@ -57,12 +58,10 @@ def _wrong_pair(case: Case, route: MeasuredRoute, task: Task) -> Iterator[str]:
         return
     if task.delivers not in case.done:
         yield f"delivers what {task.delivers} takes on board, which is not in the plan"
-        return
-    names = [step.task.id for step in route.steps]
-    if task.delivers not in names:
+    elif task.delivers not in place:
         robot = case.members[task.delivers][0].id
         yield f"delivers what {task.delivers} takes on board, which {robot} does; expected the same robot"
-    elif names.index(task.delivers) > names.index(task.id):
+    elif place[task.delivers] > place[task.id]:
         yield f"comes before {task.delivers}, which takes on board what it delivers"
 
 
