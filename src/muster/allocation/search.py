@@ -60,7 +60,8 @@ class Parameters:
     """
 
     threads: int = 0  # 0: one for each processor under a time limit, else 1
-    plans: int = 0  # that are annealed at first, of which ever fewer go on; 0: 4, or 1 for more than 5,000 tasks
+    # That are annealed at first, of which ever fewer go on; 0: 4, or 1 on a schedule and for more than 5,000 tasks
+    plans: int = 0
     parts: int = 0  # into which a team is divided that outgrows the search; 0: as many as its size asks for
     ray: str = "none"  # address of the Ray cluster that parts are worked on; none: threads of this process
     # 0: 1 for the objectives `max` and, on a schedule, `makespan`, which few tasks decide; else 5; where greedy leaves
@@ -166,7 +167,7 @@ def _side_by_side(
 
     return SideBySide(
         search,
-        plans=params.plans or (_PLANS if len(problem.tasks) <= _MANY else 1),
+        plans=params.plans or (_PLANS if len(problem.tasks) <= _MANY and not _on_schedule(problem) else 1),
         busy=threads if stop.is_a_time_alone else 1,
         threads=threads,
         cross=cross,

@@ -84,10 +84,27 @@ bool Placement::suits(std::span<const int> awaited, std::span<const int> robots)
 // --- One robot, one task ---------------------------------------------------------------------------------------------
 
 bool Placement::usable_alone(int robot) {
-  return relations_.allows(0, robot) && (!looks_ahead_ || suits(relations_.awaited(0), {&robot, 1}));
+  return !is_second_twin(robot) && relations_.allows(0, robot) &&
+         (!looks_ahead_ || suits(relations_.awaited(0), {&robot, 1}));
+}
+
+// Whether a robot without tasks differs in nothing from one before it, without tasks as well.
+bool Placement::is_second_twin(int robot) const {
+  const int twin = problem_.twin(robot);
+  return timeline_.tasks_in(robot) == 0 && empty_twin_[twin] != robot && empty_twin_[twin] >= 0;
+}
+
+// Of robots that differ in nothing the first without tasks.
+void Placement::find_empty_twins() {
+  empty_twin_.assign(problem_.robots(), -1);
+  for (int robot = problem_.robots() - 1; robot >= 0; --robot) {
+    if (timeline_.tasks_in(robot) == 0 && (!trial_->robots || (*trial_->robots)[robot]))
+      empty_twin_[problem_.twin(robot)] = robot;
+  }
 }
 
 void Placement::try_alone(int task) {
+  find_empty_twins();
   measured_work_ = -1.0;
   if (relations_.team_size(0) > 1) return;
   const auto robots = problem_.robots_allowed(task);

@@ -53,6 +53,8 @@ class Placement {
 
   // One robot, one task.
   bool usable_alone(int robot);
+  void find_empty_twins();
+  bool is_second_twin(int robot) const;
   void try_alone(int task);
   void try_near(int task);
   void try_place(int robot, int task, int at);
@@ -135,6 +137,7 @@ class Placement {
   Labels second_labels_{0.0, 1.0};
   double second_ready_ = 0.0, second_latest_ = kNever, second_tail_ = 0.0, after_ = 0.0, within_ = kNever;
   std::vector<char> may_transport_;
+  std::vector<int> empty_twin_;
   // Of the unit.
   Labels labels_{0.0, 1.0};
   double ready_ = 0.0, peak_ = 0.0;

@@ -86,6 +86,7 @@ Problem::Problem(ProblemData data)
   find_units();
   find_transports();
   find_who_may_run_short();
+  find_twins();
   symmetric_ = find_symmetric();
   if (data_.table.empty() && places_ <= kMostPlacesInTable) {
     std::vector<double> table(places * places);
@@ -204,6 +205,33 @@ void Problem::find_who_may_run_short() {
   const auto batteries = std::ranges::count_if(data_.battery, [](double size) { return size < kInfinity; });
   has_queues_ = std::ranges::any_of(
       data_.stations, [&](const Station& station) { return station.gives_energy() && station.slots < batteries; });
+}
+
+void Problem::find_twins() {
+  std::map<std::vector<double>, std::vector<int>> firsts;  // by what is quick to compare
+  twins_.resize(robots_);
+  for (int robot = 0; robot < robots_; ++robot) {
+    std::vector<double> key{capacity(robot), available_from(robot), available_until(robot)};
+    key.insert(key.end(),
+               {must_end(robot) ? 1.0 : 0.0, static_cast<double>(fixed(robot)), static_cast<double>(min_tasks(robot))});
+    for (int axis = 0; axis < 3; ++axis) key.insert(key.end(), {entry(start(robot), axis), entry(end(robot), axis)});
+    for (const double able : ability(robot)) key.push_back(able);
+    auto& among = firsts[key];
+    const auto same =
+        std::ranges::find_if(among, [&](int other) { return alike(robot, other) && same_ends(robot, other); });
+    twins_[robot] = same == among.end() ? robot : *same;
+    if (same == among.end()) among.push_back(robot);
+  }
+}
+
+// Whether the ways from the starts and to the ends of two robots are the same, by a table.
+bool Problem::same_ends(int robot, int other) const {
+  if (!given_table_ && data_.waiting.empty()) return true;
+  for (int place = 0; place < tasks_; ++place) {
+    if (travel_usage(robot, start(robot), place) != travel_usage(other, start(other), place)) return false;
+    if (travel_usage(robot, place, end(robot)) != travel_usage(other, place, end(other))) return false;
+  }
+  return true;
 }
 
 double Problem::leg_seconds(int robot, int from, int to, double metres) const {

@@ -249,6 +249,8 @@ class Problem {
   }
   // Whether the way from a task to another costs what the way back does, for every robot.
   bool is_symmetric() const { return symmetric_; }
+  // The first robot that differs from this one in nothing: of those without tasks one stands for all.
+  int twin(int robot) const { return twins_[robot]; }
   // Whether two robots may do the same tasks, and one way costs both the same.
   bool alike(int robot, int other) const;
 
@@ -308,6 +310,8 @@ class Problem {
   void find_robots_allowed();
   void find_units();
   void find_transports();
+  void find_twins();
+  bool same_ends(int robot, int other) const;
   void find_who_may_run_short();
   void check_goods() const;
   std::size_t at(int row, int commodity) const { return static_cast<std::size_t>(row) * data_.commodities + commodity; }
@@ -339,7 +343,7 @@ class Problem {
   bool timed_;
   bool symmetric_;
   Rows tasks_of_unit_;
-  std::vector<int> partner_;
+  std::vector<int> partner_, twins_;
   std::vector<char> may_run_short_;
   bool unloads_at_stations_ = false, any_may_run_short_ = false, has_queues_ = false;
   Rows dependants_;

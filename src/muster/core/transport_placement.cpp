@@ -35,6 +35,8 @@ bool Placement::best_transport(int pickup, int delivery, const Trial& trial) {
                               problem_.allowed(robot, problem_.tasks_of_unit(each).front());
     }
   }
+  find_empty_twins();
+  for (int robot = 0; robot < problem_.robots(); ++robot) may_transport_[robot] &= !is_second_twin(robot);
   keep_to_near_robots(pickup, delivery);
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     if (may_transport_[robot]) try_transport_with(robot, pickup, delivery);
