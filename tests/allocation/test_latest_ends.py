@@ -104,4 +104,4 @@ def test_no_plan_with_all_tasks_ends_one_later(seed):
     ends = {task.id: task.deadline_s for task in bound.tasks}
     for route in plan.routes:
         for stop in route.stops or ():
-            assert ends[stop.task] is None or stop.end_s <= ends[stop.task] + 1e-6, stop
+            assert ends[stop.name] is None or stop.end_s <= ends[stop.name] + 1e-6, stop

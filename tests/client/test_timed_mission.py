@@ -43,7 +43,7 @@ def plan(control, mission):
 def test_the_plan_is_that_of_here_with_its_stops(plan, mission):
     here = muster.solve(mission, iterations=100, seed=1)
     assert plan.routes == here.routes
-    (slab, _) = [stop for route in plan.routes for stop in route.stops if stop.task == "slab"]
+    (slab, _) = [stop for route in plan.routes for stop in route.stops if stop.name == "slab"]
     assert (slab.begin_s, slab.end_s) == (20, 30)
 
 

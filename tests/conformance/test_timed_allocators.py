@@ -59,7 +59,7 @@ def holds_true(mission, plan):
     assert plan.tasks_completed == len(meaning.teams(routes))
     begins, ends = meaning.schedule(routes)
     for stop in (stop for route in plan.routes for stop in route.stops):
-        times = begins[meaning.number[stop.task]], ends[meaning.number[stop.task]]
+        times = begins[meaning.number[stop.name]], ends[meaning.number[stop.name]]
         assert (stop.begin_s, stop.end_s) == pytest.approx(times)
         assert stop.arrive_s <= stop.begin_s + 1e-9
 

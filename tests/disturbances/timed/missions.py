@@ -30,8 +30,8 @@ def mission_of(seed):
 def with_members_failing(mission, plan, seed):
     """With more events: a robot of one task for several fails while they are at it, by the plan, and maybe returns."""
     random = Random(f"members {seed}")
-    members = Counter(stop.task for route in plan.routes for stop in route.stops)
-    together = [(route.robot, stop) for route in plan.routes for stop in route.stops if members[stop.task] > 1]
+    members = Counter(stop.name for route in plan.routes for stop in route.stops)
+    together = [(route.robot, stop) for route in plan.routes for stop in route.stops if members[stop.name] > 1]
     if not together or random.random() < 0.3:
         return mission
     robot, stop = random.choice(together)
