@@ -9,6 +9,7 @@ from tests.carry_charge import stating
 from tests.random_carry_charge import random_mission, random_plan
 from tests.verification.ticking_judge import TickingJudge
 
+from muster.mission.model import Lag
 from muster.mission.plan_reader import read_plan
 from muster.verification import verify
 
@@ -93,3 +94,37 @@ def test_a_random_plan_with_stations_survives_its_file(tmp_path):
         assert read_plan(tmp_path / "plan.json").routes == stated.routes
 
     survives()
+
+
+def with_lags(mission, random):
+    """Every prerequisite of a mission with a greatest lag, and some more of them."""
+    tasks = []
+    for k, task in enumerate(mission.tasks):
+        names = task.prerequisites or ((mission.tasks[k - 1].id,) if k and random.random() < 0.5 else ())
+        lags = {name: Lag(after_s=random.choice((0, 2)), within_s=random.choice((2, 5, 20))) for name in names}
+        tasks.append(replace(task, prerequisites=names, lags=lags))
+    return replace(mission, tasks=tuple(tasks))
+
+
+@given(seeds, seeds, st.booleans(), st.randoms(use_true_random=False))
+def test_a_schedule_with_lags_keeps_slots_orders_and_lags(mission_seed, plan_seed, stated, random):
+    mission = with_lags(random_mission(mission_seed, robots=3), random)
+    plan = random_plan(mission, plan_seed, stated=stated)
+    verdict = verify(mission, plan)
+    if verdict.makespan_s is None:
+        return
+    ends = {visit.task: visit.ends_s for route in verdict.routes for visit in route.visits}
+    begins = {visit.task: visit.starts_s for route in verdict.routes for visit in route.visits}
+    for task in mission.tasks:
+        for name, lag in task.lags.items():
+            if task.id in begins and name in ends:
+                assert ends[name] + lag.after_s <= begins[task.id] + 1e-6
+                assert begins[task.id] <= ends[name] + lag.within_s + 1e-6
+    for station in mission.stations:
+        visits = [(s, r.robot) for r in verdict.routes for s in r.stops if s.name == station.id]
+        for visit, _ in visits:
+            served = [s for s, _ in visits if s.starts_s <= visit.starts_s < s.ends_s]
+            assert len(served) <= station.slots
+        if not stated:
+            by_arrival = sorted(visits, key=lambda one: (one[0].arrives_s, one[1]))
+            assert [s.starts_s for s, _ in by_arrival] == sorted(s.starts_s for s, _ in visits)
