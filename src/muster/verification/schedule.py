@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
@@ -183,28 +183,41 @@ class _Graph:
             return Deadlock(cycle_fault(self.links, error.args[1][:-1]))  # graphlib repeats the first node at the end
 
     def _serve_by_arrival(self, stated: Mapping[str, Sequence[Turn]]) -> dict[str, list[Turn]]:
-        """Go through all stops as they happen, greatest lags aside; the order in which each station serves.
+        """Go through all stops as they happen, greatest lags aside; the order in which each station serves."""
+        self._begin_anew()
+
+        def begin(name: Name) -> None:
+            self.begin[name] = self._earliest(name)
+
+        return self._in_turn(stated, self._arrives, begin)
+
+    def _in_turn(
+        self,
+        stated: Mapping[str, Sequence[Turn]],
+        arrives: Callable[[Turn], float],
+        begin: Callable[[Name], None] = lambda _: None,
+    ) -> dict[str, list[Turn]]:
+        """The order in which each station serves, if the begins of stops are gone through one after another.
 
         Whoever is first of all that wait anywhere is served next: what has not arrived yet waits for one of these, and
         arrives later.
         """
-        self._begin_anew()
         sorter = TopologicalSorter(self._before(stated))
         sorter.prepare()
         served: dict[str, list[Turn]] = {name: list(turns) for name, turns in stated.items()}
         waiting: list[tuple[float, tuple[int, int], Turn]] = []
         while sorter.is_active():
-            ready = sorter.get_ready()
+            ready = list(sorter.get_ready())
             for name in ready:
                 if isinstance(name, Turn) and name.station not in stated:
-                    heapq.heappush(waiting, (self._arrives(name), self.stations.rank(name), name))
+                    heapq.heappush(waiting, (arrives(name), self.stations.rank(name), name))
                     continue
-                self.begin[name] = self._earliest(name)
+                begin(name)
                 sorter.done(name)
             if not ready:
-                _, _, turn = heapq.heappop(waiting)
+                turn = heapq.heappop(waiting)[-1]
                 served.setdefault(turn.station, []).append(turn)
-                self.begin[turn] = self._earliest(turn)
+                begin(turn)
                 sorter.done(turn)
         return served
 
@@ -220,11 +233,8 @@ class _Graph:
             if isinstance(order, Deadlock):
                 return order
             found = self._least(order)
-            arrives = {turn: self._arrives(turn) for turn in self.stations.visits}
-            by_arrival = {
-                station: list(stated[station]) if station in stated else self.stations.by_arrival(turns, arrives)
-                for station, turns in self.stations.by_station().items()
-            }
+            self._go_through(order)
+            by_arrival = self._in_turn(stated, self._arrives)
             if by_arrival == orders:
                 return found
             orders = by_arrival
@@ -245,9 +255,7 @@ class _Graph:
         most = (self._lagged + 1) * (1 + sum(visit.station.slots > 1 for visit in self.stations.visits.values()))
         jumps, passes = self._windows_passed(), 0
         while True:
-            self.queues = self.stations.queues()
-            for name in order:
-                self.begin[name] = self._earliest(name)
+            self._go_through(order)
             delayed = self._delay_prerequisites()
             if delayed is None:
                 return self._found()
@@ -257,6 +265,12 @@ class _Graph:
                 jumps, passes = self._windows_passed(), 0
             if passes > most:
                 return Deadlock(Rising(self.links, self.raised_by, self.seconds).fault(delayed))
+
+    def _go_through(self, order: Sequence[Name]) -> None:
+        """Raise begins to what comes before them."""
+        self.queues = self.stations.queues()
+        for name in order:
+            self.begin[name] = self._earliest(name)
 
     def _end(self, name: Name) -> float:
         return self.begin[self.node_of[name]] + self.seconds[name]

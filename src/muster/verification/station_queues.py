@@ -7,7 +7,7 @@ robot uses a slot from the begin to the end of its service, and none where that 
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -91,7 +91,3 @@ class Stations:
     def rank(self, turn: Turn) -> tuple[int, int]:
         """What breaks ties between visits: ids of robots in their order, then places in a route."""
         return self._rank[turn.robot], turn.place
-
-    def by_arrival(self, turns: Iterable[Turn], arrives: Mapping[Turn, float]) -> list[Turn]:
-        """Visits of one station in the order of arrival."""
-        return sorted(turns, key=lambda turn: (arrives[turn], *self.rank(turn)))
