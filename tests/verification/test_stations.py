@@ -256,3 +256,13 @@ def test_many_visits():
     verdict = verify(given, stating(given, bare, charged=True))
     assert verdict.valid
     assert verdict.routes == verify(given, bare).routes
+
+
+def test_services_without_length_that_are_said_to_begin_at_once_keep_the_order_of_routes():
+    """All is at one place and takes no time: q, first by its id, comes to the station after r has been there."""
+    tasks = [task("a", 5), task("b", 5, prerequisites=("a",))]
+    given = mission([robot("r"), robot("q")], tasks, [depot(x=5)])
+    bare = plan(r="depot a", q="b depot")
+    stated = stating(given, bare)
+    assert times(verify(given, stated), "q") == [("b", 5, 5, 5), ("depot", 5, 5, 5)]
+    assert verify(given, stated).valid

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 from muster.mission.plan import tie_order
-from muster.verification.schedule_nodes import Bound, Links, Name, place_name
-from muster.verification.station_queues import Turn
+from muster.verification.schedule_nodes import Bound, Links, place_name
+from muster.verification.station_queues import Name, Turn
 from muster.verification.verdict import Violation
 
 

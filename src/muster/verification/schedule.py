@@ -9,9 +9,8 @@ that of arrival, which is found by going through the visits as they happen.
 
 from __future__ import annotations
 
-import heapq
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
@@ -21,8 +20,8 @@ from muster.mission.task_relations import tied_by
 from muster.mission.tasks import Task
 from muster.verification.measure import MeasuredRoute
 from muster.verification.no_schedule import Rising, cycle_fault
-from muster.verification.schedule_nodes import Bound, Links, Name, Node, names_of
-from muster.verification.station_queues import Stations, Turn
+from muster.verification.schedule_nodes import Bound, Links, Node, names_of
+from muster.verification.station_queues import Name, Stations, Turn
 from muster.verification.verdict import Violation
 
 ROUNDING = 1e-9
@@ -137,7 +136,15 @@ class _Graph:
             self._follow_routes()
             return self._found()
         self._link_nodes()
-        stated = self.stations.stated()
+        order = self._order({})
+        if isinstance(order, Deadlock):
+            return order
+        if not self.queues:
+            return self._least(order)
+        return self._with_stations()
+
+    def _with_stations(self) -> Schedule | Deadlock:
+        stated = self.stations.stated(self._before({}))
         order = self._order(stated)
         if isinstance(order, Deadlock):
             return order
@@ -189,37 +196,7 @@ class _Graph:
         def begin(name: Name) -> None:
             self.begin[name] = self._earliest(name)
 
-        return self._in_turn(stated, self._arrives, begin)
-
-    def _in_turn(
-        self,
-        stated: Mapping[str, Sequence[Turn]],
-        arrives: Callable[[Turn], float],
-        begin: Callable[[Name], None] = lambda _: None,
-    ) -> dict[str, list[Turn]]:
-        """The order in which each station serves, if the begins of stops are gone through one after another.
-
-        Whoever is first of all that wait anywhere is served next: what has not arrived yet waits for one of these, and
-        arrives later.
-        """
-        sorter = TopologicalSorter(self._before(stated))
-        sorter.prepare()
-        served: dict[str, list[Turn]] = {name: list(turns) for name, turns in stated.items()}
-        waiting: list[tuple[float, tuple[int, int], Turn]] = []
-        while sorter.is_active():
-            ready = list(sorter.get_ready())
-            for name in ready:
-                if isinstance(name, Turn) and name.station not in stated:
-                    heapq.heappush(waiting, (arrives(name), self.stations.rank(name), name))
-                    continue
-                begin(name)
-                sorter.done(name)
-            if not ready:
-                turn = heapq.heappop(waiting)[-1]
-                served.setdefault(turn.station, []).append(turn)
-                begin(turn)
-                sorter.done(turn)
-        return served
+        return self.stations.in_turn(self._before(stated), stated, self._arrives, begin)
 
     def _delayed_by_lags(
         self, orders: Mapping[str, Sequence[Turn]], stated: Mapping[str, Sequence[Turn]]
@@ -234,7 +211,7 @@ class _Graph:
                 return order
             found = self._least(order)
             self._go_through(order)
-            by_arrival = self._in_turn(stated, self._arrives)
+            by_arrival = self.stations.in_turn(self._before(stated), stated, self._arrives)
             if by_arrival == orders:
                 return found
             orders = by_arrival

@@ -7,10 +7,7 @@ from dataclasses import dataclass, field
 
 from muster.mission.tasks import Task
 from muster.verification.measure import MeasuredRoute, Step
-from muster.verification.station_queues import Turn
-
-Name = str | Turn
-"""Of a stop: the id of a task, or the visit of a station."""
+from muster.verification.station_queues import Name, Turn
 
 
 def names_of(route: MeasuredRoute) -> list[Name]:

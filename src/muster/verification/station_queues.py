@@ -7,8 +7,10 @@ robot uses a slot from the begin to the end of its service, and none where that 
 from __future__ import annotations
 
 import heapq
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from graphlib import TopologicalSorter
 from typing import NamedTuple
 
 from muster.mission.plan import tie_order
@@ -21,6 +23,12 @@ class Turn(NamedTuple):
     station: str
     robot: str
     place: int
+
+
+Name = str | Turn
+"""Of a stop: the id of a task, or the visit of a station."""
+
+Graph = Mapping[Name, set[Name]]
 
 
 @dataclass
@@ -75,18 +83,65 @@ class Stations:
             found.setdefault(turn.station, []).append(turn)
         return found
 
-    def stated(self) -> dict[str, list[Turn]]:
-        """The visits of each station all of whose begins the plan states, in that order."""
-        return {
-            station: sorted(turns, key=self._stated_turn)
+    def stated(self, before: Graph) -> dict[str, list[Turn]]:
+        """The visits of each station all of whose begins the plan states, in that order.
+
+        Ties go by arrivals and ids of robots, where `before` does not say that one visit leads to the other.
+        """
+        known = {
+            station: turns
             for station, turns in self.by_station().items()
             if all(self.visits[turn].call.turn is not None for turn in turns)
         }
+        if not known:
+            return {}
+        gone = self.in_turn(before, {}, self._stated_turn)
+        return {station: sorted(gone[station], key=self._stated_turn) for station in known}
 
-    def _stated_turn(self, turn: Turn) -> tuple[tuple[float, float], int, int]:
-        stated = self.visits[turn].call.turn
-        assert stated is not None
-        return stated, *self.rank(turn)
+    def _stated_turn(self, turn: Turn) -> tuple[float, float]:
+        return self.visits[turn].call.turn or (math.inf, math.inf)
+
+    def in_turn(
+        self,
+        before: Graph,
+        known: Mapping[str, Sequence[Turn]],
+        arrives: Callable[[Turn], float | tuple[float, float]],
+        begin: Callable[[Name], None] = lambda _: None,
+    ) -> dict[str, list[Turn]]:
+        """The order in which each station serves, if all stops begin one after another.
+
+        Whoever is first of all that wait anywhere is served next: what has not arrived yet waits for one of these, and
+        arrives later.
+
+        Parameters
+        ----------
+        before
+            for each node those that begin before it, without a cycle.
+        known
+            the orders that are known, which `before` keeps.
+        arrives
+            what visits of the other stations are sorted by, once all before them has begun.
+        begin
+            is called for each node in turn.
+        """
+        sorter = TopologicalSorter(before)
+        sorter.prepare()
+        served = {station: list(turns) for station, turns in known.items()}
+        waiting: list[tuple[float | tuple[float, float], tuple[int, int], Turn]] = []
+        while sorter.is_active():
+            ready = sorter.get_ready()
+            for name in ready:
+                if isinstance(name, Turn) and name.station not in known:
+                    heapq.heappush(waiting, (arrives(name), self.rank(name), name))
+                    continue
+                begin(name)
+                sorter.done(name)
+            if not ready:
+                turn = heapq.heappop(waiting)[-1]
+                served.setdefault(turn.station, []).append(turn)
+                begin(turn)
+                sorter.done(turn)
+        return served
 
     def rank(self, turn: Turn) -> tuple[int, int]:
         """What breaks ties between visits: ids of robots in their order, then places in a route."""
