@@ -26,7 +26,7 @@ def _between(points, number, time):
     if number == len(points):
         return points[-1][1]
     (low, energy), (high, more) = points[number - 1], points[number]
-    return energy if high <= low else energy + (more - energy) * (time - low) / (high - low)
+    return energy if high <= low or more == energy else energy + (more - energy) * (time - low) / (high - low)
 
 
 def shifted(points, seconds, energy):

@@ -38,6 +38,7 @@ class _Maker:
             timing="constant",
         )
         tasks = self._in_order(tasks)
+        random.shuffle(tasks)
         stations = [self._station(k) for k in range(random.choice((0, 1, 1, 2, 2, 3)))]
         return Mission(
             name="carried", rules=rules, robots=tuple(robots), tasks=tuple(tasks), stations=tuple(stations)
@@ -108,7 +109,6 @@ class _Maker:
                 tasks[k] = replace(tasks[k], load=self._amount(1, 3))
                 load = tasks[k + 1].load if self.random.random() < 0.2 else None
                 tasks[k + 1] = replace(tasks[k + 1], delivers=tasks[k].id, load=load)
-        self.random.shuffle(tasks)
         return tasks
 
     def _in_order(self, tasks):

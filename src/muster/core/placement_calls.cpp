@@ -88,6 +88,12 @@ void Placement::judge_candidates() {
         score += InsertionScore::kTaken * longer + std::max(over, candidate.ends + longer - peak_) - over;
         break;
       }
+      case Objective::average:
+        score = called.extra - calls_->extra(robot);
+        break;
+      case Objective::lateness:
+        score = std::max(score, called.extra - calls_->extra(robot)) + InsertionScore::kTie * more;
+        break;
       default:
         score += more;
     }

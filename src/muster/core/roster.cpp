@@ -163,9 +163,17 @@ double Roster::arrivals() const {
   std::vector<double> arrival(problem_.tasks(), 0.0);
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     const auto& route = timeline_.route(robot);
+    const std::span<const Call> calls = calls_ ? std::span<const Call>(calls_->calls(robot)) : std::span<const Call>();
+    std::size_t next = 0;
     double usage = 0.0;
     for (std::size_t at = 1; at + 1 < route.size(); ++at) {
-      const int from = timeline_.visit(route[at - 1]).place, task = timeline_.visit(route[at]).place;
+      int from = timeline_.visit(route[at - 1]).place;
+      const int task = timeline_.visit(route[at]).place;
+      for (; next < calls.size() && calls[next].at + 1 == static_cast<int>(at); ++next) {
+        const int there = problem_.place_of_station(calls[next].station);
+        usage += problem_.travel_usage(robot, from, there);
+        from = there;
+      }
       usage += problem_.travel_usage(robot, from, task);
       arrival[task] = std::max(arrival[task], usage);
       usage += problem_.usage_is_time() ? timeline_.work_of(task) : problem_.work_usage(robot, task);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace muster {
@@ -11,6 +12,7 @@ namespace {
 constexpr double kRounding = 1e-12;
 constexpr std::size_t kMostLabels = 16;  // at a stop
 constexpr std::size_t kMostRemembered = 1 << 20;
+constexpr int kFewStations = 3;  // of which all pairs are tried on the way to a stop
 
 }  // namespace
 
@@ -25,6 +27,7 @@ StationCalls::StationCalls(const Problem& problem)
     : problem_(problem),
       in_time_(problem.objective() == Objective::makespan || problem.objective() == Objective::lateness),
       unloads_(problem.unloads_at_stations()),
+      has_few_(problem.stations() <= kFewStations),
       routes_(problem.robots()) {}
 
 bool StationCalls::measure(int robot, std::span<const int> route, std::span<const double> works) {
@@ -36,7 +39,7 @@ bool StationCalls::measure(int robot, std::span<const int> route, std::span<cons
   begin(robot, own.labels);
   own.called = run(robot, own.labels, own.tasks, works);
   if (own.called.usage == kNever) return false;
-  trace(robot, own, best_of(own.labels), works);
+  trace(robot, own, best_of(robot, own.labels), works);
   return true;
 }
 
@@ -161,15 +164,16 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
     if (!cross(robot, labels, from, rest[k], rest_[k], rest_[k + 1])) return {kNever, kNever};
     from = rest[k];
   }
+  last_task_ = from;
   const bool moves = !rest.empty() || stop > 0;
   if (moves && problem_.must_end(robot) && !cross(robot, labels, from, problem_.end(robot), rest_[rest.size()], 0.0)) {
     return {kNever, kNever};
   }
-  const int best = best_of(labels);
+  const int best = best_of(robot, labels);
   const Label& last = labels.all[best];
   if (moves && last.frontier.first().time > problem_.available_until(robot) * (1.0 + kRounding))
     return {kNever, kNever};
-  return {last.usage, last.frontier.first().time};
+  return {last.usage, end_of(robot, labels, best), last.extra};
 }
 
 void StationCalls::measure_rest(int robot, int from, std::span<const int> rest, std::span<const double> works) {
@@ -202,18 +206,16 @@ bool StationCalls::cross(int robot, Labels& labels, int from, int to, double res
   const auto [first, last] = labels.at_stop.back();
   const bool is_task = to < problem_.tasks();
   layer_ = static_cast<int>(labels.all.size());
-  std::vector<int>& current = current_;
-  current.clear();
+  current_.clear();
   // Labels of stations stand before those of the stop.
   for (int parent = first; parent < last; ++parent) {
     if (!runs_short(robot, labels, labels.all[parent], rest_before)) continue;
     for (const int station : stations_between(robot, from, to)) {
       const int called = call(robot, labels, parent, from, station);
-      if (called >= 0) current.push_back(called);
+      if (called >= 0) current_.push_back(called);
     }
   }
   const double needed = is_task ? std::min(rest_after, least_onward(robot, to)) : 0.0;
-  std::vector<Label> arrived;
   const auto settle = [&] {
     layer_ = static_cast<int>(labels.all.size());
     for (int parent = first; parent < last; ++parent) arrive(robot, labels, parent, from, to, rest_after);
@@ -221,30 +223,39 @@ bool StationCalls::cross(int robot, Labels& labels, int from, int to, double res
       arrive(robot, labels, parent, problem_.place_of_station(labels.all[parent].station), to, rest_after);
     }
   };
-  places_ = current;
+  const double beyond = rest_before - problem_.travel_usage(robot, from, to);
+  places_ = current_;
+  if (has_few_) call_again(robot, labels, to, beyond);
   settle();
-  for (int depth = 1; depth <= problem_.stations(); ++depth) {
+  for (int depth = has_few_ ? 2 : 1; depth <= problem_.stations(); ++depth) {
     const bool well = std::any_of(labels.all.begin() + layer_, labels.all.end(), [&](const Label& label) {
       return label.frontier.last().energy >= needed * (1.0 - kRounding);
     });
-    if (well || current.empty()) break;
+    if (well || current_.empty()) break;
     labels.all.resize(layer_);
-    deeper_.clear();
-    for (const int parent : current) {
-      const int place = problem_.place_of_station(labels.all[parent].station);
-      for (int station = 0; station < problem_.stations(); ++station) {
-        if (station == labels.all[parent].station || !serves(robot, problem_.station(station))) continue;
-        const int called = call(robot, labels, parent, place, station);
-        if (called >= 0) deeper_.push_back(called);
-      }
-    }
-    if (deeper_.size() > kMostLabels * 4) deeper_.resize(kMostLabels * 4);
-    current = deeper_;
-    places_.insert(places_.end(), current.begin(), current.end());
+    call_again(robot, labels, to, beyond);
     settle();
   }
   labels.at_stop.emplace_back(layer_, static_cast<int>(labels.all.size()));
   return layer_ < static_cast<int>(labels.all.size());
+}
+
+// From the stations where the robot called last to all others.
+void StationCalls::call_again(int robot, Labels& labels, int to, double beyond) {
+  deeper_.clear();
+  for (const int parent : current_) {
+    const int last = labels.all[parent].station, place = problem_.place_of_station(last);
+    const double rest = problem_.travel_usage(robot, place, to) + beyond;
+    if (!runs_short(robot, labels, labels.all[parent], rest)) continue;
+    for (int station = 0; station < problem_.stations(); ++station) {
+      if (station == last || !serves(robot, problem_.station(station))) continue;
+      const int called = call(robot, labels, parent, place, station);
+      if (called >= 0) deeper_.push_back(called);
+    }
+  }
+  if (deeper_.size() > kMostLabels * 4) deeper_.resize(kMostLabels * 4);
+  current_ = deeper_;
+  places_.insert(places_.end(), current_.begin(), current_.end());
 }
 
 // Whether a robot with this label cannot do the rest of the route without a call.
@@ -272,6 +283,8 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
     add(labels, std::move(label));
     return true;
   }
+  const Objective objective = problem_.objective();
+  if (objective == Objective::average) label.extra += label.usage;
   const double usage = work_usage(robot, to, works_);
   const double takes = std::max(works_[to], problem_.work_time(robot, to));
   label.usage += usage;
@@ -290,6 +303,9 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
     done.frontier.shift(takes, drains ? usage : 0.0);
     if (drains) done.frontier.keep_from(slack);
     if (!done.frontier.empty()) {
+      if (objective == Objective::lateness) {
+        done.extra += problem_.priority(to) * std::max(0.0, done.frontier.first().time - problem_.due(to));
+      }
       add(labels, std::move(done));
       any = true;
     }
@@ -311,7 +327,7 @@ int StationCalls::call(int robot, Labels& labels, int parent, int from, int numb
   const bool drains = full < kNever;
   label.frontier.shift(problem_.travel_time(robot, from, place), drains ? way : 0.0);
   if (drains) label.frontier.keep_from(-kRounding * full);
-  if (label.frontier.empty()) return -1;
+  if (label.frontier.empty() || !changes(robot, labels, label, station)) return -1;
   if (drains && station.swap_s >= 0.0) {
     label.frontier = Frontier(label.frontier.first().time + station.swap_s, full);
   } else if (drains && station.charge > 0.0 && station.partial) {
@@ -322,6 +338,13 @@ int StationCalls::call(int robot, Labels& labels, int parent, int from, int numb
   if (unloads_ && station.unloads) label.unloaded = static_cast<int>(labels.at_stop.size()) - 1;
   labels.all.push_back(std::move(label));
   return static_cast<int>(labels.all.size()) - 1;
+}
+
+// Whether anything is different after a visit of a station.
+bool StationCalls::changes(int robot, const Labels& labels, const Label& label, const Station& station) const {
+  const double full = problem_.battery(robot);
+  if (full < kNever && station.gives_energy() && label.frontier.first().energy < full) return true;
+  return unloads_ && station.unloads && label.unloaded != static_cast<int>(labels.at_stop.size()) - 1;
 }
 
 // Whether a load is above what the robot carries, or below nothing, after a stop.
@@ -340,7 +363,8 @@ bool StationCalls::overloaded(int robot, const Labels& labels, const Label& labe
 void StationCalls::add(Labels& labels, Label&& label) {
   const auto begin = labels.all.begin() + layer_;
   const auto covers = [&](const Label& a, const Label& b) {
-    return a.usage <= b.usage * (1.0 + kRounding) && a.unloaded == b.unloaded && a.frontier.covers(b.frontier);
+    return a.usage <= b.usage * (1.0 + kRounding) && a.extra <= b.extra * (1.0 + kRounding) &&
+           a.unloaded == b.unloaded && a.frontier.covers(b.frontier);
   };
   if (std::any_of(begin, labels.all.end(), [&](const Label& other) { return covers(other, label); })) return;
   labels.all.erase(std::remove_if(begin, labels.all.end(), [&](const Label& other) { return covers(label, other); }),
@@ -360,18 +384,35 @@ void StationCalls::add(Labels& labels, Label&& label) {
   labels.all.erase(worst);
 }
 
-int StationCalls::best_of(const Labels& labels) const {
+int StationCalls::best_of(int robot, const Labels& labels) const {
   const auto [first, last] = labels.at_stop.back();
   int best = first;
   const auto key = [&](int k) {
     const Label& label = labels.all[k];
-    const double time = label.frontier.first().time;
-    return in_time_ ? std::pair(time, label.usage) : std::pair(label.usage, time);
+    const double time = end_of(robot, labels, k);
+    return in_time_ ? std::tuple(label.extra, time, label.usage) : std::tuple(label.extra, label.usage, time);
   };
   for (int k = first + 1; k < last; ++k) {
     if (key(k) < key(best)) best = k;
   }
   return best;
+}
+
+// Whether the objective counts no time after the last task, and the robot may charge then.
+bool StationCalls::ends_before_return(int robot) const {
+  return problem_.objective() == Objective::makespan && !problem_.makespan_includes_return() &&
+         problem_.must_end(robot) && problem_.available_until(robot) == kNever;
+}
+
+// When a route with this last label ends, as far as the makespan counts it.
+double StationCalls::end_of(int robot, const Labels& labels, int number) const {
+  const Label& last = labels.all[number];
+  if (!ends_before_return(robot) || last.parent < 0 || labels.at_stop.size() < 2) return last.frontier.first().time;
+  int next = problem_.end(robot), k = last.parent;
+  for (; labels.all[k].station >= 0; k = labels.all[k].parent) next = problem_.place_of_station(labels.all[k].station);
+  const Frontier& frontier = labels.all[k].frontier;
+  if (problem_.battery(robot) == kNever) return frontier.first().time;
+  return frontier.time_of(problem_.travel_usage(robot, last_task_, next));
 }
 
 // --- Stations --------------------------------------------------------------------------------------------------------
@@ -416,7 +457,8 @@ std::span<const int> StationCalls::stations_between(int robot, int from, int to)
   for (int station = 0; station < problem_.stations(); ++station) {
     if (!serves(robot, problem_.station(station))) continue;
     bool beaten = false;
-    for (int other = 0; other < problem_.stations() && !beaten && !problem_.has_queues(); ++other) {
+    const bool keeps_all = has_few_ || problem_.has_queues();
+    for (int other = 0; other < problem_.stations() && !beaten && !keeps_all; ++other) {
       beaten = other != station && beats(other, station);
     }
     if (!beaten) found->second.push_back(station);
@@ -475,6 +517,11 @@ void StationCalls::trace(int robot, Route& route, int best, std::span<const doub
     }
     target.time -= seconds;
     target.energy += way;
+    if (parent.station < 0 && position == size && ends_before_return(robot)) {
+      target.energy = way;  // what is charged on the way home makes nothing later
+      target.time = parent.frontier.time_of(way);
+      target.energy = std::max(way, parent.frontier.energy_at(target.time));
+    }
   }
   std::ranges::reverse(left);
   // Forward again, as a level may be above what is needed.

@@ -23,7 +23,8 @@ struct Call {
 // What a route comes to with its calls; usage is infinite where the robot runs short wherever it calls.
 struct Called {
   double usage;
-  double end_s;  // as if it waited for no other robot
+  double end_s;         // as if it waited for no other robot; what the makespan counts
+  double extra = 0.0;   // the sum of what the objective counts of each task: usage on arrival, or lateness
 };
 
 // The calls that a route needs, by labelling: at each stop of the route a robot can have used so much, and have so much
@@ -39,6 +40,7 @@ class StationCalls {
   const std::vector<Call>& calls(int robot) const { return routes_[robot].calls; }
   double usage(int robot) const { return routes_[robot].called.usage; }
   double end_s(int robot) const { return routes_[robot].called.end_s; }
+  double extra(int robot) const { return routes_[robot].called.extra; }
   bool waits(int robot) const;
   void wait(int robot, std::size_t call, double seconds) { routes_[robot].calls[call].waits_s = seconds; }
   void forget_waits(int robot);
@@ -60,6 +62,7 @@ class StationCalls {
     int parent;
     int station;   // where it is; -1: at a stop
     int unloaded;  // the stop after which the robot last unloaded; -1: never
+    double extra = 0.0;
   };
   // Labels of each stop, the start included; those of stations stand between.
   struct Labels {
@@ -85,6 +88,8 @@ class StationCalls {
   bool cross(int robot, Labels& labels, int from, int to, double rest_before, double rest_after);
   bool arrive(int robot, Labels& labels, int parent, int from, int to, double rest_after);
   int call(int robot, Labels& labels, int parent, int from, int station);
+  void call_again(int robot, Labels& labels, int to, double beyond);
+  bool changes(int robot, const Labels& labels, const Label& label, const Station& station) const;
   void add(Labels& labels, Label&& label);
   bool overloaded(int robot, const Labels& labels, const Label& label, int stop) const;
   bool runs_short(int robot, const Labels& labels, const Label& label, double rest) const;
@@ -92,18 +97,20 @@ class StationCalls {
   double work_usage(int robot, int task, std::span<const double> works) const;
   double least_onward(int robot, int from) const;
   std::span<const int> stations_between(int robot, int from, int to);
-  int best_of(const Labels& labels) const;
+  int best_of(int robot, const Labels& labels) const;
+  double end_of(int robot, const Labels& labels, int number) const;
+  bool ends_before_return(int robot) const;
   void trace(int robot, Route& route, int best, std::span<const double> works);
   bool serves(int robot, const Station& station) const;
 
   const Problem& problem_;
-  bool in_time_, unloads_;
+  bool in_time_, unloads_, has_few_;
   std::vector<Route> routes_;  // by robot
   // Of a run.
   std::span<const double> works_;
   std::vector<double> rest_;  // by stop of the rest, usage from there to the end without calls
   std::vector<int> current_, deeper_, places_;
-  int layer_ = 0;
+  int layer_ = 0, last_task_ = -1;
   Labels tried_;
   std::vector<int> sequence_;
   std::unordered_map<std::uint64_t, std::vector<int>> between_;
