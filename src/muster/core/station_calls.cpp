@@ -39,7 +39,7 @@ bool StationCalls::measure(int robot, std::span<const int> route, std::span<cons
   begin(robot, own.labels);
   own.called = run(robot, own.labels, own.tasks, works);
   if (own.called.usage == kNever) return false;
-  trace(robot, own, best_of(robot, own.labels), works);
+  trace(robot, own, best_of(own.labels), works);
   return true;
 }
 
@@ -169,11 +169,12 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   if (moves && problem_.must_end(robot) && !cross(robot, labels, from, problem_.end(robot), rest_[rest.size()], 0.0)) {
     return {kNever, kNever};
   }
-  const int best = best_of(robot, labels);
+  const int best = best_of(labels);
   const Label& last = labels.all[best];
   if (moves && last.frontier.first().time > problem_.available_until(robot) * (1.0 + kRounding))
     return {kNever, kNever};
-  return {last.usage, end_of(robot, labels, best), last.extra};
+  const double end_s = ends_before_return(robot) && moves ? last.extra : last.frontier.first().time;
+  return {last.usage, end_s, last.extra};
 }
 
 void StationCalls::measure_rest(int robot, int from, std::span<const int> rest, std::span<const double> works) {
@@ -280,6 +281,10 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
   if (to >= problem_.tasks()) {
     label.frontier.keep_to(problem_.available_until(robot) * (1.0 + kRounding));
     if (label.frontier.empty()) return false;
+    if (ends_before_return(robot)) {
+      const Frontier& worked = after_work(labels, parent);
+      label.extra = drains ? worked.time_of(needed_after_work(robot, labels, parent)) : worked.first().time;
+    }
     add(labels, std::move(label));
     return true;
   }
@@ -298,8 +303,9 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
     if (opens > latest * (1.0 + kRounding) || opens == kNever) return any;
     Label done = label;
     const double closes = problem_.last_begin_of_window(to, opens);
+    // Who charges for as long as there is time is not late by rounding.
     done.frontier.wait_until(opens);
-    done.frontier.keep_to(std::min(closes, latest) * (1.0 + kRounding));
+    done.frontier.keep_to(std::max(std::min(closes, latest) * (1.0 - kRounding), opens));
     done.frontier.shift(takes, drains ? usage : 0.0);
     if (drains) done.frontier.keep_from(slack);
     if (!done.frontier.empty()) {
@@ -384,12 +390,12 @@ void StationCalls::add(Labels& labels, Label&& label) {
   labels.all.erase(worst);
 }
 
-int StationCalls::best_of(int robot, const Labels& labels) const {
+int StationCalls::best_of(const Labels& labels) const {
   const auto [first, last] = labels.at_stop.back();
   int best = first;
   const auto key = [&](int k) {
     const Label& label = labels.all[k];
-    const double time = end_of(robot, labels, k);
+    const double time = label.frontier.first().time;
     return in_time_ ? std::tuple(label.extra, time, label.usage) : std::tuple(label.extra, label.usage, time);
   };
   for (int k = first + 1; k < last; ++k) {
@@ -404,15 +410,24 @@ bool StationCalls::ends_before_return(int robot) const {
          problem_.must_end(robot) && problem_.available_until(robot) == kNever;
 }
 
-// When a route with this last label ends, as far as the makespan counts it.
-double StationCalls::end_of(int robot, const Labels& labels, int number) const {
-  const Label& last = labels.all[number];
-  if (!ends_before_return(robot) || last.parent < 0 || labels.at_stop.size() < 2) return last.frontier.first().time;
-  int next = problem_.end(robot), k = last.parent;
-  for (; labels.all[k].station >= 0; k = labels.all[k].parent) next = problem_.place_of_station(labels.all[k].station);
-  const Frontier& frontier = labels.all[k].frontier;
-  if (problem_.battery(robot) == kNever) return frontier.first().time;
-  return frontier.time_of(problem_.travel_usage(robot, last_task_, next));
+// What a robot needs where it leaves its last task, to go on to its end by way of this label.
+double StationCalls::needed_after_work(int robot, const Labels& labels, int last) const {
+  double needed = 0.0;
+  int next = problem_.end(robot);
+  for (int k = last; labels.all[k].station >= 0; k = labels.all[k].parent) {
+    const Station& station = problem_.station(labels.all[k].station);
+    const int place = problem_.place_of_station(labels.all[k].station);
+    needed = station.gives_energy() ? 0.0 : needed + problem_.travel_usage(robot, place, next);
+    next = place;
+  }
+  return needed + problem_.travel_usage(robot, last_task_, next);
+}
+
+// The last task's label before the end.
+const Frontier& StationCalls::after_work(const Labels& labels, int last) {
+  int k = last;
+  while (labels.all[k].station >= 0) k = labels.all[k].parent;
+  return labels.all[k].frontier;
 }
 
 // --- Stations --------------------------------------------------------------------------------------------------------
@@ -518,9 +533,10 @@ void StationCalls::trace(int robot, Route& route, int best, std::span<const doub
     target.time -= seconds;
     target.energy += way;
     if (parent.station < 0 && position == size && ends_before_return(robot)) {
-      target.energy = way;  // what is charged on the way home makes nothing later
-      target.time = parent.frontier.time_of(way);
-      target.energy = std::max(way, parent.frontier.energy_at(target.time));
+      // What is charged on the way to the end makes nothing later.
+      const double needed = drains ? needed_after_work(robot, labels, labels.all[best].parent) : 0.0;
+      target.time = parent.frontier.time_of(needed);
+      target.energy = std::max(needed, parent.frontier.energy_at(target.time));
     }
   }
   std::ranges::reverse(left);
