@@ -23,6 +23,7 @@ from muster.allocation.auction_terms import Terms
 from muster.allocation.bids import lack_penalty
 from muster.allocation.latest_ends import LatestEnds
 from muster.allocation.problem import Problem
+from muster.allocation.rules.load import pickups
 from muster.allocation.skill_quality import skill_quality
 from muster.allocation.stop import Stop
 from muster.allocation.working_roster import Routes, WorkingRoster
@@ -47,6 +48,11 @@ class CoalitionBid:
     @property
     def unit(self) -> int:
         return self.insertion.unit
+
+    @property
+    def tasks(self) -> list[int]:
+        """The tasks that are sold: those of the unit, and what is sold with it."""
+        return list(dict.fromkeys(task for task, _, _ in self.insertion.members))
 
     def members(self, task: int) -> list[int]:
         """The robots that would do one of the unit's tasks."""
@@ -90,6 +96,8 @@ class CoalitionAuction:
         self._problem = problem if bid == problem.objective else replace(problem, objective=bid)
         self._terms = terms
         self._latest_ends = LatestEnds(self._problem)
+        unit = problem.timed_rules.unit
+        self._deliver = {unit[j] for j, pickup in enumerate(pickups(problem)) if pickup >= 0}
         self._go_on_from(start)
         self._quality = skill_quality(problem) if terms.quality_weight else np.empty((0, 0))
         self.sales: list[CoalitionSale] = []
@@ -99,8 +107,11 @@ class CoalitionAuction:
         return self._roster.routes
 
     def ready(self) -> list[int]:
-        """The units that can be sold: in no route, and all that they wait for is in routes."""
-        return self._roster.ready()
+        """The units that can be sold: in no route, and all that they wait for is in routes.
+
+        What delivers is sold together with what takes on board.
+        """
+        return [unit for unit in self._roster.ready() if unit not in self._deliver]
 
     def sell(self, stop: Stop, on_bids: OnBids | None = None) -> bool:
         """Sell until nobody bids any more; whether it came so far before it was time to stop."""
@@ -298,14 +309,14 @@ def coalition_name(problem: Problem, robots: list[int]) -> str:
 
 def awards_of(problem: Problem, sale: CoalitionSale) -> Iterator[Award]:
     """How the tasks of a unit came to their robots."""
-    for task in problem.timed_rules.units[sale.won.unit]:
+    for task in sale.won.tasks:
         bids = _named(problem, sale, task)
         robot = coalition_name(problem, sale.won.members(task))
         yield Award.of(sale.round, problem.tasks[task].id, robot, sale.won.price, list(bids.items()))
 
 
 def _entries(problem: Problem, sale: CoalitionSale) -> Iterator[Bid]:
-    for task in problem.timed_rules.units[sale.won.unit]:
+    for task in sale.won.tasks:
         winner = coalition_name(problem, sale.won.members(task))
         for robot, price in _named(problem, sale, task).items():
             yield Bid(sale.round, problem.tasks[task].id, robot, price, winner, sale.won.price)

@@ -22,6 +22,8 @@ def inserted(problem: Problem, routes: Routes) -> Routes:
     refused: set[int] = set()
     while waiting := [unit for unit in roster.ready() if unit not in refused]:
         for unit in sorted(waiting, key=lambda unit: _urgency(problem, unit)):
+            if roster.core.present(unit):
+                continue  # it came with the other one of a transport
             place = roster.best(unit, append_only=False)
             if place is None or not roster.put(place):
                 refused.add(unit)

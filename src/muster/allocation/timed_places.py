@@ -16,6 +16,7 @@ from muster.allocation.bottleneck import fills
 from muster.allocation.problem import Problem
 from muster.allocation.rules import RULES
 from muster.allocation.rules.deadline import too_late
+from muster.allocation.rules.load import partner_of
 from muster.allocation.rules.rule import ROUNDING, InPlan
 from muster.allocation.rules.shift import beyond
 from muster.allocation.rules.window import closed
@@ -81,7 +82,7 @@ class TimedPlaces(InPlan):
         """The place of task j with the least usage of robot i, or why there is none."""
         missing = self._left_out_with(j) or self._left_out_before_partner(j)
         if missing:
-            return Outcome(word="relation", detail=missing)
+            return Outcome(word="relation" if other is None else "load", detail=missing)
         places = self.places(i, j)
         best = min(self._admissible(self.problem, places), key=lambda one: one[1].usages[i], default=None)
         if best is not None:
@@ -205,6 +206,8 @@ class TimedPlaces(InPlan):
         if self.problem.partners[j] is not None:
             return list(self._of_transport(i, j))
         found: list[Place] = []
+        if (other := self._partner(j)) is not None:
+            return self._transports(i, j, other)
         for team in itertools.islice(self._teams(i, j), _MOST_TEAMS):
             gaps = [self._gaps(robot) for robot, _ in team]
             if len(team) == 1:

@@ -156,8 +156,10 @@ class UnitPopulation:
         return member
 
     def _append(self, unit: int, teams: Teams) -> bool:
-        """Append a unit to routes; tells whether it could follow."""
+        """Append a unit to routes; tells whether it could follow, or came with the other one of a transport."""
         roster = self._roster
+        if roster.core.present(unit):
+            return True
         if not roster.core.ready(unit):
             return False
         insertion = roster.best(unit, teams[unit]) if unit in teams else None

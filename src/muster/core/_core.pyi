@@ -357,6 +357,9 @@ class Roster:
     def begin(self, routes: Sequence[Sequence[int]]) -> bool:
         """Take over routes; False if there is no schedule for them."""
 
+    def present(self, unit: int) -> bool:
+        """Whether a unit is in routes."""
+
     def ready(self, unit: int) -> bool:
         """Whether all that a unit waits for is in routes."""
 

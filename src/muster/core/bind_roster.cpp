@@ -72,6 +72,7 @@ void bind_roster(nb::module_& m) {
                      "Routes while an algorithm changes them, where tasks are bound to times, teams and relations.")
       .def(nb::init<const Problem&>(), "problem"_a, nb::keep_alive<1, 2>())
       .def("begin", &Roster::begin, "routes"_a, "Take over routes; False if there is no schedule for them.")
+      .def("present", &Roster::present, "unit"_a, "Whether a unit is in routes.")
       .def("ready", &Roster::ready, "unit"_a, "Whether all that a unit waits for is in routes.")
       .def("fixed", &Roster::fixed, "unit"_a, "Whether a unit stays where it is.")
       .def_prop_ro("absent", &Roster::absent, "The units in no route.")
