@@ -10,7 +10,6 @@ from muster import core
 from muster.allocation.feasibility import least_usage
 from muster.allocation.problem import Problem
 from muster.allocation.rules import InPlan
-from muster.allocation.rules.load import partner_of
 from muster.allocation.timed_places import TimedPlaces, in_plan
 from muster.mission.auction_book import Award, Book
 from muster.mission.plan import Reason, Unassigned

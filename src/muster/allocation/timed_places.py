@@ -16,7 +16,6 @@ from muster.allocation.bottleneck import fills
 from muster.allocation.problem import Problem
 from muster.allocation.rules import RULES
 from muster.allocation.rules.deadline import too_late
-from muster.allocation.rules.load import partner_of
 from muster.allocation.rules.rule import ROUNDING, InPlan
 from muster.allocation.rules.shift import beyond
 from muster.allocation.rules.window import closed
@@ -80,9 +79,10 @@ class TimedPlaces(InPlan):
 
     def _outcome(self, i: int, j: int) -> Outcome:
         """The place of task j with the least usage of robot i, or why there is none."""
-        missing = self._left_out_with(j) or self._left_out_before_partner(j)
-        if missing:
-            return Outcome(word="relation" if other is None else "load", detail=missing)
+        if missing := self._left_out_with(j):
+            return Outcome(word="relation", detail=missing)
+        if missing := self._transport_lacks(i, j):
+            return Outcome(word="load", detail=missing)
         places = self.places(i, j)
         best = min(self._admissible(self.problem, places), key=lambda one: one[1].usages[i], default=None)
         if best is not None:
@@ -102,15 +102,16 @@ class TimedPlaces(InPlan):
                 return f"begins together with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
         return ""
 
-    def _left_out_before_partner(self, j: int) -> str:
-        """What the other task of a transport lacks; empty: nothing."""
-        problem = self.problem
-        own = problem.with_partner(j)
-        for k in own:
-            before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done and b not in own]
-            if k != j and before:
-                return f"is one transport with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
-        return ""
+    def _transport_lacks(self, i: int, j: int) -> str:
+        """What keeps robot i from the other task of a transport; empty: nothing."""
+        problem, other = self.problem, self.problem.partners[j]
+        if other is None:
+            return ""
+        with_it = f"comes with {problem.tasks[other].id}"
+        if not problem.may(i, other) or not self._keeps_relations(i, other):
+            return f"{with_it}, which it cannot do"
+        before = [problem.tasks[k].id for k in problem.prerequisites[other] if k not in self.done and k != j]
+        return f"{with_it}; left out before that: {', '.join(before)}" if before else ""
 
     @staticmethod
     def _admissible(problem: Problem, places: Iterable[Place]) -> list[tuple[Place, core.Inspection]]:
@@ -206,8 +207,6 @@ class TimedPlaces(InPlan):
         if self.problem.partners[j] is not None:
             return list(self._of_transport(i, j))
         found: list[Place] = []
-        if (other := self._partner(j)) is not None:
-            return self._transports(i, j, other)
         for team in itertools.islice(self._teams(i, j), _MOST_TEAMS):
             gaps = [self._gaps(robot) for robot, _ in team]
             if len(team) == 1:
@@ -222,7 +221,7 @@ class TimedPlaces(InPlan):
     def _of_transport(self, i: int, j: int) -> Iterator[Place]:
         """All places of both tasks of a transport."""
         first, second = self.problem.with_partner(j)
-        if not all(self._keeps_relations(i, k) and self.problem.may(i, k) for k in (first, second)):
+        if not self._keeps_relations(i, j):
             return
         route = self.routes[i]
         for at, then in itertools.combinations_with_replacement(self._gaps(i), 2):
