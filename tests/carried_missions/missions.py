@@ -112,7 +112,7 @@ class _Maker:
         return tasks
 
     def _in_order(self, tasks):
-        """Prerequisites where nobody waits for them: times do not count, or there is one robot, whose order they are."""
+        """Prerequisites that nobody waits for: times do not count, or there is one robot, whose order they are."""
         if self.with_times or self.objective in ("makespan", "lateness"):
             return tasks
         for k in range(1, len(tasks)):

@@ -28,7 +28,8 @@ class State:
             a <= b
             for a, b in ((self.usage, other.usage), (self.arrivals, other.arrivals), (self.late, other.late))
         )
-        return least and (self.load, self.pending) == (other.load, other.pending) and frontiers.covers(self.points, other.points)
+        same_goods = (self.load, self.pending) == (other.load, other.pending)
+        return least and same_goods and frontiers.covers(self.points, other.points)
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,8 @@ class RobotRoutes:
         return found
 
     def _start(self):
-        energy = math.inf if self.robot.battery is None else self.robot.battery.level_at_start - self.robot.battery.least
+        battery = self.robot.battery
+        energy = math.inf if battery is None else battery.level_at_start - battery.least
         points = [(self.robot.available_from_s, energy)]
         return State(0.0, points, self._amounts(self.robot.load_at_start), (0.0,) * len(self.goods))
 
@@ -75,7 +77,10 @@ class RobotRoutes:
                 continue
             place = self.tasks[order[-1]].position if order else self.robot.position
             states_there = self._undominated(
-                done for state in states for there in self._ways(state, place, task.position) for done in self._do(there, task)
+                done
+                for state in states
+                for there in self._ways(state, place, task.position)
+                for done in self._do(there, task)
             )
             if not states_there:
                 continue

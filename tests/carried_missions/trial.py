@@ -70,7 +70,8 @@ class Trial:
         self.report.counts["routes"] += 1
         self.report.counts["routes that keep the rules"] += figures is not None
         is_said = inspection.admissible
-        self.report.check(is_said == (figures is not None), f"robot {number}, {order}: {figures}, but {is_said} is said")
+        told = f"robot {number}, {order}: {figures}, but {is_said} is said"
+        self.report.check(is_said == (figures is not None), told)
         if figures is None or not is_said:
             return
         said, true = inspection.objective, self.every.value([figures], len(order))
