@@ -4,6 +4,7 @@ A frontier is a list of points (time, energy), rising in both. Energy rises line
 points have the same time, is constant after the last point, and before the first one the robot is not there.
 """
 
+import itertools
 from bisect import bisect_left, bisect_right
 from math import inf
 
@@ -40,7 +41,7 @@ def time_of(points, least):
         return inf
     if points[0][1] >= least - TINY:
         return points[0][0]
-    for (low, energy), (high, more) in zip(points, points[1:], strict=False):
+    for (low, energy), (high, more) in itertools.pairwise(points):
         if more >= least - TINY:
             if more <= energy or high <= low:
                 return high
@@ -87,7 +88,7 @@ def begun(points, windows, latest):
 def charged(points, rate, full):
     """The frontier after a charge of any length."""
     found = [points[0]]
-    for (low, energy), (high, more) in zip(points, points[1:], strict=False):
+    for (low, energy), (high, more) in itertools.pairwise(points):
         level = found[-1][1]
         slope = (more - energy) / (high - low) if high > low else inf
         if high > low and slope > rate and energy < level < more:
@@ -107,7 +108,7 @@ def capped(points, full):
 
 def _meeting(points, full):
     """The points with the one at which a line comes to a level."""
-    for (low, energy), (high, more) in zip(points, points[1:], strict=False):
+    for (low, energy), (high, more) in itertools.pairwise(points):
         yield low, energy
         if energy < full < more and high > low:
             yield low + (high - low) * (full - energy) / (more - energy), full

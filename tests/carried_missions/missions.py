@@ -40,9 +40,7 @@ class _Maker:
         tasks = self._in_order(tasks)
         random.shuffle(tasks)
         stations = [self._station(k) for k in range(random.choice((0, 1, 1, 2, 2, 3)))]
-        return Mission(
-            name="carried", rules=rules, robots=tuple(robots), tasks=tuple(tasks), stations=tuple(stations)
-        )
+        return Mission(name="carried", rules=rules, robots=tuple(robots), tasks=tuple(tasks), stations=tuple(stations))
 
     def _number(self, low, high):
         return self.random.randint(low, high) if self.whole else self.random.uniform(low, high)

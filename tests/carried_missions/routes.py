@@ -25,8 +25,7 @@ class State:
 
     def covers(self, other):
         least = all(
-            a <= b
-            for a, b in ((self.usage, other.usage), (self.arrivals, other.arrivals), (self.late, other.late))
+            a <= b for a, b in ((self.usage, other.usage), (self.arrivals, other.arrivals), (self.late, other.late))
         )
         same_goods = (self.load, self.pending) == (other.load, other.pending)
         return least and same_goods and frontiers.covers(self.points, other.points)
@@ -178,9 +177,7 @@ class RobotRoutes:
         points = points and frontiers.shifted(points, takes, draws if self.full < math.inf else 0.0)
         if points:
             late = task.priority * max(0.0, points[0][0] - task.due_s) if task.due_s is not None else 0.0
-            done = State(
-                state.usage + draws, points, load, pending, state.arrivals + state.usage, state.late + late
-            )
+            done = State(state.usage + draws, points, load, pending, state.arrivals + state.usage, state.late + late)
             if self._fits(done):
                 yield done
 
