@@ -23,8 +23,8 @@ struct Call {
 // What a route comes to with its calls; usage is infinite where the robot runs short wherever it calls.
 struct Called {
   double usage;
-  double end_s;         // as if it waited for no other robot; what the makespan counts
-  double extra = 0.0;   // the sum of what the objective counts of each task: usage on arrival, or lateness
+  double end_s;        // as if it waited for no other robot; what the makespan counts
+  double extra = 0.0;  // the sum of what the objective counts of each task: usage on arrival, or lateness
 };
 
 // The calls that a route needs, by labelling: at each stop of the route a robot can have used so much, and have so much
