@@ -114,8 +114,8 @@ def test_data_frames(mission, plan, report):
     pytest.importorskip("pandas")
     assert list(mission.to_frame().id) == [task.id for task in mission.tasks]
     assert list(mission.to_frame("robots").id) == [robot.id for robot in mission.robots]
-    with pytest.raises(muster.ParameterError, match="of: stations; expected tasks or robots"):
-        mission.to_frame("stations")
+    with pytest.raises(muster.ParameterError, match="of: maps; expected tasks, robots or stations"):
+        mission.to_frame("maps")
     stops = plan.to_frame()
     assert list(stops.columns) == ["robot", "place", "task", "arrive_s", "begin_s", "end_s"]
     for route in plan.routes:

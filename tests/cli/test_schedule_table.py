@@ -1,3 +1,6 @@
+from tests.carry_charge import battery, charger, judged, mission, robot, task
+
+from muster.cli.plan_tables import print_figures
 from muster.cli.schedule_table import print_schedule
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
@@ -8,8 +11,8 @@ PLAN = Plan(routes=(Route("r", ("a",)), Route("s", ("a", "b"))))
 
 
 def printed(tasks, capsys, **keys):
-    mission = Mission(name="m", robots=ROBOTS, tasks=tasks, **keys)
-    print_schedule(mission, verify(mission, PLAN))
+    given = Mission(name="m", robots=ROBOTS, tasks=tasks, **keys)
+    print_schedule(given, verify(given, PLAN))
     return [line.split() for line in capsys.readouterr().out.splitlines()]
 
 
@@ -29,6 +32,31 @@ def test_times_are_clock_times_where_the_mission_has_a_start(capsys):
 
 
 def test_routes_alone_need_no_schedule(capsys):
-    mission = Mission(name="m", robots=ROBOTS, tasks=(Task(id="a", position=(3, 0)),))
-    print_schedule(mission, verify(mission, Plan(routes=(Route("r", ("a",)),))))
+    given = Mission(name="m", robots=ROBOTS, tasks=(Task(id="a", position=(3, 0)),))
+    print_schedule(given, verify(given, Plan(routes=(Route("r", ("a",)),))))
     assert capsys.readouterr().out == ""
+
+
+def test_rows_of_stations_say_what_is_charged_and_how_much_energy_and_load_there_is_after_each_stop(capsys):
+    given = mission(
+        [robot(battery=battery(30), load_capacity=4)],
+        [task("a", 10, load=3), task("b", 25, delivers="a")],
+        [charger(x=12)],
+    )
+    verdict = judged(given, r="a dock b")
+    print_schedule(given, verdict)
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["r", "a", "10.00", "10.00", "10.00", "20.00", "3"] in lines
+    assert ["r", "[dock]", "12.00", "12.00", "24.00", "12.00", "30.00", "3"] in lines
+    assert ["r", "b", "37.00", "37.00", "37.00", "17.00", "0"] in lines
+    print_figures(verdict)
+    assert "at stations       1 time, 12.00 m charged" in capsys.readouterr().out.splitlines()
+
+
+def test_waiting_for_a_slot_is_waiting(capsys):
+    given = mission(
+        [robot("q", battery=battery(9)), robot("r", battery=battery(9))], [task("a", 6), task("b", 6)], [charger(x=5)]
+    )
+    print_schedule(given, judged(given, q="dock a", r="dock b"))
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["r", "[dock]", "5.00", "10.00", "15.00", "5.00", "5.00", "9.00"] in lines

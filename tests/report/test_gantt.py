@@ -5,12 +5,13 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from tests import carry_charge
 
 from muster.mission.errors import MissingExtraError, MusterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
-from muster.report import plot_gantt, plot_routes
-from muster.report.styles import robot_style
+from muster.report import level_lines, plot_gantt, plot_routes
+from muster.report.styles import SERVICE, robot_style
 from muster.verification import verify
 
 
@@ -171,3 +172,40 @@ def test_without_matplotlib_it_is_said_what_to_install(mission, plan, verdict, m
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(MissingExtraError, match=r"muster-robotics\[plot\]"):
         plot_gantt(mission, verdict)
+
+
+@pytest.fixture
+def charging():
+    """Two robots that charge at a dock with one slot, one after the other; the second has a reserve."""
+    robots = [
+        carry_charge.robot(battery=carry_charge.battery(10)),
+        carry_charge.robot("s", battery=carry_charge.battery(10, reserve=0.1)),
+    ]
+    tasks = [carry_charge.task("a", 8), carry_charge.task("b", 7)]
+    return carry_charge.mission(robots, tasks, [carry_charge.charger(x=6)])
+
+
+def test_service_at_a_station_is_a_bar_of_its_own_colour_and_name(charging, drawn):
+    ax = plot_gantt(charging, carry_charge.judged(charging, r="dock a", s="dock b"))
+    assert [bar[:3] for bar in bars(drawn(ax, "service-r"))] == [(6, 6, 0)]
+    assert [bar[:3] for bar in bars(drawn(ax, "service-s"))] == [(12, 6, 1)]
+    assert [bar[:3] for bar in bars(drawn(ax, "waiting-s"))] == [(6, 6, 1)]
+    assert [bar[:2] for bar in bars(drawn(ax, "travel-s"))] == [(0, 6), (18, 1)]
+    assert to_hex(drawn(ax, "service-r")[0].get_facecolor()[0]).upper() == SERVICE
+    assert [name.get_text() for name in drawn(ax, "name")] == ["[dock]", "a", "[dock]", "b"]
+
+
+def test_the_level_of_a_battery_is_a_line_beneath_the_bars(charging, drawn):
+    ax = plot_gantt(charging, carry_charge.judged(charging, r="dock a", s="dock b"))
+    (level,) = drawn(ax, "level-1")
+    empty, full = (level_lines._height(1, share) for share in (0, 1))
+    times, shares = level.get_xdata(), (np.array(level.get_ydata()) - empty) / (full - empty)
+    np.testing.assert_allclose(np.interp([0, 6, 12, 18, 19], times, shares), [1, 0.4, 0.4, 1, 0.9])
+    assert 1.25 < full < empty < 1.5
+    (reserve,) = drawn(ax, "reserve-1")
+    np.testing.assert_allclose(reserve.get_ydata(), level_lines._height(1, 0.1))
+    assert drawn(ax, "reserve-0") == []
+
+
+def test_without_batteries_there_is_no_level(mission, verdict, drawn):
+    assert drawn(plot_gantt(mission, verdict), "level") == []

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from tests import carry_charge
 
 from muster.mission.errors import MissingExtraError
 from muster.mission.model import Action, Map, Mission, Robot, Rules, Task, Zone
@@ -336,3 +337,33 @@ def test_without_matplotlib_it_is_said_what_to_install(mission, plan, verdict, m
         MissingExtraError, match=r"drawing needs an optional part: pip install 'muster-robotics\[plot\]'"
     ):
         plot_routes(mission, plan, verdict)
+
+
+@pytest.fixture
+def transport():
+    """One robot that carries goods past a dock; a second station is used by nobody."""
+    robots = [carry_charge.robot(battery=carry_charge.battery(10))]
+    tasks = [carry_charge.task("a", 2, load=1), carry_charge.task("b", 9, delivers="a")]
+    return carry_charge.mission(robots, tasks, [carry_charge.charger(x=6), carry_charge.depot(x=3)])
+
+
+def test_routes_pass_through_stations_which_have_a_mark_and_a_name(transport, drawn):
+    verdict = carry_charge.judged(transport, r="a dock b")
+    ax = plot_routes(transport, carry_charge.plan(r="a dock b"), verdict)
+    np.testing.assert_array_equal(drawn(ax, "travel-r")[0].get_xydata(), [(0, 0), (2, 0), (6, 0), (9, 0)])
+    np.testing.assert_array_equal(drawn(ax, "stations")[0].get_xydata(), [(6, 0), (3, 0)])
+    assert [name.get_text() for name in drawn(ax, "station-name")] == ["[dock]", "[depot]"]
+    assert [order.get_text() for order in drawn(ax, "order")] == ["1", "2"]
+    assert {"[station]", "transport"} <= set(legend_of(ax))
+
+
+def test_what_is_carried_is_an_arrow_from_pick_up_to_delivery(transport, drawn):
+    ax = plot_routes(transport, carry_charge.plan(r="a dock b"), carry_charge.judged(transport, r="a dock b"))
+    (arrow,) = drawn(ax, "transport")
+    assert arrow.get_gid() == "transport-a-b"
+    assert arrow.get_linestyle() != "-"
+
+
+def test_without_stations_there_is_no_mark(mission, plan, verdict, drawn):
+    ax = plot_routes(mission, plan, verdict)
+    assert drawn(ax, "stations") == drawn(ax, "transport") == []

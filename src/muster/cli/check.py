@@ -110,7 +110,8 @@ def _print_checked(mission: Mission, lost: tuple[Unassigned, ...], errors: int) 
     from muster.cli.tables import print_table
 
     robots, tasks = counted(len(mission.robots), "robot"), counted(len(mission.tasks), "task")
-    click.echo(f"{mission.name}: {robots}, {tasks}; {counted(errors, 'error') if errors else 'no errors'}")
+    stations = f", {counted(len(mission.stations), 'station')}" if mission.stations else ""
+    click.echo(f"{mission.name}: {robots}, {tasks}{stations}; {counted(errors, 'error') if errors else 'no errors'}")
     if lost:
         rows = [(item.task, r.robot, r.reason, r.detail) for item in lost for r in item.reasons]
         title = f"{counted(len(lost), 'task')} that can never be done"

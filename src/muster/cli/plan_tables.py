@@ -18,7 +18,7 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
     limited = any(route.capacity is not None for route in verdict.routes)
     columns = ["robot", "tasks in order", f"usage [{unit}]", *([f"capacity [{unit}]"] if limited else [])]
     rows = [
-        [r.robot, sequence(r.tasks), number(r.usage), *([number(r.capacity)] if limited else [])]
+        [r.robot, sequence(r.order), number(r.usage), *([number(r.capacity)] if limited else [])]
         for r in verdict.routes
     ]
     title = f"{plan.mission}: {plan.allocator}, seed {plan.seed}"
@@ -69,6 +69,9 @@ def print_figures(verdict: Verdict) -> None:
     click.echo(f"greatest usage    {number(verdict.max_usage, unit)}")
     click.echo(f"makespan          {number(verdict.makespan_s, 's')}")
     click.echo(f"waiting           {number(verdict.waiting_s, 's')}")
+    if verdict.station_visits:
+        charged = f", {number(verdict.charged, unit)} charged" if verdict.charged else ""
+        click.echo(f"at stations       {counted(verdict.station_visits, 'time')}{charged}")
     if verdict.lateness and verdict.objective_name != "lateness":
         click.echo(f"lateness          {number(verdict.lateness, 's')}")
     click.echo(f"equality index    {number(verdict.equality_index)}")

@@ -1,64 +1,81 @@
-"""The table of a plan's schedule: when each robot is at each task. Times are the judge's."""
+"""The table of a plan's schedule: when each robot is at each stop. Times, levels and loads are the judge's."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from muster.cli.tables import number, print_table, sequence
+from muster.mission.goods import shown_amounts
 from muster.mission.model import Mission, Task
 from muster.mission.time_types import clock_text
-from muster.verification import Verdict
+from muster.verification import Stop, Verdict
+
+_NAMES = ("robot", "task", "stop", "with", "load after")
+_ALWAYS = 6  # columns: the others are there where a row has something in them
+
+
+@dataclass(frozen=True)
+class _Context:
+    """What the rows are made from; `members` are the robots of each task."""
+
+    mission: Mission
+    unit: str
+    tasks: Mapping[str, Task]
+    members: Mapping[str, Sequence[str]]
 
 
 def print_schedule(mission: Mission, verdict: Verdict) -> None:
-    """Print the schedule where the mission binds tasks to times or teams; else routes say enough."""
-    if verdict.makespan_s is None or not binds_times(mission):
+    """Print the schedule where the mission binds tasks to times, teams, goods or energy; else routes say enough."""
+    if verdict.makespan_s is None or not (binds_times(mission) or _carries_or_charges(mission)):
         return
-    tasks = {task.id: task for task in mission.tasks}
     members: dict[str, list[str]] = defaultdict(list)
     for route in verdict.routes:
         for visit in route.visits:
             members[visit.task].append(route.robot)
-    rows = []
-    for route in verdict.routes:
-        for visit in route.visits:
-            times = [visit.arrives_s, visit.starts_s, visit.ends_s]
-            others = [robot for robot in members[visit.task] if robot != route.robot]
-            due_s = tasks[visit.task].due_s
-            late = max(0.0, visit.ends_s - due_s) if due_s is not None else 0.0
-            spent = [number(seconds) if seconds else "" for seconds in (visit.starts_s - visit.arrives_s, late)]
-            rows.append(
-                [
-                    route.robot,
-                    visit.task,
-                    *(_time(t, mission) for t in times),
-                    *spent,
-                    sequence(others) if others else "",
-                ]
-            )
-    _print(rows, clock=mission.starts_at is not None)
+    context = _Context(mission, verdict.usage_unit, {task.id: task for task in mission.tasks}, members)
+    _print([_row(context, route.robot, stop) for route in verdict.routes for stop in route.stops], context)
 
 
-def _print(rows: Sequence[Sequence[str]], *, clock: bool) -> None:
-    """Print the rows; without lateness or teams there are no columns for them."""
-    unit = "" if clock else " [s]"
+def _row(context: _Context, robot: str, stop: Stop) -> list[str]:
+    """The cells of a stop."""
+    task = None if stop.is_station else context.tasks[stop.name]
+    others = [] if task is None else [other for other in context.members[task.id] if other != robot]
+    late = max(0.0, stop.ends_s - task.due_s) if task is not None and task.due_s is not None else 0.0
+    spent = [number(seconds) if seconds else "" for seconds in (stop.waits_s, late)]
+    times = [_time(seconds, context.mission) for seconds in (stop.arrives_s, stop.starts_s, stop.ends_s)]
+    levels = ["" if value is None else number(value) for value in (stop.charged, stop.level_after)]
+    load = shown_amounts(stop.load_after) if context.mission.has_goods else ""
+    return [robot, stop.shown, *times, *spent, sequence(others) if others else "", *levels, load]
+
+
+def _print(rows: Sequence[Sequence[str]], context: _Context) -> None:
+    """Print the rows; without lateness, teams, batteries or goods there are no columns for them."""
+    seconds = "" if context.mission.starts_at is not None else " [s]"
     columns = [
         "robot",
-        "task",
-        *(f"{name}{unit}" for name in ("arrives", "begins", "ends")),
+        "stop" if context.mission.stations else "task",
+        *(f"{name}{seconds}" for name in ("arrives", "begins", "ends")),
         "waits [s]",
         "late [s]",
         "with",
+        f"charged [{context.unit}]",
+        f"level after [{context.unit}]",
+        "load after",
     ]
-    used = [k for k in range(len(columns)) if k < 6 or any(row[k] for row in rows)]
+    used = [k for k in range(len(columns)) if k < _ALWAYS or any(row[k] for row in rows)]
     shown = [columns[k] for k in used]
-    right = [name for name in shown if name not in ("robot", "task", "with")]
+    right = [name for name in shown if name not in _NAMES]
     print_table(shown, [[row[k] for k in used] for row in rows], title="schedule", right=right)
 
 
 def _time(seconds: float, mission: Mission) -> str:
     return number(seconds) if mission.starts_at is None else clock_text(seconds, mission.starts_at)
+
+
+def _carries_or_charges(mission: Mission) -> bool:
+    return bool(mission.stations) or mission.has_goods or mission.has_batteries
 
 
 def binds_times(mission: Mission) -> bool:

@@ -74,6 +74,16 @@ class MissionData(Checked):
         return self.rules.travel or ("euclidean" if self.map is None else "map")
 
     @property
+    def has_goods(self) -> bool:
+        """Whether a task takes something on board or puts it down."""
+        return any(task.load is not None or task.delivers is not None for task in self.tasks)
+
+    @property
+    def has_batteries(self) -> bool:
+        """Whether a robot has a battery."""
+        return any(robot.battery is not None for robot in self.robots)
+
+    @property
     def dimensions(self) -> int:
         """2 or 3: how many coordinates the mission's positions have."""
         return len(self.robots[0].position)

@@ -84,17 +84,22 @@ class Mission(MissionData):
             html_line(f"Mission {self.name}: {self._counts}, objective {self.rules.objective}")
             + _html_table("Robots", self.robots, ("type", "position", "work_capacity", "skills"))
             + _html_table("Tasks", self.tasks, ("type", "position", "actuation_cost", "prerequisites"))
+            + (_html_table("Stations", self.stations, ("position", "services", "slots")) if self.stations else "")
         )
 
     @property
     def _counts(self) -> str:
         robots, tasks = len(self.robots), len(self.tasks)
-        return f"{robots} robot{'' if robots == 1 else 's'}, {tasks} task{'' if tasks == 1 else 's'}"
+        counts = f"{robots} robot{'' if robots == 1 else 's'}, {tasks} task{'' if tasks == 1 else 's'}"
+        stations = len(self.stations)
+        return counts if not stations else f"{counts}, {stations} station{'' if stations == 1 else 's'}"
 
-    def to_frame(self, of: Literal["tasks", "robots"] = "tasks") -> DataFrame:
-        """The tasks, or the robots, as a DataFrame with a column for each field; needs the extra `frames`."""
+    def to_frame(self, of: Literal["tasks", "robots", "stations"] = "tasks") -> DataFrame:
+        """The tasks, robots or stations as a DataFrame with a column for each field; needs the extra `frames`."""
+        if of == "stations":
+            return frame_of_records(Station, self.stations)
         if of not in ("tasks", "robots"):
-            raise ParameterError(f"of: {of}; expected tasks or robots")
+            raise ParameterError(f"of: {of}; expected tasks, robots or stations")
         return frame_of_records(Task, self.tasks) if of == "tasks" else frame_of_records(Robot, self.robots)
 
     def save(self, path: str | Path) -> None:
@@ -125,7 +130,7 @@ class Mission(MissionData):
 _SHOWN_IF_USED = (*shown_if_used(Robot), *shown_if_used(Task))
 
 
-def _html_table(title: str, items: Sequence[Robot] | Sequence[Task], columns: Sequence[str]) -> str:
+def _html_table(title: str, items: Sequence[Robot] | Sequence[Task] | Sequence[Station], columns: Sequence[str]) -> str:
     """A table of robots or tasks: their ids, these columns, and those of times and teams that say something."""
     used = [name for name in _SHOWN_IF_USED if any(getattr(item, name, None) for item in items)]
     names = (*columns, *used)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from muster.mission.auction_book import Book
 from muster.mission.data_frames import data_frame
 from muster.mission.html_tables import html_line, html_table
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
+from muster.mission.stations import station_sign
 from muster.mission.text_files import write_text
 
 if TYPE_CHECKING:
@@ -68,6 +69,16 @@ class Route:
     tasks: tuple[str, ...]
     usage: float | None = None
     stops: tuple[RouteStop, ...] = ()
+
+    @property
+    def stations(self) -> frozenset[str]:
+        """The ids of the stations in it, as far as its stops tell."""
+        return frozenset(stop.name for stop in self.stops if stop.is_station)
+
+    @property
+    def order(self) -> tuple[str, ...]:
+        """Its tasks and, in brackets, its stations in order."""
+        return tuple(station_sign(name) if name in self.stations else name for name in self.tasks)
 
     def as_dict(self) -> dict[str, Any]:
         """The route as plan files hold it."""
@@ -170,12 +181,12 @@ class Plan:
         write_text(Path(path), self.text())
 
     def __repr__(self) -> str:
-        done = len({task for route in self.routes for task in route.tasks})
+        done = len({task for route in self.routes for task in route.tasks if task not in route.stations})
         value = "" if self.objective_value is None else f", {self.objective} {self.objective_value:.2f}"
         return f"<Plan of {self.mission or 'a mission'} by {self.allocator or 'hand'}: {done} tasks done{value}>"
 
     def _repr_html_(self) -> str:
-        routes = [(route.robot, " ".join(route.tasks), route.usage) for route in self.routes]
+        routes = [(route.robot, " ".join(route.order), route.usage) for route in self.routes]
         columns = ("robot", "tasks", f"usage ({self.usage_unit})" if self.usage_unit else "usage")
         text = html_line(repr(self)[1:-1]) + html_table("Routes", columns, routes) + self._times_html()
         left_out = [(item.task, ", ".join(sorted({r.reason for r in item.reasons}))) for item in self.unassigned]
@@ -187,26 +198,27 @@ class Plan:
             return ""
         team = teams_of((route.robot, route.tasks) for route in self.routes)
         rows = [
-            (route.robot, task, *map(times.get, STOP_TIMES), ", ".join(one for one in team[task] if one != route.robot))
+            (route.robot, shown, *map(times.get, STOP_TIMES), _with_whom(route, name, team), times["charged"])
             for route in self.routes
-            for task, times in zip(route.tasks, _times_of(route), strict=True)
+            for name, shown, times in zip(route.tasks, route.order, _times_of(route), strict=True)
             if times
         ]
-        return html_table("Times", ("robot", "task", "arrives (s)", "begins (s)", "ends (s)", "with"), rows)
+        stop = "stop" if any(route.stations for route in self.routes) else "task"
+        columns = ("robot", stop, "arrives (s)", "begins (s)", "ends (s)", "with", "charged")
+        used = len(columns) - (not any(row[-1] is not None for row in rows))
+        return html_table("Times", columns[:used], [row[:used] for row in rows])
 
     def to_frame(self) -> DataFrame:
         """A DataFrame with a row for each stop, in the order of the routes; needs the extra `frames`.
 
         Its columns are robot, place in its route from 1, task, and where the plan has times arrive_s, begin_s, end_s;
-        those of a route whose stops are not its tasks are empty.
+        those of a route whose stops are not its tasks are empty. With stops at stations there are station and charged.
         """
-        rows = (
-            {"robot": route.robot, "place": place, "task": task} | times
-            for route in self.routes
-            for place, (task, times) in enumerate(zip(route.tasks, _times_of(route), strict=True), 1)
-        )
-        has_times = any(route.stops for route in self.routes)
-        return data_frame(rows, ("robot", "place", "task", *(STOP_TIMES if has_times else ())))
+        rows = [row for route in self.routes for row in _frame_rows(route)]
+        times = STOP_TIMES if any(route.stops for route in self.routes) else ()
+        to_stations = any(route.stations for route in self.routes)
+        columns = ("robot", "place", "task", *(("station",) if to_stations else ()), *times)
+        return data_frame(rows, (*columns, *(("charged",) if to_stations else ())))
 
 
 def teams_of(routes: Iterable[tuple[str, Iterable[str]]]) -> dict[str, list[str]]:
@@ -218,11 +230,23 @@ def teams_of(routes: Iterable[tuple[str, Iterable[str]]]) -> dict[str, list[str]
     return teams
 
 
+def _frame_rows(route: Route) -> Iterator[dict[str, Any]]:
+    """For each stop of a route the values of a frame's columns."""
+    for place, (name, times) in enumerate(zip(route.tasks, _times_of(route), strict=True), 1):
+        at = {"task": None, "station": name} if name in route.stations else {"task": name, "station": None}
+        yield {"robot": route.robot, "place": place, **at, **times}
+
+
+def _with_whom(route: Route, name: str, team: Mapping[str, Sequence[str]]) -> str:
+    """The other robots of a task's team; nobody at a station."""
+    return "" if name in route.stations else ", ".join(one for one in team[name] if one != route.robot)
+
+
 def _times_of(route: Route) -> list[dict[str, Any]]:
-    """For each task of a route its times; none where the stops are not those of its tasks."""
+    """For each stop of a route its times, and what it charges; none where the stops are not those of its tasks."""
     if tuple(stop.name for stop in route.stops) != route.tasks:
         return [{} for _ in route.tasks]
-    return [{name: getattr(stop, name) for name in STOP_TIMES} for stop in route.stops]
+    return [{name: getattr(stop, name) for name in (*STOP_TIMES, "charged")} for stop in route.stops]
 
 
 def gap(value: float, bound: float) -> float:

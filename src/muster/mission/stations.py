@@ -12,6 +12,11 @@ from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Positi
 SERVICES = ("charge", "swap", "unload")
 
 
+def station_sign(name: str) -> str:
+    """The id of a station as it is shown among ids of tasks: `[dock]`."""
+    return f"[{name}]"
+
+
 @record
 class Battery(Checked):
     """The energy of a robot, in the unit of usage."""

@@ -16,7 +16,7 @@ FALLBACKS = (
 )
 """Families that are looked at, in this order, for characters that the usual font lacks."""
 
-NOTE = "#n: the n-th robot or task\nof the mission, whose id\nno installed font has"
+NOTE = "#n: the n-th robot, task or station\nof the mission, whose id\nno installed font has"
 
 
 class Names:
@@ -24,20 +24,25 @@ class Names:
 
     def __init__(self, mission: Mission) -> None:
         robots, tasks = [robot.id for robot in mission.robots], [task.id for task in mission.tasks]
-        self._families, self._lacking = _fonts_for({*mission.name}.union(*robots, *tasks))
+        stations = [station.id for station in mission.stations]
+        self._families, self._lacking = _fonts_for({*mission.name}.union(*robots, *tasks, *stations))
         self._robots = {name: f"robot #{k}" for k, name in enumerate(robots, start=1) if not self._drawable(name)}
         self._tasks = {name: f"task #{k}" for k, name in enumerate(tasks, start=1) if not self._drawable(name)}
+        self._stations = {name: f"station #{k}" for k, name in enumerate(stations, start=1) if not self._drawable(name)}
 
     @property
     def notes(self) -> tuple[str, ...]:
         """The legend's remarks on the names."""
-        return (NOTE,) if self._robots or self._tasks else ()
+        return (NOTE,) if self._robots or self._tasks or self._stations else ()
 
     def robot(self, name: str) -> str:
         return self._robots.get(name, name)
 
     def task(self, name: str) -> str:
         return self._tasks.get(name, name)
+
+    def station(self, name: str) -> str:
+        return self._stations.get(name, name)
 
     def title(self, name: str) -> str:
         """The mission's own name, with question marks for what no font has."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.report.canvas import add_legend, add_title, alarm_of, note_entries
 from muster.report.fonts import Names
+from muster.report.level_lines import planned_level
 from muster.report.route_ground import drawn_prerequisites
-from muster.report.time_chart import Row, Span, TimeChart, Work, duration, lasting, new_chart_axes
+from muster.report.time_chart import Row, Service, Span, TimeChart, Work, duration, lasting, new_chart_axes
 from muster.report.time_limits import draw_limits
 from muster.verification import RouteFigures, Verdict
 
@@ -24,6 +26,8 @@ def plot_gantt(mission: Mission, verdict: Verdict, *, ax: Axes | None = None) ->
     task's id, and a stroke where it takes no time; travel a thin bar; waiting a hatched one. Time windows are shaded,
     deadlines and due times are strokes, lateness is red, and the bars of a team are linked. The data is in seconds; the
     labels of a long mission are in minutes or hours, and clock times where the mission says when it starts.
+    What a robot does at a station is a bar of its own colour with the station's id in brackets. The level of its
+    battery is a line beneath the bars, from empty to full; its reserve is a dashed one.
 
     Raises
     ------
@@ -36,9 +40,9 @@ def plot_gantt(mission: Mission, verdict: Verdict, *, ax: Axes | None = None) ->
     if makespan_s is None:
         raise MusterError("no schedule to draw: in this plan tasks wait for each other for ever; see muster verify")
     if ax is None:
-        ax = new_chart_axes(len(mission.robots))
+        ax = new_chart_axes(len(mission.robots), levels=mission.has_batteries)
     chart = TimeChart(
-        rows=tuple(map(row_of, verdict.routes)),
+        rows=plan_rows(mission, verdict),
         prerequisites=drawn_prerequisites(mission.tasks),
         until_s=max([makespan_s, *(route.back_s or 0.0 for route in verdict.routes)]),
         lines=((makespan_s, "makespan"),),
@@ -52,20 +56,30 @@ def plot_gantt(mission: Mission, verdict: Verdict, *, ax: Axes | None = None) ->
     return ax
 
 
+def plan_rows(mission: Mission, verdict: Verdict) -> tuple[Row, ...]:
+    """The routes over time, with the levels of batteries."""
+    levels = [
+        None if robot.battery is None else planned_level(route, robot.battery)
+        for robot, route in zip(mission.robots, verdict.routes, strict=True)
+    ]
+    return tuple(replace(row_of(route), level=level) for route, level in zip(verdict.routes, levels, strict=True))
+
+
 def row_of(route: RouteFigures) -> Row:
     """A route over time."""
     return Row(
         robot=route.robot,
         work=tuple(Work(visit.task, visit.starts_s, visit.ends_s) for visit in route.visits),
         travel=_travel(route),
-        waiting=lasting((visit.arrives_s, visit.starts_s) for visit in route.visits),
+        waiting=lasting((stop.arrives_s, stop.starts_s) for stop in route.stops),
+        services=tuple(Service(stop.name, stop.starts_s, stop.ends_s) for stop in route.stops if stop.is_station),
     )
 
 
 def _travel(route: RouteFigures) -> tuple[Span, ...]:
     """When the robot travels, the way to where its route ends included."""
-    leaves = [route.leaves_s, *(visit.ends_s for visit in route.visits)]
-    arrives = [visit.arrives_s for visit in route.visits]
+    leaves = [route.leaves_s, *(stop.ends_s for stop in route.stops)]
+    arrives = [stop.arrives_s for stop in route.stops]
     if route.back_s is not None:
         arrives.append(route.back_s)
     return lasting(zip(leaves, arrives, strict=False))

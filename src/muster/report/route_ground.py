@@ -1,4 +1,4 @@
-"""Below the routes: stems of places in the air, and arrows of prerequisites."""
+"""Below the routes: stems of places in the air, arrows of prerequisites and of what is carried where."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from muster.mission.model import Mission, Task
 from muster.report.route_lines import Places
-from muster.report.styles import FRAME, MOST_ARROWS, PREREQUISITE
+from muster.report.styles import FRAME, MOST_ARROWS, MOST_TRANSPORTS, PREREQUISITE, TRANSPORT
 
 
 def draw_stems(ax: Any, tops: Places, floor: float) -> None:
@@ -40,20 +40,32 @@ def draw_prerequisites(ax: Any, mission: Mission, place_of: dict[str, Places], g
     return [(Line2D([], [], color=PREREQUISITE, linewidth=1.0, marker=9, markersize=5), "prerequisite")]
 
 
-def _arrow(ax: Any, start: Places, end: Places, gap: float) -> Any:
+def drawn_transports(tasks: Iterable[Task]) -> list[tuple[str, str]]:
+    """List pick-ups and their deliveries, by id; none where there are too many to be drawn."""
+    pairs = [(task.delivers, task.id) for task in tasks if task.delivers is not None]
+    return pairs if len(pairs) <= MOST_TRANSPORTS else []
+
+
+def draw_transports(ax: Any, mission: Mission, place_of: dict[str, Places], gap: float) -> list[tuple[Any, str]]:
+    """Draw dashed arrows from pick-ups to deliveries, if they are few; returns the entry for the legend."""
+    from matplotlib.lines import Line2D
+
+    pairs = drawn_transports(mission.tasks)
+    if not pairs:
+        return []
+    look: dict[str, Any] = {"color": TRANSPORT, "linewidth": 0.8, "linestyle": (0, (3, 2))}
+    for pickup, delivery in pairs:
+        arrow = _arrow(ax, place_of[pickup], place_of[delivery], gap, bend=-0.2, **look)
+        arrow.set_gid(f"transport-{pickup}-{delivery}")
+    return [(Line2D([], [], marker=9, markersize=5, **look), "transport")]
+
+
+def _arrow(ax: Any, start: Places, end: Places, gap: float, *, bend: float = 0.12, **own: Any) -> Any:
+    look: dict[str, Any] = {"color": PREREQUISITE, "linewidth": 0.9, "zorder": 1, **own}
     if len(start) == 3:
-        quiver = {"arrow_length_ratio": 0.06, "color": PREREQUISITE, "linewidth": 0.9, "zorder": 1}
-        return ax.quiver(*start, *(end - start), **quiver)
+        return ax.quiver(*start, *(end - start), arrow_length_ratio=0.06, **look)
     from matplotlib.patches import FancyArrowPatch
 
-    look: dict[str, Any] = {
-        "arrowstyle": "-|>",
-        "mutation_scale": 7,
-        "linewidth": 0.9,
-        "color": PREREQUISITE,
-        "zorder": 1,
-    }
-    arrow = FancyArrowPatch(
-        (start[0], start[1]), (end[0], end[1]), shrinkA=gap, shrinkB=gap, connectionstyle="arc3,rad=0.12", **look
-    )
+    look |= {"arrowstyle": "-|>", "mutation_scale": 7, "connectionstyle": f"arc3,rad={bend}"}
+    arrow = FancyArrowPatch((start[0], start[1]), (end[0], end[1]), shrinkA=gap, shrinkB=gap, **look)
     return ax.add_patch(arrow)

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from muster.mission.model import Mission, Point, Robot, Task
+from muster.mission.model import Mission, Point, Robot, Station, Task
 from muster.motion.actions import Impossible, plan
 from muster.motion.path import NoPath
 from muster.verification import RouteFigures, Verdict
@@ -24,9 +24,10 @@ Places = NDArray[np.float64]
 class RobotLines:
     """One robot's route as lines.
 
-    `travel` runs from the start through the tasks, from exit to entry, over a map along the paths that are driven.
+    `travel` runs from the start through tasks and stations, from exit to entry, over a map along the paths that are
+    driven.
     `work` runs along the way points of a task's action, else from its entry through its position to its exit, where
-    these differ. Both are polylines, separated by rows of NaN. `end` is the leg from the last task to where the route
+    these differ. Both are polylines, separated by rows of NaN. `end` is the leg from the last stop to where the route
     must end; it has no rows where the route may end anywhere.
     """
 
@@ -47,10 +48,11 @@ PathFunction = Callable[[Robot, Point, Point], Sequence[Point]]
 def robot_lines(mission: Mission, verdict: Verdict, dimensions: int) -> list[RobotLines]:
     """The lines of all robots, in mission order."""
     path = path_function(mission)
-    tasks = {task.id: task for task in mission.tasks}
+    places_of: dict[str, Task | Station] = {task.id: task for task in mission.tasks}
+    places_of |= {station.id: station for station in mission.stations}
     found = []
     for index, (robot, figures) in enumerate(zip(mission.robots, verdict.routes, strict=True)):
-        route = tuple(tasks[name] for name in figures.tasks)
+        route = tuple(places_of[name] for name in [stop.name for stop in figures.stops] or figures.tasks)
         found.append(_lines_of(index, robot, figures, route, robot.place_at_end(mission.rules), dimensions, path))
     return found
 
@@ -75,21 +77,22 @@ def _lines_of(
     index: int,
     robot: Robot,
     figures: RouteFigures,
-    tasks: tuple[Task, ...],
+    route: tuple[Task | Station, ...],
     end: Point | None,
     dimensions: int,
     path: PathFunction,
 ) -> RobotLines:
     travel, work, here = [[robot.position]], [], robot.position
-    for task in tasks:
-        points = work_points(task, robot)
+    for stop in route:
+        points = (stop.position,) if isinstance(stop, Station) else work_points(stop, robot)
         travel[-1] += path(robot, here, points[0])[1:]
         if len(points) > 1:
-            legs = [path(robot, start, goal) for start, goal in pairwise(points)] if _is_moving(task) else [points]
+            legs = [path(robot, start, goal) for start, goal in pairwise(points)] if _is_moving(stop) else [points]
             work.append([points[0], *(point for leg in legs for point in leg[1:])])
         here = points[-1]
         if points[0] != here:
             travel.append([here])
+    tasks = tuple(stop for stop in route if isinstance(stop, Task))
     return RobotLines(
         index=index,
         robot=robot,
@@ -98,7 +101,7 @@ def _lines_of(
         positions=places((task.position for task in tasks), dimensions),
         travel=_polylines(travel, dimensions),
         work=_polylines(work, dimensions),
-        end=places(path(robot, here, end) if end is not None and tasks else [], dimensions),
+        end=places(path(robot, here, end) if end is not None and route else [], dimensions),
     )
 
 
@@ -108,8 +111,8 @@ def work_points(task: Task, robot: Robot) -> Sequence[Point]:
     return (task.position,) if isinstance(doing, Impossible) else doing.points
 
 
-def _is_moving(task: Task) -> bool:
-    return task.action is not None and task.action.has_geometry
+def _is_moving(stop: Task | Station) -> bool:
+    return isinstance(stop, Task) and stop.action is not None and stop.action.has_geometry
 
 
 def left_out(mission: Mission, verdict: Verdict) -> list[Task]:

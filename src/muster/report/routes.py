@@ -31,8 +31,15 @@ from muster.report.canvas import (
 from muster.report.floor import draw_map, map_corners, map_outlines, wall_places
 from muster.report.fonts import Names
 from muster.report.labels import dot_obstacles, line_obstacles, mark_obstacles, place_labels, text_size
-from muster.report.route_ground import draw_prerequisites, draw_stems, drawn_prerequisites
+from muster.report.route_ground import (
+    draw_prerequisites,
+    draw_stems,
+    draw_transports,
+    drawn_prerequisites,
+    drawn_transports,
+)
 from muster.report.route_lines import Places, RobotLines, left_out, places, robot_lines
+from muster.report.station_marks import draw_stations, station_names
 from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, Style, robot_style
 from muster.verification import Verdict
 
@@ -93,6 +100,7 @@ def _draw(ax: Any, scene: _Scene, plan: Plan, verdict: Verdict) -> None:
     for lines in scene.lines:
         _draw_tasks(ax, lines, scene.detail)
     _draw_left_out(ax, scene)
+    entries += draw_stations(ax, scene.places([station.position for station in scene.mission.stations]))
     _draw_starts(ax, scene)
     limited = any(lines.figures.capacity is not None for lines in scene.lines)
     entries = [*_robot_entries(scene, verdict.usage_unit), *_mark_entries(scene), *entries, *note_entries(scene.names)]
@@ -167,6 +175,7 @@ def _all_points(scene: _Scene) -> list[Point]:
     mission = scene.mission
     points = [robot.position for robot in mission.robots]
     points += [robot.end_position for robot in mission.robots if robot.end_position is not None]
+    points += [station.position for station in mission.stations]
     for task in mission.tasks:
         points += [task.position, task.entry or task.position, task.exit or task.position]
     for lines in scene.lines:
@@ -196,8 +205,9 @@ def _draw_ground(ax: Any, scene: _Scene) -> list[tuple[Any, str]]:
         tops = scene.places([task.position for task in mission.tasks])
         draw_stems(ax, tops, float(ax.get_zlim()[0]))
     place_of = {task.id: scene.places([task.position])[0] for task in mission.tasks}
-    entries = draw_prerequisites(ax, mission, place_of, scene.detail.mark / 2 + 1)
-    return [*entries, *(draw_map(ax, mission.map, scene.image, spatial=spatial) if mission.map is not None else ())]
+    gap = scene.detail.mark / 2 + 1
+    arrows = [*draw_prerequisites(ax, mission, place_of, gap), *draw_transports(ax, mission, place_of, gap)]
+    return [*arrows, *(draw_map(ax, mission.map, scene.image, spatial=spatial) if mission.map is not None else ())]
 
 
 def _stroke(style: Style, width: float) -> dict[str, Any]:
@@ -331,6 +341,7 @@ def _name_places(ax: Any, scene: _Scene) -> None:
                 continue
             gid = f"start-name-{scene.mission.robots[group[0]].id}"
             names.append((position, _group_name(scene, group), {**look, "gid": gid}))
+    names += station_names(scene.mission, scene.names)
     if scene.detail.ids:
         look = {"fontsize": 6.5, "color": QUIET_TEXT, "zorder": 4}
         names += [
@@ -358,10 +369,14 @@ def _obstacles(ax: Any, scene: _Scene) -> Places:
     """Collect what names should not cover: routes, marks of tasks, starts, the outlines of walls and zones."""
     radius = scene.detail.mark / 2
     tasks = to_points(ax, scene.places([task.position for task in scene.mission.tasks]))
-    starts = to_points(ax, scene.places([robot.position for robot in scene.mission.robots]))
+    others = [*(robot.position for robot in scene.mission.robots), *(one.position for one in scene.mission.stations)]
+    starts = to_points(ax, scene.places(others))
     lines = [line for lines in scene.lines for line in (lines.travel, lines.work, lines.end) if len(line)]
     at = {task.id: task.position for task in scene.mission.tasks}
-    lines += [scene.places([at[before], at[after]]) for before, after in drawn_prerequisites(scene.mission.tasks)]
+    lines += [
+        scene.places([at[before], at[after]])
+        for before, after in (*drawn_prerequisites(scene.mission.tasks), *drawn_transports(scene.mission.tasks))
+    ]
     if scene.mission.map is not None:
         lines += [scene.places(outline) for outline in map_outlines(scene.mission.map)]
     walls = scene.places(() if scene.image is None else wall_places(scene.image))

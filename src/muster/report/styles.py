@@ -26,9 +26,17 @@ QUIET_TEXT = "#6B6B6B"
 ALARM = "#B00020"
 TRAFFIC = "#FFE14D"
 """Waiting in traffic, whatever the robot's own colour."""
+SERVICE, SERVICE_EDGE = "#C9E8B5", "#3F7D20"
+"""What robots do at stations, whatever the robot's own colour, and the mark of a station."""
+LEVEL = "#2E2E2E"
+"""The level of a battery."""
+TRANSPORT = "#8064A2"
+"""From where something is taken on board to where it is put down."""
 
 MOST_ARROWS = 60
 """Prerequisites that are drawn; where there are more, none is."""
+MOST_TRANSPORTS = 30
+"""Deliveries whose transports are drawn; where there are more, none is."""
 
 
 @dataclass(frozen=True)

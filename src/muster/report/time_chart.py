@@ -9,10 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from muster.mission.stations import station_sign
 from muster.report.canvas import new_axes, quiet_frame, settle, shortened, write
 from muster.report.fonts import Names
 from muster.report.labels import text_size
-from muster.report.styles import DASHED, GRID, PREREQUISITE, QUIET_TEXT, TEXT, TRAFFIC, Style, robot_style
+from muster.report.level_lines import Level, draw_levels
+from muster.report.styles import (
+    DASHED,
+    GRID,
+    PREREQUISITE,
+    QUIET_TEXT,
+    SERVICE,
+    SERVICE_EDGE,
+    TEXT,
+    TRAFFIC,
+    Style,
+    robot_style,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,6 +55,15 @@ class Work:
 
 
 @dataclass(frozen=True)
+class Service:
+    """A charge, swap or unloading at a station: from when until when, seconds."""
+
+    station: str
+    starts_s: float
+    ends_s: float
+
+
+@dataclass(frozen=True)
 class Row:
     """What one robot does; spans of travel and waiting last. `traffic` is waiting in traffic, on the way or at work."""
 
@@ -50,6 +72,8 @@ class Row:
     travel: tuple[Span, ...]
     waiting: tuple[Span, ...]
     traffic: tuple[Span, ...] = ()
+    services: tuple[Service, ...] = ()
+    level: Level | None = None
 
 
 @dataclass(frozen=True)
@@ -76,13 +100,14 @@ class TimeChart:
         self._frame(ax, names)
         for number, row in enumerate(self.rows):
             _draw_row(ax, number, row)
+        levels = draw_levels(ax, [row.level for row in self.rows])
         arrows = self._arrows()
         _draw_arrows(ax, arrows)
         for (at_s, name), style in zip(self.lines, _LINES, strict=False):
             ax.axvline(at_s, color=QUIET_TEXT, linewidth=1.0, linestyle=style, zorder=1.5, gid=name)
-        if sum(len(row.work) for row in self.rows) <= MOST_NAMES:
+        if sum(len(row.work) + len(row.services) for row in self.rows) <= MOST_NAMES:
             _name_tasks(ax, self.rows, names, {arrow.task for arrow in arrows if arrow.row < arrow.to_row})
-        return self._entries(has_arrows=bool(arrows))
+        return [*self._entries(has_arrows=bool(arrows)), *levels]
 
     def _frame(self, ax: Any, names: Names) -> None:
         from matplotlib import rcParams
@@ -123,6 +148,8 @@ class TimeChart:
             (Patch(facecolor=grey.color), "work"),
             (Line2D([], [], color=grey.color, linewidth=2.5, solid_capstyle="butt"), "travel"),
         ]
+        if any(row.services for row in self.rows):
+            entries.append((Patch(**_SERVICE), "[station]"))
         if any(row.waiting for row in self.rows):
             entries.append((Patch(**_waiting(grey)), "waiting"))
         if any(row.traffic for row in self.rows):
@@ -138,9 +165,10 @@ _LINES: tuple[Any, ...] = (DASHED, ":")
 """How the lines of a chart look, in their order."""
 
 
-def new_chart_axes(rows: int) -> Axes:
-    """Make axes for so many rows: of half an inch, lower ones where there are many."""
-    return new_axes(10.0, float(np.clip(rows * np.clip(8.0 / rows, 0.36, 0.5) + 1.2, 2.2, 14.0)))
+def new_chart_axes(rows: int, *, levels: bool = False) -> Axes:
+    """Make axes for so many rows: of half an inch, lower ones where there are many; with levels half as high again."""
+    times = 1.5 if levels else 1.0
+    return new_axes(10.0, float(np.clip(times * rows * np.clip(8.0 / rows, 0.36, 0.5) + 1.2, 2.2, times * 14.0)))
 
 
 def duration(seconds: float) -> str:
@@ -165,12 +193,17 @@ def _draw_row(ax: Any, number: int, row: Row) -> None:
     _bars(ax, number, row.traffic, TRAFFIC_HEIGHT, gid=f"traffic-{name}", **in_traffic)
     look = {"facecolor": style.color, "edgecolor": style.color, "linewidth": 1.2, "zorder": 3}
     _bars(ax, number, work, WORK_HEIGHT, gid=f"work-{name}", **look)
+    services = [(service.starts_s, service.ends_s) for service in row.services]
+    _bars(ax, number, services, WORK_HEIGHT, gid=f"service-{name}", zorder=3, **_SERVICE)
 
 
 def _bars(ax: Any, number: int, spans: Sequence[Span], height: float, **look: Any) -> None:
     if spans:
         lengths = [(start, end - start) for start, end in spans]
         ax.broken_barh(lengths, (number - height / 2, height), **look)
+
+
+_SERVICE: dict[str, Any] = {"facecolor": SERVICE, "edgecolor": SERVICE_EDGE, "linewidth": 0.8}
 
 
 def _waiting(style: Style) -> dict[str, Any]:
@@ -201,6 +234,29 @@ def _draw_arrows(ax: Any, arrows: Sequence[_Arrow]) -> None:
         ax.add_patch(patch)
 
 
+@dataclass(frozen=True)
+class _NamedBar:
+    """A bar and what is written in or beside it: a station's name in brackets, or the ids of tasks."""
+
+    starts_s: float
+    ends_s: float
+    text: str
+    ids: tuple[str, ...]
+    ink: str
+
+
+def _named_bars(row: Row, names: Names, ink: str) -> list[_NamedBar]:
+    """The bars of a row in the order of time; several tasks share one where they take no time and are at one place."""
+    bars = []
+    for (starts_s, ends_s), works in groupby(row.work, key=lambda work: (work.starts_s, work.ends_s)):
+        tasks = tuple(work.task for work in works)
+        bars.append(_NamedBar(starts_s, ends_s, ", ".join(map(names.task, tasks)), tasks, ink))
+    for service in row.services:
+        text = station_sign(names.station(service.station))
+        bars.append(_NamedBar(service.starts_s, service.ends_s, text, (service.station,), TEXT))
+    return sorted(bars, key=lambda bar: bar.starts_s)
+
+
 def _name_tasks(ax: Any, rows: Sequence[Row], names: Names, from_above: Set[str]) -> None:
     """Write ids in bars that are long enough, else above or below them; none where there is no room.
 
@@ -213,13 +269,12 @@ def _name_tasks(ax: Any, rows: Sequence[Row], names: Names, from_above: Set[str]
     beside = height / len(rows) * WORK_HEIGHT / 2 + 0.6 * _FONT
     for number, row in enumerate(rows):
         until = {1: -np.inf, -1: -np.inf}  # where the names above and below the bars end, in points
-        for (starts_s, ends_s), works in groupby(row.work, key=lambda work: (work.starts_s, work.ends_s)):
-            tasks = [work.task for work in works]  # several where they take no time and are at one place
-            name, middle = shortened(", ".join(map(names.task, tasks))), (starts_s + ends_s) / 2
+        for bar in _named_bars(row, names, robot_style(number).ink):
+            name, middle, tasks = shortened(bar.text), (bar.starts_s + bar.ends_s) / 2, bar.ids
             half = text_size(name, _FONT)[0] / 2
             look: dict[str, Any] = {"fontsize": _FONT, "zorder": 4, "gid": f"name-{tasks[0]}"}
-            if (ends_s - starts_s) * points_per_second > 2 * half + 2:
-                write(ax, (middle, number), name, color=robot_style(number).ink, fontweight="bold", **look)
+            if (bar.ends_s - bar.starts_s) * points_per_second > 2 * half + 2:
+                write(ax, (middle, number), name, color=bar.ink, fontweight="bold", **look)
                 continue
             x = middle * points_per_second
             for side in (-1, 1) if not from_above.isdisjoint(tasks) else (1, -1):

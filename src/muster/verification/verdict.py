@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.data_frames import data_frame
 from muster.mission.errors import ParameterError
+from muster.mission.goods import ONLY
 from muster.mission.html_tables import html_line, html_table
 from muster.mission.ignorable_rules import IGNORABLE
+from muster.mission.stations import station_sign
 from muster.mission.value_types import shown
 
 if TYPE_CHECKING:
@@ -76,6 +78,16 @@ class Stop:
     charged: float | None = None
     load_after: Mapping[str, float] = field(default_factory=dict, hash=False)
 
+    @property
+    def shown(self) -> str:
+        """The id, that of a station in brackets."""
+        return station_sign(self.name) if self.is_station else self.name
+
+    @property
+    def waits_s(self) -> float:
+        """How long the robot waits: for a window, a team, a prerequisite or a slot."""
+        return self.starts_s - self.arrives_s
+
 
 @dataclass(frozen=True)
 class RouteFigures:
@@ -98,6 +110,16 @@ class RouteFigures:
     visits: tuple[Visit, ...]
     back_s: float | None
     stops: tuple[Stop, ...] = ()
+
+    @property
+    def order(self) -> tuple[str, ...]:
+        """Its tasks and, in brackets, its stations in order; without a schedule its tasks alone."""
+        return tuple(stop.shown for stop in self.stops) or self.tasks
+
+    @property
+    def charged(self) -> float:
+        """What stations add to the robot's battery, in the unit of usage."""
+        return sum(stop.charged or 0.0 for stop in self.stops)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,7 +163,17 @@ class Verdict:
         """How long robots wait at tasks and stations, in all; None where they deadlock."""
         if self.makespan_s is None:
             return None
-        return sum(stop.starts_s - stop.arrives_s for route in self.routes for stop in route.stops)
+        return sum(stop.waits_s for route in self.routes for stop in route.stops)
+
+    @property
+    def station_visits(self) -> int:
+        """How often robots are at stations."""
+        return sum(stop.is_station for route in self.routes for stop in route.stops)
+
+    @property
+    def charged(self) -> float:
+        """What stations add to all batteries, in the unit of usage."""
+        return sum(route.charged for route in self.routes)
 
     def value(self, name: str | None = None) -> float | None:
         """Return the value of an objective, by default the one judged by; None for a time of a deadlocked plan.
@@ -183,6 +215,8 @@ class Verdict:
             "tasks_total": self.tasks_total,
             "weight_completed": self.weight_completed,
             "reasons_undecided": self.reasons_undecided,
+            "station_visits": self.station_visits,
+            "charged": self.charged,
         }
 
     def __repr__(self) -> str:
@@ -190,7 +224,7 @@ class Verdict:
 
     def _repr_html_(self) -> str:
         wrong = [(v.kind, v.robot, v.task, v.detail) for v in self.violations]
-        routes = [(route.robot, " ".join(route.tasks), route.usage, route.capacity) for route in self.routes]
+        routes = [(route.robot, " ".join(route.order), route.usage, route.capacity) for route in self.routes]
         columns = ("robot", "tasks", f"usage ({self.usage_unit})", "capacity")
         return (
             html_line(self._summary)
@@ -207,6 +241,30 @@ class Verdict:
         return f"{judgement}, {self.tasks_completed} of {self.tasks_total} tasks, {figure}"
 
     def to_frame(self) -> DataFrame:
-        """A DataFrame with a row for each visit of a task: robot, task and times; needs the extra `frames`."""
-        rows = ({"robot": route.robot, **asdict(visit)} for route in self.routes for visit in route.visits)
-        return data_frame(rows, ("robot", *(f.name for f in fields(Visit))))
+        """A DataFrame with a row for each stop; needs the extra `frames`.
+
+        Its columns are robot, task, station, times and the usage at the arrival at a task. A plan that has to do with
+        batteries or goods has their columns too, as `Stop` names them.
+        """
+        rows = [row for route in self.routes for row in _frame_rows(route)]
+        columns = ["robot", "task", "station", *(f.name for f in fields(Visit) if f.name != "task")]
+        used = [name for name in _OF_STOPS if any(row[name] for row in rows)]
+        return data_frame(rows, (*columns, *used))
+
+
+_OF_STOPS = ("arrival_level", "level_after", "charged", "load_after")
+
+
+def _frame_rows(route: RouteFigures) -> Iterator[dict[str, Any]]:
+    """The rows of a route: its stops, those at tasks with the usage at the arrival."""
+    visits = iter(route.visits)
+    for stop in route.stops:
+        usage = None if stop.is_station else next(visits).arrival_usage
+        place = {"task": None, "station": stop.name} if stop.is_station else {"task": stop.name, "station": None}
+        values = {name: value for name, value in asdict(stop).items() if name not in ("name", "is_station")}
+        yield {"robot": route.robot, **place, "arrival_usage": usage, **values, "load_after": _load(stop.load_after)}
+
+
+def _load(by_commodity: Mapping[str, float]) -> float | Mapping[str, float]:
+    """A number where there is nothing, or the only commodity, which has no name."""
+    return by_commodity.get(ONLY, 0.0) if by_commodity.keys() <= {ONLY} else by_commodity

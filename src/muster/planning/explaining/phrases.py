@@ -9,7 +9,9 @@ from muster.allocation.problem import Problem
 from muster.allocation.remedies import smallest
 from muster.allocation.remedy import Remedy
 from muster.mission.auction_book import Award, Book
+from muster.mission.goods import shown_amounts
 from muster.planning.explaining.explanations import OneTask
+from muster.verification import Stop
 
 _MOST_SILENT = 10  # robots that could not bid, and are named
 
@@ -22,10 +24,22 @@ def place(found: OneTask) -> list[str]:
     number = route.tasks.index(found.task) + 1
     with_others = f" with {', '.join(found.team[1:])}" if len(found.team) > 1 else ""
     said = [f"task {found.task} is done by {found.robot}{with_others}, as number {number} of {len(route.tasks)}"]
-    for visit in route.visits[number - 1 : number]:
-        waits = visit.starts_s - visit.arrives_s
-        waiting = f", waits {waits:.2f} s," if waits > 0 else ""
-        said.append(f"{found.robot} arrives at {visit.arrives_s:.2f} s{waiting} and ends at {visit.ends_s:.2f} s")
+    for stop in (stop for stop in route.stops if not stop.is_station and stop.name == found.task):
+        waiting = f", waits {stop.waits_s:.2f} s," if stop.waits_s > 0 else ""
+        said.append(f"{found.robot} arrives at {stop.arrives_s:.2f} s{waiting} and ends at {stop.ends_s:.2f} s")
+        said += _battery_and_load(found, stop)
+    return said
+
+
+def _battery_and_load(found: OneTask, stop: Stop) -> list[str]:
+    """What the battery holds, and what is on board, where the mission has such rules."""
+    mission, unit = found.problem.mission, found.problem.usage_unit
+    said = []
+    if stop.arrival_level is not None and stop.level_after is not None:
+        levels = f"{stop.arrival_level:.2f} {unit} when it arrives and {stop.level_after:.2f} {unit} when it leaves"
+        said.append(f"its battery holds {levels}")
+    if mission.has_goods:
+        said.append(f"it leaves with a load of {shown_amounts(stop.load_after)}")
     return said
 
 

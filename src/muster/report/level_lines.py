@@ -1,0 +1,70 @@
+"""The levels of batteries over time, as lines in the rows of a time chart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from muster.mission.model import Battery
+from muster.report.styles import FAINT, LEVEL
+from muster.verification import RouteFigures, Stop
+
+_FULL, _EMPTY = 0.29, 0.48
+"""Where a full and an empty battery are below the middle of a row, in rows: beneath the bars of work."""
+
+
+@dataclass(frozen=True)
+class Level:
+    """What a battery holds: (seconds, share of the capacity), straight between them; and the share that stays in it."""
+
+    points: tuple[tuple[float, float], ...]
+    reserve: float = 0.0
+
+
+def planned_level(route: RouteFigures, battery: Battery) -> Level | None:
+    """The level over a route by the judge's figures; None where it has no schedule."""
+    if not route.stops or route.stops[0].arrival_level is None:
+        return None
+    points = [(0.0, battery.level_at_start), (route.leaves_s, battery.level_at_start)]
+    for stop in route.stops:
+        points += _at_stop(stop)
+    if route.back_s is not None:
+        points.append((route.back_s, battery.level_at_start + route.charged - route.usage))
+    return Level(tuple((at_s, level / battery.capacity) for at_s, level in points), battery.reserve)
+
+
+def draw_levels(ax: Any, levels: Sequence[Level | None]) -> list[tuple[Any, str]]:
+    """Draw the level in each row, beneath its bars; the entries of a legend."""
+    from matplotlib.lines import Line2D
+
+    if all(level is None for level in levels):
+        return []
+    line: dict[str, Any] = {"color": LEVEL, "linewidth": 1.1}
+    thin: dict[str, Any] = {"color": LEVEL, "linewidth": 0.5, "linestyle": (0, (2, 2))}
+    for number, level in enumerate(levels):
+        if level is not None and level.points:
+            times, shares = zip(*level.points, strict=True)
+            heights = [_height(number, share) for share in shares]
+            ax.plot(times, heights, zorder=3.6, gid=f"level-{number}", **line)
+            ax.fill_between(times, heights, _height(number, 0.0), color=FAINT, linewidth=0, zorder=0.6)
+            if level.reserve:
+                ends = (times[0], times[-1])
+                ax.plot(ends, [_height(number, level.reserve)] * 2, zorder=3.5, gid=f"reserve-{number}", **thin)
+    entries = [(Line2D([], [], **line), "battery, empty to full")]
+    has_reserve = any(level is not None and level.reserve for level in levels)
+    return [*entries, (Line2D([], [], **thin), "its reserve")] if has_reserve else entries
+
+
+def _height(number: int, share: float) -> float:
+    """The place of a share of the capacity in a row; rows are counted downward."""
+    return number + _EMPTY + (_FULL - _EMPTY) * share
+
+
+def _at_stop(stop: Stop) -> Iterator[tuple[float, float]]:
+    """The level from the arrival until the end of a stop."""
+    if stop.arrival_level is None or stop.level_after is None:
+        return
+    yield stop.arrives_s, stop.arrival_level
+    yield stop.starts_s, stop.arrival_level
+    yield stop.ends_s, stop.level_after
