@@ -13,7 +13,7 @@ from muster.exchange.fence import Fence
 from muster.exchange.geographic_features import Survey, survey
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
-from muster.exchange.itinerary import Itinerary, itineraries
+from muster.exchange.itinerary import Itinerary, Passage, itineraries
 from muster.exchange.kml import kml_text
 from muster.exchange.qgc_writer import PlanFiles
 from muster.exchange.separation import meetings
@@ -55,7 +55,7 @@ def csv_file(mission: Mission, verdict: Verdict) -> str:
 
 def sol_file(mission: Mission, verdict: Verdict) -> str:
     """The routes as a solution of vehicle routing, stations in place; the cost is the total usage."""
-    return sol_text(mission, (route.tasks for route in verdict.routes), verdict.total_cost)
+    return sol_text(mission, (tuple(stop.name for stop in route.stops) for route in verdict.routes), verdict.total_cost)
 
 
 def geojson_file(mission: Mission, verdict: Verdict) -> str:
@@ -124,13 +124,20 @@ def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
     for broken in fence.broken:
         how = "does not stay in" if broken == "the boundary" else "leads through"
         yield f"warning: {name}: its way {how} {broken}; its fence will stop it"
+    if stations := dict.fromkeys(passage.station for passage in itinerary.passages if passage.station is not None):
+        yield f"{name}: holds at {', '.join(stations)} for its service; whether it lands there is up to you"
     if any(crosses(plans.earth.spots([*corners, corners[0]])) for corners, _ in fence.polygons):
         told = "autopilots may take the outside of such a fence for its inside"
         yield f"warning: {name}: its fence crosses the meridian of 180 degrees; {told}"
     low = [p for p in itinerary.under_way if p.place[2] <= itinerary.start.place[2]]
     if itinerary.robot.kind == "air" and low:
-        where = f"task {low[0].task}" if low[0].task else "a way point"
-        yield f"warning: {name}: flies no higher than its start at {where}; --altitude M gives a least height"
+        yield f"warning: {name}: flies no higher than its start at {_named(low[0])}; --altitude M gives a least height"
+
+
+def _named(passage: Passage) -> str:
+    if passage.task:
+        return f"task {passage.task}"
+    return f"station {passage.station}" if passage.station else "a way point"
 
 
 def _require_heights(mission: Mission, team: tuple[Itinerary, ...], altitude: float | None) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from muster.exchange.earth import Earth, Spot, anticlockwise
 from muster.exchange.itinerary import Itinerary
-from muster.exchange.task_times import clock, stops_of, task_properties, utc
+from muster.exchange.task_times import clock, station_properties, stops_of, task_properties, utc
 from muster.mission.model import Mission
 from muster.verification import RouteFigures, Verdict
 
@@ -38,17 +38,18 @@ class Feature:
 
 @dataclass(frozen=True)
 class Survey:
-    """The starts of robots, the tasks, the paths of robots with tasks, and the boundary and zones of the map."""
+    """The starts of robots, tasks, stations, the paths of robots with stops, and the map's boundary and zones."""
 
     mission: str
     robots: tuple[Feature, ...]
     tasks: tuple[Feature, ...]
     routes: tuple[Feature, ...]
     areas: tuple[Feature, ...]
+    stations: tuple[Feature, ...] = ()
 
     @property
     def features(self) -> tuple[Feature, ...]:
-        return (*self.areas, *self.routes, *self.tasks, *self.robots)
+        return (*self.areas, *self.routes, *self.stations, *self.tasks, *self.robots)
 
 
 def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth: Earth) -> Survey:
@@ -80,6 +81,9 @@ def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth:
             )
             for t in mission.tasks
         ),
+        stations=tuple(
+            feature("station", s.id, [s.position], station_properties(s, stops.get(s.id, ()))) for s in mission.stations
+        ),
         routes=tuple(
             feature(
                 "route",
@@ -104,6 +108,8 @@ def _times_s(itinerary: Itinerary) -> list[float]:
 def _route_properties(mission: Mission, itinerary: Itinerary, figures: RouteFigures, unit: str) -> Properties:
     leaves_s, ends_s = figures.leaves_s, itinerary.passages[-1].leaves_s
     own = {"robot": figures.robot, "tasks": list(figures.tasks), f"usage_{unit}": figures.usage, "ends_s": ends_s}
+    if any(stop.is_station for stop in figures.stops):
+        own |= {"stops": list(figures.order), f"charged_{unit}": figures.charged}
     times = {"starts_at": clock(mission, leaves_s), "ends_at": clock(mission, ends_s)}
     return own | {name: value for name, value in times.items() if value is not None}
 

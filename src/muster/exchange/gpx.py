@@ -7,6 +7,8 @@ where the mission does not start at a time in a zone.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
 from xml.etree import ElementTree as Tree
 
 from muster.exchange.earth import Spot
@@ -20,7 +22,7 @@ def gpx_text(survey: Survey) -> str:
     """A GPX document."""
     root = Tree.Element("gpx", {"version": "1.1", "creator": "Muster", "xmlns": _NAMESPACE})
     add(add(root, "metadata"), "name", survey.mission)
-    for feature in (*survey.robots, *survey.tasks):
+    for feature in (*survey.robots, *survey.tasks, *survey.stations):
         point = _point(root, "wpt", feature.spots[0], feature)
         add(point, "name", feature.name)
         add(point, "desc", _told(feature))
@@ -28,7 +30,7 @@ def gpx_text(survey: Survey) -> str:
     for number, feature in enumerate(survey.routes, 1):
         route = add(root, "rte")
         add(route, "name", feature.name)
-        add(route, "desc", f"tasks {' '.join(feature.properties['tasks'])}")
+        add(route, "desc", f"tasks {' '.join(feature.properties.get('stops') or feature.properties['tasks'])}")
         add(route, "number", number)
         for k, spot in enumerate(feature.spots):
             _point(route, "rtept", spot, feature, k)
@@ -51,8 +53,17 @@ def _told(feature: Feature) -> str:
     own = feature.properties
     if feature.kind == "robot":
         return f"start of robot {feature.name}"
+    if feature.kind == "station":
+        return _told_of_station(own)
     if not own["robots"]:
         return "left out"
     members = [f"robot {robot}, number {order}" for robot, order in zip(own["robots"], own["orders"], strict=True)]
     late = f", {own['late_s']:.1f} s late" if own.get("late_s") else ""
     return f"{' and '.join(members)}, from {own['starts_s']:.1f} s to {own['ends_s']:.1f} s{late}"
+
+
+def _told_of_station(own: Mapping[str, Any]) -> str:
+    """The description of a station: what it does, and who comes when."""
+    calls = zip(*(own[name] for name in ("robots", "orders", "starts_s", "ends_s")), strict=True)
+    told = [f"robot {r}, number {order}, from {starts:.1f} s to {ends:.1f} s" for r, order, starts, ends in calls]
+    return "; ".join([f"station, {', '.join(own['services'])}", *told])

@@ -15,7 +15,7 @@ from muster.motion.actions import plan as doing
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place
 from muster.motion.robot_paths import RobotPaths
-from muster.verification import RouteFigures, Verdict, Visit
+from muster.verification import RouteFigures, Stop, Verdict
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,11 @@ class Passage:
     place
         metres in the map frame.
     arrives_s, leaves_s
-        seconds of the schedule; between them the robot works, or waits for another robot.
+        seconds of the schedule; between them the robot works, is served, or waits for another robot or for a slot.
     task
         the task done there; None between tasks.
+    station
+        the station at which it is served there; None elsewhere.
     heading
         radians from east, anticlockwise, to which the robot turns there; None: unchanged.
     """
@@ -39,6 +41,7 @@ class Passage:
     leaves_s: float
     task: str | None = None
     heading: float | None = None
+    station: str | None = None
 
     @property
     def stays_s(self) -> float:
@@ -94,12 +97,18 @@ def itineraries(mission: Mission, verdict: Verdict, robot_paths: RobotPaths | No
 
 def _itinerary(mission: Mission, robot: Robot, figures: RouteFigures, tasks: dict[str, Task], way: Way) -> Itinerary:
     passages = [Passage(place(robot.position), 0.0, figures.leaves_s)]
-    for visit in figures.visits:
-        work = work_of(tasks[visit.task], robot, doing, way, LegTimes.in_mission(robot, mission))
+    stations = {station.id: place(station.position) for station in mission.stations}
+    for stop in figures.stops:
+        if stop.is_station:
+            there = stations[stop.name]
+            passages += _travel(mission, robot, passages[-1], there, stop.arrives_s, way)[:-1]
+            passages.append(Passage(there, stop.arrives_s, stop.ends_s, station=stop.name))
+            continue
+        work = work_of(tasks[stop.name], robot, doing, way, LegTimes.in_mission(robot, mission))
         if not isinstance(work, Work):
-            raise _no_way(mission, f"robot {robot.id} at task {visit.task}: {work.reason}")
-        passages += _travel(mission, robot, passages[-1], work.entry, visit.arrives_s, way)[:-1]
-        passages += _work(work, visit)
+            raise _no_way(mission, f"robot {robot.id} at task {stop.name}: {work.reason}")
+        passages += _travel(mission, robot, passages[-1], work.entry, stop.arrives_s, way)[:-1]
+        passages += _work(work, stop)
     end = robot.place_at_end(mission.rules)
     if end is None or figures.back_s is None:
         return Itinerary(robot, tuple(passages), has_end=False)
@@ -118,15 +127,15 @@ def _travel(mission: Mission, robot: Robot, here: Passage, goal: Place, arrives_
     return [Passage(point, time, time) for point, time in zip(places, times, strict=True)]
 
 
-def _work(work: Work, visit: Visit) -> list[Passage]:
+def _work(work: Work, stop: Stop) -> list[Passage]:
     """The passages of a task, in the time that the judge gives the work; at the first the robot may wait."""
-    scale = (visit.ends_s - visit.starts_s) / work.lasts_s if work.lasts_s else 0.0
+    scale = (stop.ends_s - stop.starts_s) / work.lasts_s if work.lasts_s else 0.0
     found = [
-        Passage(point, visit.starts_s + scale * arrives, visit.starts_s + scale * leaves, visit.task, heading)
+        Passage(point, stop.starts_s + scale * arrives, stop.starts_s + scale * leaves, stop.name, heading)
         for point, arrives, leaves, heading in _timed(work)
     ]
-    found[0] = replace(found[0], arrives_s=visit.arrives_s)
-    found[-1] = replace(found[-1], leaves_s=visit.ends_s)
+    found[0] = replace(found[0], arrives_s=stop.arrives_s)
+    found[-1] = replace(found[-1], leaves_s=stop.ends_s)
     return found
 
 

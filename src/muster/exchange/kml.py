@@ -27,7 +27,8 @@ def kml_text(survey: Survey) -> str:
     root = Tree.Element("kml", {"xmlns": _NAMESPACE})
     document = add(root, "Document")
     add(document, "name", survey.mission)
-    groups = (("areas", survey.areas), ("routes", survey.routes), ("tasks", survey.tasks), ("robots", survey.robots))
+    parts = ("areas", "routes", "tasks", "stations", "robots")
+    groups = [(name, getattr(survey, name)) for name in parts if name != "stations" or survey.stations]
     for name, features in groups:
         folder = add(document, "Folder")
         add(folder, "name", name)

@@ -1,4 +1,4 @@
-"""When the tasks of a plan are done, and by whom, as the files of other programs have it."""
+"""When the tasks of a plan are done, by whom, and who is at a station, as the files of other programs have it."""
 
 from __future__ import annotations
 
@@ -6,34 +6,36 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
-from muster.mission.model import Mission, Task
+from muster.mission.goods import Amount, by_commodity, shown_amounts
+from muster.mission.model import Mission, Station, Task
 from muster.mission.plan import teams_of
 from muster.mission.time_types import moment_after
-from muster.verification import Verdict, Visit
+from muster.verification import Stop as TimedStop
+from muster.verification import Verdict
 
 
 @dataclass(frozen=True)
 class Stop:
-    """A robot's visit to a task, the number of it in the route, and the other robots of the task's team."""
+    """A robot at a task or a station, the number of it in the route, and the other robots of the task's team."""
 
     robot: str
     order: int
-    visit: Visit
+    visit: TimedStop
     others: tuple[str, ...]
 
     @property
     def waits_s(self) -> float:
-        return self.visit.starts_s - self.visit.arrives_s
+        return self.visit.waits_s
 
 
 def stops_of(verdict: Verdict) -> dict[str, tuple[Stop, ...]]:
-    """For each task that is done the stops of all robots that do it, in mission order."""
-    visits = [(route.robot, order, visit) for route in verdict.routes for order, visit in enumerate(route.visits, 1)]
-    teams = teams_of((robot, (visit.task,)) for robot, _, visit in visits)
+    """For each task that is done, and each station, the stops of all robots there, in mission order."""
+    visits = [(route.robot, order, stop) for route in verdict.routes for order, stop in enumerate(route.stops, 1)]
+    teams = teams_of((robot, (visit.name,)) for robot, _, visit in visits if not visit.is_station)
     found: dict[str, tuple[Stop, ...]] = {}
     for robot, order, visit in visits:
-        others = tuple(name for name in teams[visit.task] if name != robot)
-        found[visit.task] = (*found.get(visit.task, ()), Stop(robot, order, visit, others))
+        others = tuple(name for name in teams.get(visit.name, ()) if name != robot)
+        found[visit.name] = (*found.get(visit.name, ()), Stop(robot, order, visit, others))
     return found
 
 
@@ -57,9 +59,25 @@ def task_properties(mission: Mission, task: Task, stops: tuple[Stop, ...]) -> di
             "ends_at": clock(mission, ends),
             "late_s": late_s(task, ends),
         }
+    carried = {"load": _load(task.load), "delivers": task.delivers}
     windows = [list(window) for window in task.window_s]
-    found |= {"window_s": windows or None, "deadline_s": task.deadline_s, "due_s": task.due_s}
+    found |= {"window_s": windows or None, "deadline_s": task.deadline_s, "due_s": task.due_s} | carried
     return {name: value for name, value in found.items() if value is not None}
+
+
+def _load(load: Amount | None) -> Any:
+    """What a task takes on board: a number, or amounts in one line."""
+    return shown_amounts(by_commodity(load)) if load is not None and not isinstance(load, float | int) else load
+
+
+def station_properties(station: Station, stops: tuple[Stop, ...]) -> dict[str, Any]:
+    """What a station does, and for each of `robots` that come there when, and what it adds to their batteries."""
+    found: dict[str, Any] = {"services": list(station.services), "slots": station.slots}
+    found |= {"robots": [stop.robot for stop in stops], "orders": [stop.order for stop in stops]}
+    for name in ("arrives_s", "starts_s", "ends_s"):
+        found[name] = [getattr(stop.visit, name) for stop in stops]
+    found["waits_s"] = [stop.waits_s for stop in stops]
+    return found | ({"charged": [stop.visit.charged or 0.0 for stop in stops]} if station.gives_energy else {})
 
 
 def clock(mission: Mission, seconds: float) -> str | None:

@@ -50,9 +50,9 @@ def _bends_from(passages: Sequence[Passage], first: int) -> int:
 
 
 def _is_bend(before: Passage, here: Passage, after: Passage) -> bool:
-    """Whether a robot neither stays, turns, nor begins or ends a task at a passage."""
+    """Whether a robot neither stays, turns, is at a station, nor begins or ends a task at a passage."""
     amid = here.task is None or before.task == here.task == after.task
-    return amid and here.stays_s == 0 and here.heading is None
+    return amid and here.station is None and here.stays_s == 0 and here.heading is None
 
 
 def _corner(before: Place, bends: Sequence[Passage], after: Place, tolerance_m: float) -> Passage | None:
