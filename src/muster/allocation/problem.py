@@ -79,6 +79,7 @@ class Problem:
     known: Measured | None = None  # what the problem of which this is a part knew
     charges: tuple[Charge | None, ...] = ()  # measured, for each robot; empty: none at all
     aboard: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that deliver what it has on board; empty: none
+    levels: tuple[float, ...] = ()  # what each battery holds at first, measured; inf: no battery; empty: as the mission
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
     waiting: Waiting = NO_WAITING  # that is expected on ways
 
@@ -128,6 +129,7 @@ class Problem:
             fixed=fixed,
             charges=charges,
             aboard=tuple(tuple(number_in[j] for j in self.aboard[i]) for i in robots) if self.aboard else (),
+            levels=tuple(self.levels[i] for i in robots) if self.levels else (),
             known=known,
             waiting=self.waiting.part(robots, places),
         )

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from muster.execution.goods_ledger import GoodsLedger, as_amount
+from muster.execution.robot_energy import RobotEnergy
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger, robot_as_it_holds
+from muster.execution.stations import Stations
+from muster.execution.task_ledger import Ledger, moved, robot_as_it_holds
 from muster.execution.task_motion import place
 from muster.execution.team_work import break_off
 from muster.execution.travel import Travel
 from muster.mission.doors import Doors
 from muster.mission.errors import MissionError, ParameterError
-from muster.mission.model import Event, Mission, Robot, Task
+from muster.mission.model import Event, Mission, Point, Robot, Task
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.motion.leg_times import LegTimes
@@ -51,6 +54,8 @@ class Changes:
         the question, for its rules.
     ports
         how robots are reached; a robot that joins has its port here by then.
+    stations, goods
+        of the executor.
     on_doors
         receives the ids of the doors that are closed, when one closes or opens.
     """
@@ -60,6 +65,8 @@ class Changes:
     crew: dict[str, RobotState]
     ports: Mapping[str, RobotPort]
     travel: Travel
+    stations: Stations
+    goods: GoodsLedger
     on_doors: Callable[[Collection[str]], None] = lambda closed: None
     doors: Doors = field(init=False)
 
@@ -93,6 +100,27 @@ class Changes:
             yield from self._delay(self._task(event.delay_task.task), event.delay_task.by_s)
         elif event.door is not None:
             yield from self._turn_door(event, event.door, now)
+        elif event.station_fails is not None:
+            yield from self._fail_station(self._station(event.station_fails), now)
+        elif event.station_returns is not None:
+            yield from self._return_station(self._station(event.station_returns))
+
+    def _fail_station(self, station: str, now: float) -> Iterator[Change]:
+        """Robots that are served there, wait there, or are on the way to it stop; all are planned again."""
+        if station in self.stations.failed:
+            return
+        self.stations.failed.add(station)
+        for state in self.stations.at(station):
+            state.note_energy()
+            state.stop(now)
+        for state in self.crew.values():
+            state.calls = [call for call in state.calls if call.station != station]
+        yield Change("station_fails", {"station": station})
+
+    def _return_station(self, station: str) -> Iterator[Change]:
+        if station in self.stations.failed:
+            self.stations.failed.discard(station)
+            yield Change("station_returns", {"station": station})
 
     def exclude(self, state: RobotState, why: str, now: float, detail: str = "") -> Iterator[Change]:
         """Exclude a robot: its tasks are free, the current one too."""
@@ -105,10 +133,25 @@ class Changes:
         elif state.route and state.route[0] not in self.ledger.starts_s:
             self.ledger.give_up(state.route[0])
         state.stop(now)
+        state.calls = []
         yield Change(why, {"robot": state.robot.id} | ({"reason": detail} if detail else {}))
+        if why == FAILED:
+            yield from self._let_lie(state)
         for task in broken:
             if len(self.ledger.unit(task)) > 1 or self.ledger.tasks[task].is_for_team:
                 yield Change("work_broken_off", {"task": task, "robot": state.robot.id})
+
+    def _let_lie(self, state: RobotState) -> Iterator[Change]:
+        """What a robot that fails has on board lies where it is: tasks that took it on are to be done again there."""
+        at = state.position[: self.mission.dimensions]
+        for item in self.goods.fall(state.robot.id):
+            if item.task is None or item.task not in self.ledger.ends_s:
+                continue
+            self.ledger.reopen(lying(self.ledger.tasks[item.task], at, item.amounts))
+            state.done = [name for name in state.done if name != item.task]
+            state.stops = [name for name in state.stops if name != item.task]
+            data = {"task": item.task, "robot": state.robot.id, "position": list(at), "load": dict(item.amounts)}
+            yield Change("load_lies", data)
 
     def readmit(self, state: RobotState, now: float, reason: str = "") -> Iterator[Change]:
         """Let a robot take part again, from where it is."""
@@ -129,6 +172,7 @@ class Changes:
     def _join(self, robot: Robot, now: float) -> Change:
         self.require_newcomer(robot)
         self.crew[robot.id] = new_robot_state(self.mission, robot, self.ports, now, self.ledger.ignored)
+        self.goods.join(self.crew[robot.id].robot)
         return Change("robot_joins", {"robot": plain(robot)})
 
     def _add(self, task: Task) -> Change:
@@ -156,7 +200,14 @@ class Changes:
         for state in self.crew.values():
             state.route = [name for name in state.route if name != task]
         self.ledger.expire(task, "cancelled")
+        self._cancel_delivery_of(task)
         yield Change("cancel_task", {"task": task})
+
+    def _cancel_delivery_of(self, task: str) -> None:
+        """What is not taken on board cannot be delivered."""
+        for other in self.ledger.open:
+            if other.delivers == task and self.goods.carrier(task) is None:
+                self.ledger.expire(other.id, f"load: {task}, which takes on what it delivers, is cancelled")
 
     def _move(self, task: str, to: tuple[float, ...], now: float) -> Iterator[Change]:
         """Work under way goes on where it is."""
@@ -191,7 +242,7 @@ class Changes:
             for state in self.crew.values():
                 goal = state.points_left[-1] if state.points_left else None
                 state.left = self.travel.way_out(state.robot, state.position, goal) or state.left
-                if not state.out and state.activity in (Activity.DRIVING, Activity.RETURNING):
+                if not state.out and state.activity in (Activity.DRIVING, Activity.RETURNING, Activity.TO_STATION):
                     state.stop(now)
             if opens:
                 self._open_ways()
@@ -200,6 +251,7 @@ class Changes:
     def _open_ways(self) -> None:
         """What stood in the way may do so no more: robots try what they had no way to."""
         self.ledger.try_again()
+        self.stations.cut_off.clear()
         for state in self.crew.values():
             if state.cut_off:
                 state.cut_off = state.at_home = False
@@ -227,6 +279,12 @@ class Changes:
             raise ParameterError(f"robot: {shown(robot)}; expected {' or '.join(self.crew)}")
         return self.crew[robot]
 
+    def _station(self, station: str) -> str:
+        if station not in self.stations.known:
+            expected = " or ".join(self.stations.known) or "a mission with stations"
+            raise ParameterError(f"station: {shown(station)}; expected {expected}")
+        return station
+
     def _task(self, task: str) -> str:
         if task not in self.ledger.tasks:
             raise ParameterError(f"task: {shown(task)}; expected the id of a task that there is by then")
@@ -247,19 +305,32 @@ def new_robot_state(
         raise ParameterError(f"ports: no port for robot {shown(robot.id)}; expected one for each robot")
     home = robot.place_at_end(mission.rules)
     in_time = mission.rules.usage == "time"
+    as_it_holds = robot_as_it_holds(robot, ignored)
     return RobotState(
-        robot_as_it_holds(robot, ignored),
+        as_it_holds,
         ports[robot.id],
         None if home is None else place(home),
         LegTimes.in_mission(robot, mission),
         in_time,
         last_heard_s=now,
         since_s=now,
+        energy=None if as_it_holds.battery is None else RobotEnergy(as_it_holds.battery),
     )
+
+
+def lying(task: Task, at: Point, amounts: Mapping[str, float]) -> Task:
+    """A task that took goods on board which now lie elsewhere: they are to be taken on there.
+
+    What its work had to wait for, and who was to do it together with whom, was kept when it was done first.
+    """
+    has_geometry = task.action is not None and task.action.has_geometry
+    there = moved(replace(task, entry=None, exit=None, action=None if has_geometry else task.action), at)
+    without: dict[str, Any] = {"prerequisites": (), "lags": {}, "window_s": (), "deadline_s": None, "starts_with": ()}
+    return replace(there, load=as_amount(amounts), same_robot_as=(), other_robot_than=(), **without)
 
 
 def may_bring_work(event: Event, *, open_tasks: bool, cut_off: bool = False) -> bool:
     """Whether an event to come can bring work, or a robot for what is open, or one that is cut off to its end."""
     opens = event.door_opens is not None
-    helps = event.robot_joins or event.robot_returns or event.move_task or opens
+    helps = event.robot_joins or event.robot_returns or event.move_task or event.station_returns or opens
     return event.new_task is not None or bool(helps and open_tasks) or (opens and cut_off)

@@ -10,9 +10,14 @@ from typing import Any
 
 from muster.execution.beginning import Beginning, next_begin
 from muster.execution.changes import Change
+from muster.execution.energy_watch import EnergyWatch
+from muster.execution.goods_ledger import GoodsLedger
 from muster.execution.monitor import exceeds
 from muster.execution.peers import Gathering, Peers
 from muster.execution.robot_state import Activity, RobotState
+from muster.execution.station_calls import Call, next_call
+from muster.execution.station_service import StationService
+from muster.execution.stations import AT_STATION
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, Work, along, path_length, travel_s, work_of
 from muster.execution.team_work import break_off
@@ -38,6 +43,8 @@ class Dispatch:
         what a task makes a robot do, and how it gets there.
     emit
         receives every event.
+    goods
+        what robots have on board.
     peers
         the other robots, where they have a say: then a robot stops at its task and asks; None: the ledger alone says
         whether it may begin.
@@ -53,8 +60,12 @@ class Dispatch:
         way: Way,
         emit: Emit,
         peers: Peers | None = None,
+        goods: GoodsLedger | None = None,
     ) -> None:
         self._ledger = ledger
+        self._goods = GoodsLedger() if goods is None else goods
+        self.service: StationService | None = None  # of missions with stations
+        self.energy: EnergyWatch | None = None
         self._crew = crew
         self._beginning = beginning
         self._capacity = capacity
@@ -66,6 +77,8 @@ class Dispatch:
 
     def advance(self, state: RobotState, now: float) -> None:
         """Check whether a robot has arrived, or ended its work."""
+        if self.service is not None:
+            self.service.advance(state, now)
         if state.activity is Activity.DRIVING and state.passed >= state.to_task:
             self._arrive(state, now)
         if state.activity is Activity.WORKING and state.arrived:
@@ -83,19 +96,36 @@ class Dispatch:
             return
         if state.activity is Activity.WAITING:
             yield from self._begin_or_wait(state, state.route[0], now)
+        elif state.activity is Activity.QUEUEING and self.service is not None:
+            self.service.serve_or_wait(state, now)
+        elif (call := self._call_to_make(state, now)) is not None and self.service is not None:
+            yield from self.service.set_out(state, call, now)
         elif state.available and state.route and now >= state.robot.available_from_s:
             yield from self._to_task(state, state.route[0], now)
         elif self.goes_home(state) and state.home is not None:
-            way = self.way(state, state.home)
-            if way is None:
-                self.end_here(state, now)
-            else:
-                state.send(now, Activity.RETURNING, along(way))
-                self._emit("returns", {"robot": state.robot.id})
+            self._send_home(state, state.home, now)
+
+    def _call_to_make(self, state: RobotState, now: float) -> Call | None:
+        """The station to which a robot goes next: by its plan, or of itself where it has nothing to do and is low."""
+        if not state.available or now < state.robot.available_from_s:
+            return None
+        free = state.activity is Activity.IDLE and not state.route and not state.calls
+        if free and self.energy is not None and (own := self.energy.own_call(state)) is not None:
+            state.calls = [own]
+        return state.call
+
+    def _send_home(self, state: RobotState, home: Place, now: float) -> None:
+        way = self.way(state, home)
+        if way is None or (self.energy is not None and not self.energy.gets_home(state)):
+            self.end_here(state, now)
+        else:
+            state.send(now, Activity.RETURNING, along(way))
+            self._emit("returns", {"robot": state.robot.id})
 
     def goes_home(self, state: RobotState) -> bool:
         """Whether a robot without tasks has yet to go where its route ends."""
-        return state.activity is Activity.IDLE and not state.route and not state.at_home and state.home is not None
+        free = state.activity is Activity.IDLE and not state.route and not state.calls
+        return free and not state.at_home and state.home is not None
 
     def end_here(self, state: RobotState, now: float) -> None:
         """A robot cannot get to where its route ends."""
@@ -103,6 +133,14 @@ class Dispatch:
             state.stop(now)
         state.at_home = state.cut_off = True
         self._emit("no_way_to_end", {"robot": state.robot.id})
+
+    def leave_station(self, state: RobotState, reason: str, now: float) -> Change:
+        """A robot cannot get to a station: nobody is sent there before ways open."""
+        station = state.station
+        if self.service is not None:
+            self.service.stations.cut_off.add(station)
+        state.stop(now)
+        return Change("station_unreachable", {"station": station, "robot": state.robot.id, "reason": reason})
 
     def again(self, state: RobotState, now: float) -> None:
         """Send a robot without progress once more, by a new path if it drives."""
@@ -117,19 +155,36 @@ class Dispatch:
         state.stop(now)
         state.aside_until_s = until_s
 
-    def take_route(self, state: RobotState, tasks: Sequence[str], now: float) -> None:
+    def take_route(self, state: RobotState, tasks: Sequence[str], now: float, calls: Sequence[Call] = ()) -> None:
         """Give a robot another route; it goes on with its work, and with its order if that is for the same task.
 
         An order that holds work is none for a task that has meanwhile got more to wait for, such as one to begin with.
         """
         if state.activity is Activity.WORKING:
-            state.route = [state.route[0], *tasks]
+            state.route, state.calls = [state.route[0], *tasks], list(calls)
             return
-        kept = state.route[:1] == list(tasks[:1]) and not self._begins_unasked(state)
+        if state.activity in AT_STATION:
+            self._take_route_at_station(state, tasks, calls, now)
+            return
+        first = next_call(tasks, calls)
+        kept = state.route[:1] == list(tasks[:1]) and first is None and not self._begins_unasked(state)
         if state.activity in (Activity.DRIVING, Activity.WAITING) and not kept:
             self._leave_task(state, state.route[0], now)
-        state.route = list(tasks)
+        state.route, state.calls = list(tasks), list(calls)
         state.warned_of = state.warned_of if kept else ""
+
+    def _take_route_at_station(
+        self, state: RobotState, tasks: Sequence[str], calls: Sequence[Call], now: float
+    ) -> None:
+        """A robot that is served stays for it, and one on the way to a station where it is still to go goes on."""
+        current, first = state.call, next_call(tasks, calls)
+        state.route, kept = list(tasks), list(calls)
+        own = current is not None and not current.planned and not tasks and not calls
+        if current is not None and (state.activity is Activity.SERVED or own):
+            kept = [replace(current, before=tasks[0] if tasks else None), *calls]
+        elif current is None or first is None or first.station != state.station:
+            state.stop(now)
+        state.calls = kept
 
     def _begins_unasked(self, state: RobotState) -> bool:
         """Whether a robot on the way would begin its task at once, and the task must wait for more than it did."""
@@ -153,7 +208,8 @@ class Dispatch:
 
     def go_round(self, state: RobotState, standing: RobotState, now: float) -> bool:
         """Send a robot round one that stands; returns whether it has not tried that yet, and there is a way."""
-        if state.activity not in (Activity.DRIVING, Activity.RETURNING) or standing.robot.id in state.went_round:
+        under_way = state.activity in (Activity.DRIVING, Activity.RETURNING, Activity.TO_STATION)
+        if not under_way or standing.robot.id in state.went_round:
             return False
         others = [(one.position, one.robot.radius_m) for one in self._crew.values() if one.out and one is not standing]
         about, begin = (standing.position, standing.robot.radius_m), self._free_place(state)
@@ -201,6 +257,9 @@ class Dispatch:
         if way is None or home is None:
             reason = "there is no way" if way is None else "there is no way from it to the end of the route"
             yield from self.refuse(state, task, f"unreachable: {reason}", now)
+            return
+        if wrong := self._goods.refusal(self._ledger.tasks[task], state.robot):
+            yield from self.refuse(state, task, wrong, now)
             return
         there = along(way, task)
         delay = self._ledger.delays_s.get(task, 0.0)
@@ -337,7 +396,7 @@ class Dispatch:
             begun = state.begun_s
             state.delay_s += longer
             state.work_s += longer
-            state.send(now, Activity.WORKING, [replace(state.work.waypoints[-1], hold_s=longer)])
+            state.send(now, Activity.WORKING, [replace(state.work.waypoints[-1], hold_s=longer, uses=0.0)])
             state.begun_s = begun
             return
         team = self._team_at_work(state, task)
@@ -361,6 +420,9 @@ class Dispatch:
             state.used_before = state.used
             state.route.pop(0)
             state.done.append(task)
+            state.stops.append(task)
+            state.warned_short = 0.0
+            self._goods.end(self._ledger.tasks[task], state.robot.id)
             state.begin_activity(now, Activity.IDLE)
         self._emit("ends", {"task": task, **_names(robots)})
 
@@ -421,9 +483,10 @@ def _where_it_stands(state: RobotState, work: Work) -> Work:
 
 
 def _delayed(work: Work, by_s: float) -> list[Waypoint]:
-    """The way points of work that takes so much longer: the robot stays in the last."""
+    """The way points of work that takes so much longer: the robot stays in the last, and uses there what is not way."""
     *before, last = work.waypoints
-    return [*before, replace(last, hold_s=last.hold_s + by_s)]
+    stays = [replace(point, uses=0.0) for point in before]
+    return [*stays, replace(last, hold_s=last.hold_s + by_s, uses=work.stayed_cost_m)]
 
 
 def _least_usage(state: RobotState, work: Work, there: Sequence[Waypoint], lasts_s: float) -> float:

@@ -14,17 +14,19 @@ from dataclasses import replace
 from typing import Any
 
 from muster.execution.beginning import Beginning
-from muster.execution.changes import OUT, SILENT, STUCK, Change, Changes, new_robot_state
+from muster.execution.changes import FAILED, OUT, SILENT, STUCK, Change, Changes, new_robot_state
 from muster.execution.completed_work import CompletedWork
 from muster.execution.dispatch import Dispatch
+from muster.execution.energy_watch import EnergyWatch
 from muster.execution.forecast import Forecast
+from muster.execution.goods_ledger import GoodsLedger
 from muster.execution.insertion import Insertion
 from muster.execution.monitor import Limits, moves_again
 from muster.execution.orders import IMPROVED, Orders
 from muster.execution.outlooks import Outlooks
 from muster.execution.peers import Peers
 from muster.execution.punctuality import Punctuality
-from muster.execution.reallocation import Reallocation, Revision, reasons_in_one_line, usage_ahead
+from muster.execution.reallocation import Reallocation, Revision, first_ahead, reasons_in_one_line
 from muster.execution.record import ExecutionEvent, NoObserver, Observer
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.report import Account
@@ -32,6 +34,8 @@ from muster.execution.robot_state import Activity, RobotState
 from muster.execution.script import Script
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
 from muster.execution.standing import KEPT_EVENTS, KEPT_REVISIONS, UNTIL_DONE, EventLog, Forgetting, Standing
+from muster.execution.station_service import StationService
+from muster.execution.stations import Stations
 from muster.execution.supervision import Leader, NoLeader, Supervisor
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
@@ -44,6 +48,11 @@ from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
+
+
+def _is_free(state: RobotState, now: float) -> bool:
+    """Whether a robot does not stand aside for others."""
+    return state.aside_until_s <= now
 
 
 class Executor:
@@ -110,6 +119,10 @@ class Executor:
         self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored, plan.ignored)
         own = [robot for robot in mission.robots if peers is None or robot.id in ports]
         self.crew = {robot.id: new_robot_state(mission, robot, ports, now, plan.ignored) for robot in own}
+        self.goods = GoodsLedger()
+        for state in self.crew.values():
+            self.goods.join(state.robot)
+        self.stations = Stations.of(mission.stations, self.crew)
         self.ended_s: float | None = None
         self._standing = UNTIL_DONE if standing is None else standing
         self.orders = Orders()
@@ -121,14 +134,27 @@ class Executor:
         self._replan = Reallocation(travel=self._travel) if replan is None else replan
         self._insertion = Insertion(self._travel)
         self._observer = NoObserver() if observer is None else observer
-        self._changes = Changes(mission, self.ledger, self.crew, ports, self._travel, on_doors)
+        self._changes = Changes(
+            mission, self.ledger, self.crew, ports, self._travel, self.stations, self.goods, on_doors
+        )
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
         hold_until_s = self._forecast.hold_until_s if peers is None else peers.hold_until_s
         self._beginning = Beginning(self.ledger, self.crew, hold_until_s, self._alone)
         self._punctuality = Punctuality(self.ledger, self.crew, self._beginning)
         self._dispatch = Dispatch(
-            self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, peers
+            self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, peers, self.goods
+        )
+        self._dispatch.service = StationService(
+            self.stations, self.ledger, self.goods, self._dispatch.way, self.emit, self._ask
+        )
+        self._energy = self._dispatch.energy = EnergyWatch(
+            self.stations,
+            self.crew,
+            self.ledger,
+            self._dispatch.way,
+            lambda: self._dispatch.ahead,
+            standing=self._standing.forgets,
         )
         self.outlook = Outlooks(self.ledger, self.crew, self._beginning, self._forecast)
         self.traffic = TrafficWaits(self.crew)
@@ -152,12 +178,16 @@ class Executor:
         self.begun_s = now if past is None else 0.0
         self._stood_still_at = -1  # when so many tasks had ended
         self._tried_left_out_at = 0
-        for robot, tasks in required_routes(mission, plan).items():
+        planned = required_routes(mission, plan)
+        for robot, stops in planned.items():
             if robot in self.crew:
-                self.crew[robot].route = list(tasks)
+                self.crew[robot].route = [stop.name for stop in stops if not stop.is_station]
         if past is not None:
             self._recall(past)
-        self._dispatch.ahead = usage_ahead(self._rest(), self._travel)
+        ahead = first_ahead(self._rest(), self._travel, planned)
+        for robot, one in ahead.items():
+            self.crew[robot].calls = list(one.calls)
+        self._dispatch.ahead = {robot: one.usage for robot, one in ahead.items()}
         self._punctuality.expect(self._forecast, now)
         self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
         self._observer.on_plan(now, plan)
@@ -176,7 +206,9 @@ class Executor:
     def idle(self) -> bool:
         """Whether no robot has a task left, or is under way."""
         ways = [state for state in self._present if state.activity is not Activity.IDLE]
-        return not ways and not any(state.route or self._dispatch.goes_home(state) for state in self._present)
+        return not ways and not any(
+            state.route or state.calls or self._dispatch.goes_home(state) for state in self._present
+        )
 
     @property
     def due_s(self) -> float:
@@ -264,8 +296,11 @@ class Executor:
         self._hear()
         for state in self._present:
             self._dispatch.advance(state, now)
+        for state in self._present:
+            state.note_energy()
         self._follow_script()
         self._ask(self._supervisor.look(now))
+        self._look_at_energy()
         self._ask(self._punctuality.look(now))
         self._go_on()
         self._notice_standstill()
@@ -293,6 +328,12 @@ class Executor:
                     self._ask(self._changes.readmit(state, self.now_s))
                 elif state.out == STUCK and moves_again(state):
                     self._ask(self._changes.readmit(state, self.now_s, "it moves again"))
+
+    def _look_at_energy(self) -> None:
+        """Who is empty fails; who runs low is planned again."""
+        for state in list(self._energy.empty()):
+            self._ask(self._changes.exclude(state, FAILED, self.now_s, "its battery is empty"))
+        self._ask(self._energy.look(self.now_s))
 
     def _follow_script(self) -> None:
         """Let those events of the mission file, and orders, happen that are due."""
@@ -335,7 +376,7 @@ class Executor:
         waiting = [state.route[0] for state in self._present if state.activity is Activity.WAITING]
         still = all(
             state.activity is Activity.WAITING
-            or (state.activity is Activity.IDLE and not state.route and state.aside_until_s <= self.now_s)
+            or (state.activity is Activity.IDLE and not state.route and not state.calls and _is_free(state, self.now_s))
             for state in self._present
         )
         if not waiting or not still:
@@ -386,7 +427,9 @@ class Executor:
             self.emit(change.kind, change.data)
 
     def _rest(self) -> RemainingMission:
-        return remaining_mission_of(self.mission, self.planned, self.crew, self.ledger, self.now_s)
+        return remaining_mission_of(
+            self.mission, self.planned, self.crew, self.ledger, self.now_s, self.stations, self.goods
+        )
 
     def _plan_again(self) -> None:
         causes, self._asked = [{"kind": change.kind, **change.data} for change in self._asked], []
@@ -395,7 +438,8 @@ class Executor:
     def _adopt(self, revision: Revision, causes: Sequence[Mapping[str, Any]]) -> None:
         """Go on by a new plan of the rest."""
         for state in self._present:
-            self._dispatch.take_route(state, revision.routes.get(state.robot.id, ()), self.now_s)
+            robot = state.robot.id
+            self._dispatch.take_route(state, revision.routes.get(robot, ()), self.now_s, revision.calls.get(robot, ()))
         for state in self.crew.values():
             if state.out:
                 state.route = []

@@ -61,7 +61,9 @@ def is_stuck(state: RobotState, now: float, limits: Limits) -> bool:
     """Whether a robot makes no progress: its path grows no shorter, or its work takes far too long."""
     if state.activity is Activity.WORKING:
         return now > state.nearest_s + 2 * state.work_s + limits.stuck_after_s
-    if state.activity not in (Activity.DRIVING, Activity.RETURNING):
+    if state.activity is Activity.SERVED:
+        return now > state.nearest_s + 2 * state.service_s + limits.stuck_after_s
+    if state.activity not in (Activity.DRIVING, Activity.RETURNING, Activity.TO_STATION):
         return False
     left = state.way_left_m
     least_m = _LEAST_SHARE * state.robot.speed_mps * limits.stuck_after_s

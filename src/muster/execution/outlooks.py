@@ -9,6 +9,7 @@ from muster.execution.beginning import Beginning
 from muster.execution.changes import FAILED, SILENT
 from muster.execution.forecast import Forecast
 from muster.execution.robot_state import Activity, RobotState
+from muster.execution.stations import AT_STATION
 from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import Work
 from muster.motion.outlook import Outlook, Visit
@@ -33,7 +34,7 @@ class Outlooks:
         if state.out in (FAILED, SILENT):
             return Outlook(gone=True)
         at_home = state.home is not None and state.at_home and not state.route
-        if state.activity in (Activity.WAITING, Activity.RETURNING) or at_home:
+        if state.activity in (Activity.WAITING, Activity.RETURNING, *AT_STATION) or (at_home and not state.calls):
             return Outlook(stays=True)
         if state.activity is Activity.IDLE or not state.route:
             return Outlook()
@@ -42,11 +43,11 @@ class Outlooks:
         visits, done = list[Visit](), [*state.done, state.route[0]]
         for task in state.route[1:]:
             work = self.forecast.work(state, task)
-            if work is None or self._must_wait(task, done):
+            if work is None or self._must_wait(task, done) or any(call.before == task for call in state.calls):
                 return Outlook(tuple(visits))
             visits += _visits(work, self.ledger.delays_s.get(task, 0.0))
             done.append(task)
-        if state.home is None:
+        if state.home is None or any(call.before is None for call in state.calls):
             return Outlook(tuple(visits))
         return Outlook((*visits, Visit(state.home, 0.0)), stays=True)
 

@@ -7,7 +7,7 @@ one robot that could do them to another.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -19,10 +19,12 @@ from muster.allocation.rewiring import rewired
 from muster.allocation.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
 from muster.execution.remaining_problem import RemainingMission, RemainingProblem, in_one_line, remaining_problem
+from muster.execution.route_ahead import RouteAhead, route_ahead, stops_of
+from muster.execution.station_calls import Call
 from muster.execution.travel import Travel
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import ParameterError
-from muster.mission.plan import Reason, Unassigned, teams_of
+from muster.mission.plan import Reason, RouteStop, Unassigned, teams_of
 
 RobotsOf = Mapping[int, frozenset[int]]
 """For each task, by index, the robots that do it."""
@@ -39,6 +41,8 @@ class Revision:
     ----------
     routes
         for each robot of the crew what it does next, in order, without work under way.
+    calls
+        for each of those that call at stations on the way their calls.
     ahead
         for each robot what it will use after each task of its route, in the mission's unit, the way to its end
         included; under the empty name after what it is doing.
@@ -58,6 +62,7 @@ class Revision:
     added: Mapping[str, str]
     dropped: tuple[str, ...]
     left_out: Mapping[str, str]
+    calls: Mapping[str, tuple[Call, ...]] = field(default_factory=dict)
 
     def difference(self) -> dict[str, Any]:
         """What has changed, as plain data: robots of tasks moved and added, reasons of tasks dropped."""
@@ -226,27 +231,31 @@ def _spared(problem: Problem, routes: Routes) -> dict[int, float]:
     return spared
 
 
-def _ahead(problem: Problem, i: int, route: list[int]) -> dict[str, float]:
-    """What robot i will use after each task of its route, and under the empty name after what it is doing."""
-    if not route:
-        return {"": 0.0}
-    must_end = problem.robots[i].place_at_end(problem.mission.rules) is not None
-    work = problem.work_usage(i)
-    left = float(problem.legs(i, route[-1:], [problem.end(i)])[0, 0]) if must_end else 0.0
-    ahead, legs = {}, problem.legs(i, [problem.start(i), *route], route)
-    for k in reversed(range(len(route))):
-        ahead[problem.tasks[route[k]].id] = left
-        left += float(legs[k, k] + work[route[k]])
-    past = problem.beginning(i)
-    ahead[""] = ahead[problem.tasks[past[0]].id] if past else left
-    return ahead
+def first_ahead(
+    rest: RemainingMission, travel: Travel, planned: Mapping[str, Sequence[RouteStop]]
+) -> dict[str, RouteAhead]:
+    """What lies ahead of each robot by the routes as they are, with the stations of a plan between their tasks."""
+    problem = remaining_problem(rest, travel).problem
+    routes = routes_before(problem, rest)
+    return {
+        robot.id: route_ahead(problem, i, _with_stations(problem, routes[i], planned.get(robot.id, ())))
+        for i, robot in enumerate(problem.robots)
+    }
 
 
 def usage_ahead(rest: RemainingMission, travel: Travel) -> dict[str, dict[str, float]]:
     """What each robot will use after each task of the routes as they are; see `Revision.ahead`."""
-    problem = remaining_problem(rest, travel).problem
-    routes = routes_before(problem, rest)
-    return {robot.id: _ahead(problem, i, routes[i]) for i, robot in enumerate(problem.robots)}
+    return {robot: one.usage for robot, one in first_ahead(rest, travel, {}).items()}
+
+
+def _with_stations(problem: Problem, route: Sequence[int], planned: Sequence[RouteStop]) -> list[RouteStop]:
+    """The stops of a route, with the stations that a plan has between those of its tasks that are left."""
+    left = {problem.tasks[j].id for j in route}
+    there = {station.id for station in problem.stations}
+    ahead = [stop for stop in planned if stop.name in (there if stop.is_station else left)]
+    met = {stop.name for stop in ahead}
+    before = [RouteStop(problem.tasks[j].id, 0.0, 0.0, 0.0) for j in route if problem.tasks[j].id not in met]
+    return [*before, *ahead]
 
 
 def revision_of(rest: RemainingMission, what: RemainingProblem, routes: Routes, forced: Collection[int]) -> Revision:
@@ -255,6 +264,8 @@ def revision_of(rest: RemainingMission, what: RemainingProblem, routes: Routes, 
     planned = _named(problem, rest, routes)
     now = _teams(planned)
     missing = unassigned(problem, routes)
+    found = [route_ahead(problem, i, stops) for i, stops in enumerate(stops_of(problem, routes))]
+    ahead = {robot.id: found[i] for i, robot in enumerate(problem.robots)}
     left_out = {item.task: why_left_out(item, rest.refusals.get(item.task, {})) for item in missing}
     left_out |= what.hopeless
     moved = {task: (rest.former[task], robot) for task, robot in now.items() if rest.former.get(task, robot) != robot}
@@ -262,7 +273,8 @@ def revision_of(rest: RemainingMission, what: RemainingProblem, routes: Routes, 
     had_to_go = {problem.tasks[j].id for j in forced} | what.hopeless.keys()
     return Revision(
         routes=planned,
-        ahead={robot.id: _ahead(problem, i, routes[i]) for i, robot in enumerate(problem.robots)},
+        ahead={robot: one.usage for robot, one in ahead.items()},
+        calls={robot: one.calls for robot, one in ahead.items() if one.calls},
         moved=moved,
         forced=frozenset(had_to_go.intersection((*moved, *dropped))),
         added={task: robot for task, robot in now.items() if task not in rest.former},

@@ -12,14 +12,17 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from muster import core
 from muster.allocation.charges import Charge
 from muster.allocation.fixed import with_fixed_routes
 from muster.allocation.problem import Problem
+from muster.execution.goods_ledger import as_amount
 from muster.execution.relations import Binding
 from muster.execution.task_ledger import some_of
 from muster.execution.teams import units_of
 from muster.execution.travel import Spot, Travel
-from muster.mission.model import Mission, Robot, Task
+from muster.mission.goods import Amount, by_commodity
+from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
 from muster.motion.port import Place
 
@@ -45,6 +48,12 @@ class RobotSnapshot:
         the work under way; None: there is none.
     charge
         of its battery, as it last reported; None: it reports none.
+    level
+        what its battery holds then, in the unit of usage; None: it has none.
+    drain
+        how fast that drains, times the usage.
+    load
+        what it has on board then, by commodity.
     """
 
     robot: Robot
@@ -54,6 +63,9 @@ class RobotSnapshot:
     used: float
     task: str | None
     charge: Charge | None = None
+    level: float | None = None
+    drain: float = 1.0
+    load: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def has_past(self) -> bool:
@@ -85,6 +97,10 @@ class RemainingMission:
         for a task the robots that relations to tasks that have begun leave to it.
     expired
         tasks that can never begin any more, and why.
+    stations
+        those that serve.
+    aboard
+        by robot the tasks that deliver what it has on board; they stand among `tasks` as what the robot puts down.
     objective
         of the plan; None: the mission's.
     """
@@ -101,6 +117,8 @@ class RemainingMission:
     former: Mapping[str, str]
     bindings: Mapping[str, Binding] = field(default_factory=dict)
     expired: Mapping[str, str] = field(default_factory=dict)
+    stations: tuple[Station, ...] = ()
+    aboard: Mapping[str, Sequence[str]] = field(default_factory=dict)
     objective: str | None = None
 
 
@@ -142,12 +160,54 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
-    problem = _bearable(problem, past)
+    problem = _with_levels(rest, _bearable(problem, past))
+    problem = replace(problem, aboard=_aboard(rest, problem))
     charges = {snapshot.robot.id: snapshot.charge for snapshot in rest.crew}
     if any(charge is not None for charge in charges.values()):
         problem = replace(problem, charges=tuple(charges[robot.id] for robot in problem.robots))
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
-    return RemainingProblem(with_fixed_routes(problem, Plan(routes=routes)), hopeless)
+    return RemainingProblem(with_fixed_routes(_with_energy_to_end(problem, routes), Plan(routes=routes)), hopeless)
+
+
+def _with_levels(rest: RemainingMission, problem: Problem) -> Problem:
+    """With what batteries hold: before the past, which is yet to be taken off, and measured by how fast they drain."""
+    crew = {snapshot.robot.id: snapshot for snapshot in rest.crew}
+    if "battery" in rest.ignored or all(snapshot.level is None for snapshot in rest.crew):
+        return problem
+    robots, levels = [], []
+    for robot in problem.robots:
+        now = crew[robot.id]
+        if robot.battery is None or now.level is None:
+            robots.append(robot)
+            levels.append(math.inf)
+            continue
+        battery = replace(robot.battery, capacity=robot.battery.capacity / now.drain)
+        robots.append(replace(robot, battery=battery))
+        levels.append(max(now.level / now.drain, battery.least) + (now.used if now.has_past else 0.0))
+    return replace(problem, robots=tuple(robots), levels=tuple(levels))
+
+
+def _aboard(rest: RemainingMission, problem: Problem) -> tuple[tuple[int, ...], ...]:
+    """By robot the tasks that deliver what it has on board; empty: nobody has such."""
+    index = problem.task_index
+    found = [[index[name] for name in rest.aboard.get(robot.id, ()) if name in index] for robot in problem.robots]
+    return tuple(map(tuple, found)) if any(found) else ()
+
+
+def _with_energy_to_end(problem: Problem, past: Sequence[Route]) -> Problem:
+    """Robots whose energy does not bring them to their ends, be it by way of a station, need not go there."""
+    if not problem.levels:
+        return problem
+    began = {route.robot: [problem.task_index[name] for name in route.tasks] for route in past}
+    robots = list(problem.robots)
+    for i, robot in enumerate(robots):
+        if robot.battery is None or robot.end_position is None or not began.get(robot.id):
+            continue
+        alone: list[list[int]] = [[] for _ in robots]
+        alone[i] = began[robot.id]
+        if not core.Inspection(problem.core, alone).admissible:
+            robots[i] = replace(robot, end_position=None)
+    return replace(problem, robots=tuple(robots))
 
 
 def _late(rest: RemainingMission, problem: Problem) -> dict[str, str]:
@@ -202,6 +262,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
         else:
             hopeful[task.id] = _for_robots(task.waiting_for(_open_prerequisites(rest, task)), robots)
     _drop_units_without_hope(rest, hopeful, hopeless)
+    _drop_transports_without_hope(rest, hopeful, hopeless)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
     waiting = dict(hopeful)
     while ready := [name for name, task in waiting.items() if sure.issuperset(task.prerequisites)]:
@@ -213,6 +274,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
         hopeless[name] = f"prerequisite: {before_it} comes before it and is not going to be done"
     hopeful = {name: task for name, task in hopeful.items() if name in sure}
     _drop_units_without_hope(rest, hopeful, hopeless)
+    _drop_transports_without_hope(rest, hopeful, hopeless)
     return [_related_to(task, hopeful) for task in hopeful.values()], hopeless
 
 
@@ -235,6 +297,16 @@ def _drop_units_without_hope(rest: RemainingMission, hopeful: dict[str, Task], h
                 hopeless[name] = f"relation: begins with {lost[0]}, which is not going to be done"
 
 
+def _drop_transports_without_hope(rest: RemainingMission, hopeful: dict[str, Task], hopeless: dict[str, str]) -> None:
+    """What is taken on board is delivered: of two tasks that are one transport none is planned if one cannot be."""
+    for task in rest.tasks:
+        for name, other in ((task.id, task.delivers), (task.delivers, task.id)):
+            if name is not None and other is not None and name in hopeful and other not in hopeful:
+                del hopeful[name]
+                does = "takes on what it delivers" if name == task.id else "delivers what it takes on"
+                hopeless[name] = f"load: {other}, which {does}, is not going to be done"
+
+
 def _related_to(task: Task, there: Collection[str]) -> Task:
     """A task with those relations that concern tasks of the problem."""
     if not (task.same_robot_as or task.other_robot_than or task.starts_with):
@@ -251,7 +323,8 @@ def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | N
     """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
     refused = rest.refusals.get(task.id, {})
     binding = rest.bindings.get(task.id, Binding())
-    lock = None if "lock" in rest.ignored else task.only_robots
+    carried = any(task.id in tasks for tasks in rest.aboard.values())
+    lock = None if "lock" in rest.ignored and not carried else task.only_robots
     if lock is None and not refused and binding == Binding():
         return None, ""
     crew = [snapshot.robot.id for snapshot in rest.crew]
@@ -306,6 +379,7 @@ def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
         suitability=None if scores is None else {kind: {**row, SO_FAR: 1.0} for kind, row in scores.items()},
         robots=tuple(_robot(rest, snapshot) for snapshot in rest.crew),
         tasks=tuple(tasks),
+        stations=rest.stations,
     )
 
 
@@ -319,7 +393,7 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
     # Usage of time is the past's duration, of which waiting is no part: it is put before the past.
     leaves = snapshot.free_s - snapshot.used if mission.rules.usage == "time" else rest.now_s
     if not snapshot.has_past:
-        leaves = rest.now_s
+        leaves = snapshot.free_s
     available_from_s = max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s))
     until = robot.available_until_s
     return replace(
@@ -329,9 +403,19 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
         return_to_start=False,
         min_tasks=0,  # what was planned kept it; what happens since may not leave so many
         work_capacity=capacity,
+        load_at_start=_load_of(snapshot, rest),
         available_from_s=available_from_s,
         available_until_s=None if until is None else max(until, available_from_s),
     )
+
+
+def _load_of(snapshot: RobotSnapshot, rest: RemainingMission) -> Amount | None:
+    """What a robot has on board as a mission has it, no more than it can carry."""
+    if "load" in rest.ignored:
+        return None
+    most = snapshot.robot.load_capacity
+    room = None if most is None else by_commodity(most)
+    return as_amount({k: v if room is None else min(v, room.get(k, 0.0)) for k, v in snapshot.load.items()})
 
 
 def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:

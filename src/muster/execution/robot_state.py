@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from itertools import takewhile
 
+from muster.execution.robot_energy import RobotEnergy
+from muster.execution.station_calls import Call, next_call
 from muster.execution.task_motion import Work, path_length, place
 from muster.mission.model import Robot
 from muster.motion.leg_times import LegTimes
@@ -25,9 +27,12 @@ class Activity(Enum):
     WAITING = "waiting"  # at the task, for prerequisites, its time window, its team ...
     WORKING = "working"
     RETURNING = "returning"  # to where its route ends
+    TO_STATION = "driving to station"
+    QUEUEING = "queueing"  # at a station, for a slot
+    SERVED = "served"  # at a station
 
 
-MOVING = (Activity.DRIVING, Activity.WORKING, Activity.RETURNING)
+MOVING = (Activity.DRIVING, Activity.WORKING, Activity.RETURNING, Activity.TO_STATION)
 
 
 @dataclass
@@ -46,6 +51,10 @@ class RobotState:
         whether usage is time.
     route
         tasks that it is still to do, the current one first.
+    calls
+        at stations, on that route.
+    energy
+        of its battery, if it has one.
     out
         why it takes no part now: failed, silent, stuck; empty if it does.
     """
@@ -57,7 +66,15 @@ class RobotState:
     in_time: bool
     last_heard_s: float
     route: list[str] = field(default_factory=list)
+    calls: list[Call] = field(default_factory=list)
+    energy: RobotEnergy | None = None
     done: list[str] = field(default_factory=list)
+    stops: list[str] = field(default_factory=list)  # tasks done, and stations between them
+    station: str = ""  # where it is or goes to, on a call
+    queued_s: float = 0.0  # since when it waits there, or did
+    service_s: float = 0.0  # how long its service takes
+    visits: int = 0  # so often it was served at a station
+    slot_wait_s: float = 0.0  # for so long it waited for slots
     out: str = ""
     out_s: float = 0.0  # since when
     out_at: Place | None = None  # where it was then
@@ -88,6 +105,7 @@ class RobotState:
     makes_room: bool = False  # whether it was last sent off the way of another
     sent_again: int = 0  # so often for want of progress, to the current goal
     warned_of: str = ""  # the task on the way to which its capacity was found too small
+    warned_short: float = 0.0  # by how much its energy was found too little, on its route as it is
     left: Place | None = None  # the last place known to be free: a way point passed
     home_usage: float = 0.0  # from the exit of the current task to `home`, in the mission's unit
     home_s: float = 0.0  # at least, for the same
@@ -98,6 +116,11 @@ class RobotState:
     def available(self) -> bool:
         """Whether it can take a task: `a_i` of [tcf-thesis], 5.3.1."""
         return not self.out and self.activity in (Activity.IDLE, Activity.RETURNING)
+
+    @property
+    def call(self) -> Call | None:
+        """Its next call, where that comes before its next task."""
+        return next_call(self.route, self.calls)
 
     @property
     def position(self) -> Place:
@@ -202,7 +225,7 @@ class RobotState:
         if self.activity is Activity.WORKING:
             self._waypoints = self._waypoints[self.passed :]
             self._order = self.port.cancel()
-        elif self.activity in MOVING:
+        elif self.activity in (*MOVING, Activity.SERVED):
             self.stop(now)
 
     def begin_activity(self, now: float, activity: Activity) -> None:
@@ -254,16 +277,27 @@ class RobotState:
         """Usage so far, in the mission's unit: by odometry and work done, or by time under way."""
         return self.busy_s if self.in_time else self.charged + (self.telemetry.odometry_m if self.telemetry else 0.0)
 
+    def note_energy(self) -> None:
+        """Note what its battery holds now."""
+        if self.energy is not None and self.telemetry is not None:
+            self.energy.hear(self.charge, self.used, served=self.activity is Activity.SERVED)
+
     @property
     def capacity(self) -> float | None:
-        """How much it can use in all, in the mission's unit: by its battery too, if it says how much that leaves."""
+        """How much it can use in all, in the mission's unit: by its charge too, where the mission has no battery."""
         most = self.robot.work_capacity
-        return most if most is None or self.charge is None else min(most, self.used + self.charge * most)
+        if most is None or self.charge is None or self.energy is not None:
+            return most
+        return min(most, self.used + self.charge * most)
 
     @property
     def charge(self) -> float | None:
         """The share of its battery that is left, as it last reported; None if it does not."""
         return None if self.telemetry is None else self.telemetry.charge
+
+    def service_left_s(self, now: float) -> float:
+        """Seconds until its service at a station ends."""
+        return max(0.0, self.begun_s + self.service_s - now) if self.activity is Activity.SERVED else 0.0
 
     def work_left_s(self, now: float) -> float:
         """Seconds until the work under way ends, if all goes well."""

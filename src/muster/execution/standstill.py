@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from muster.execution.robot_state import MOVING, Activity, RobotState
 
 _NEARER_M = 1.0
+_BUSY = (Activity.WORKING, Activity.WAITING, Activity.QUEUEING, Activity.SERVED)
 
 
 @dataclass
@@ -22,7 +23,7 @@ class Standstill:
         """See how far all are; a team of which nobody is under way, or somebody is at work, does not stand still."""
         present = [state for state in crew if not state.out]
         idle = not any(state.activity in MOVING for state in present)
-        if idle or any(state.activity in (Activity.WORKING, Activity.WAITING) for state in present):
+        if idle or any(state.activity in _BUSY for state in present):
             self.since_s = now
         for state in present:
             self._see(state, now)

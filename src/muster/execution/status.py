@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from muster.execution.changes import OUT
 from muster.execution.robot_state import Activity, RobotState
+from muster.execution.stations import AT_STATION, Stations
 from muster.execution.task_ledger import Ledger
 
 if TYPE_CHECKING:
@@ -26,8 +27,9 @@ class RobotStatus:
     Parameters
     ----------
     activity
-        `driving`, `waiting`, `working`, `returning`, `idle`; `in traffic` where it would drive or work, and waits for
-        another robot that is in its way.
+        `driving`, `waiting`, `working`, `returning`, `idle`; `driving to dock`, `queueing at dock`, `charging at dock`,
+        `swapping at dock` and `unloading at dock` on a call at the station of that id; `in traffic` where it would
+        drive or work, and waits for another robot that is in its way.
     out
         why it takes no part, in words; empty if it does.
     task
@@ -47,6 +49,10 @@ class RobotStatus:
         in the mission's unit; None left: any amount.
     charge
         what its battery says, 0 to 1; None where it says nothing.
+    station
+        at which it is, or to which it drives; empty: none.
+    on_board
+        what it carries, by commodity.
     available
         the availability `a_i` of [tcf-thesis], 5.3.1.
     """
@@ -63,6 +69,8 @@ class RobotStatus:
     charge: float | None
     available: bool
     held_up_by: str = ""
+    station: str = ""
+    on_board: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -79,28 +87,41 @@ def status_of(executor: Executor) -> Status:
     crew = executor.crew
     traffic = executor.traffic
     robots = {
-        name: _in_traffic(_robot(state, crew, executor.ledger, limited=limited), traffic.waits_for(name))
+        name: _in_traffic(_robot(state, executor, limited=limited), traffic.waits_for(name))
         for name, state in crew.items()
     }
     return Status(robots, {task: _state(task, executor) for task in executor.ledger.tasks})
 
 
-def _robot(state: RobotState, crew: Mapping[str, RobotState], ledger: Ledger, *, limited: bool) -> RobotStatus:
+def _robot(state: RobotState, executor: Executor, *, limited: bool) -> RobotStatus:
+    crew, ledger = executor.crew, executor.ledger
     at_task = state.activity in _AT_TASK and bool(state.route)
     capacity = state.capacity if limited else None
     return RobotStatus(
-        activity=state.activity.value,
+        activity=activity_in_words(state, executor.stations),
         out=OUT.get(state.out, state.out),
         task=state.route[0] if at_task else None,
         waits_for=tuple(ledger.missing(state.route[0])) if state.activity is Activity.WAITING else (),
-        waits=_wait(state, ledger) if state.activity is Activity.WAITING else "",
+        waits=_wait(state, ledger),
         team=_team(state, crew) if at_task else (),
         route=tuple(state.route),
         used=state.used,
         usage_left=None if capacity is None else max(0.0, capacity - state.used),
-        charge=state.charge,
+        charge=state.charge if state.energy is None else state.energy.share,
         available=state.available,
+        station=state.station if state.activity in AT_STATION else "",
+        on_board=executor.goods.load(state.robot.id),
     )
+
+
+def activity_in_words(state: RobotState, stations: Stations) -> str:
+    """What a robot is doing; at a station that, and where."""
+    if state.activity not in AT_STATION:
+        return state.activity.value
+    station = stations.known[state.station]
+    doing = "charging" if station.charges else "swapping" if station.swaps else "unloading"
+    words = {Activity.TO_STATION: "driving to", Activity.QUEUEING: "queueing at", Activity.SERVED: f"{doing} at"}
+    return f"{words[state.activity]} {station.id}"
 
 
 def _in_traffic(robot: RobotStatus, held_up_by: str) -> RobotStatus:
@@ -110,6 +131,10 @@ def _in_traffic(robot: RobotStatus, held_up_by: str) -> RobotStatus:
 
 
 def _wait(state: RobotState, ledger: Ledger) -> str:
+    if state.activity is Activity.QUEUEING:
+        return state.wait_words
+    if state.activity is not Activity.WAITING:
+        return ""
     missing = ledger.missing(state.route[0])
     return state.wait_words or (f"waits for {', '.join(missing)}" if missing else "")
 

@@ -158,6 +158,8 @@ class Supervisor:
             return
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
+        elif state.activity is Activity.TO_STATION:
+            yield self.dispatch.leave_station(state, f"unreachable: {broken.robot.id} stands there, out", now)
         else:
             yield from self._give_up_blocked(state, broken, now)
 
@@ -264,6 +266,8 @@ class Supervisor:
         """A robot does not get to its way point: other robots do the task, or it ends where it is."""
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
+        elif state.activity is Activity.TO_STATION:
+            yield self.dispatch.leave_station(state, reason, now)
         else:
             yield from self.dispatch.refuse(state, state.route[0], reason, now)
 

@@ -282,6 +282,17 @@ class Ledger:
     def delay(self, task: str, by_s: float) -> None:
         self.delays_s[task] = self.delays_s.get(task, 0.0) + by_s
 
+    def reopen(self, task: Task) -> None:
+        """A task that was done is to be done again, as it is now."""
+        self.ends_s.pop(task.id, None)
+        self.done_by.pop(task.id, None)
+        self.usage.pop(task.id, None)
+        self.give_up(task.id)
+        self.delays_s.pop(task.id, None)
+        self.refusals.pop(task.id, None)
+        self.tasks[task.id] = task
+        self._units = {}
+
     def withdraw(self, task: str, now: float) -> None:
         self.cancelled[task] = now
         self.give_up(task)
@@ -328,7 +339,8 @@ class Ledger:
 
 def _referred_to(task: Task) -> tuple[str, ...]:
     """The tasks that a task names."""
-    return (*task.prerequisites, *task.same_robot_as, *task.other_robot_than, *task.starts_with)
+    carried = () if task.delivers is None else (task.delivers,)
+    return (*task.prerequisites, *task.same_robot_as, *task.other_robot_than, *task.starts_with, *carried)
 
 
 def _out(task: Task, gone: Mapping[str, str]) -> str:
@@ -362,12 +374,21 @@ def task_as_it_holds(task: Task, ignored: Collection[str]) -> Task:
         without |= {"same_robot_as": (), "other_robot_than": (), "starts_with": ()}
     if "prerequisite" in ignored:
         without |= {"lags": {}}
+    if "load" in ignored:
+        without |= {"load": None, "delivers": None}
     return replace(task, **without) if without else task
 
 
 def robot_as_it_holds(robot: Robot, ignored: Collection[str]) -> Robot:
-    """A robot without its shift, if shifts do not hold."""
-    return replace(robot, available_until_s=None) if "shift" in ignored else robot
+    """A robot without what does not hold: its shift, its battery, what it carries."""
+    without: dict[str, Any] = {}
+    if "shift" in ignored:
+        without |= {"available_until_s": None}
+    if "battery" in ignored:
+        without |= {"battery": None}
+    if "load" in ignored:
+        without |= {"load_capacity": None, "load_at_start": None}
+    return replace(robot, **without) if without else robot
 
 
 def moved(task: Task, to: Point) -> Task:

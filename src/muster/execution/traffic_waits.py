@@ -226,6 +226,7 @@ class TrafficWaits:
 
     def _note_progress(self, state: RobotState) -> None:
         robot, target = state.robot.id, state.route[0] if state.route else ""
+        target = state.station if state.activity is Activity.TO_STATION else target
         if robot not in self.progress or self.progress[robot].target != target:
             self.progress[robot] = Progress(robot, target)
         if _under_way(state):

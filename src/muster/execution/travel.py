@@ -191,7 +191,8 @@ class ByTable:
         tasks = [past[task.id].name if task.id in past else task.id for task in problem.tasks]
         starts, ends = [robots[robot.id].name for robot in problem.robots], [robot.id for robot in problem.robots]
         kinds = sorted({robot.type or "" for robot in problem.robots})
-        tables = [self._between(kind, [*tasks, *starts, *ends]) for kind in kinds]
+        stations = [station.id for station in problem.stations]
+        tables = [self._between(kind, [*tasks, *starts, *ends, *stations]) for kind in kinds]
         classes = np.array([kinds.index(robot.type or "") for robot in problem.robots], dtype=np.int32)
         return replace(problem.measured, table=np.array(tables), classes=classes)
 

@@ -29,6 +29,11 @@ class Waypoint:
         whether it only marks the way to the next one, so that who steers the robot may choose another way.
     speed_mps
         the greatest speed on the way to it; inf: that of the robot.
+    uses
+        what the stay there uses beside the way, in the mission's unit; None: its seconds, with usage by distance times
+        the speed.
+    service
+        id of the station that serves the robot while it stays there; empty: none.
     """
 
     position: Place
@@ -37,6 +42,8 @@ class Waypoint:
     label: str = ""
     via: bool = False
     speed_mps: float = math.inf
+    uses: float | None = None
+    service: str = ""
 
 
 @dataclass(frozen=True)

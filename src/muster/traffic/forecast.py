@@ -168,7 +168,12 @@ def _traveller(mission: Mission, robot: Robot, route: Sequence[RouteStop]) -> Tr
 def _stops(mission: Mission, robot: Robot, route: Sequence[RouteStop]) -> Iterator[Stop]:
     """Where a robot enters and leaves its tasks, and how long it is at each."""
     tasks = {task.id: task for task in mission.tasks}
+    stations = {station.id: station for station in mission.stations}
     for stop in route:
+        if stop.is_station:
+            x, y = stations[stop.name].position[:2]
+            yield Stop((x, y), stop.end_s - stop.arrive_s)
+            continue
         motion = motion_of(tasks[stop.name], robot)
         if not isinstance(motion, TaskMotion):
             continue

@@ -76,7 +76,7 @@ class Battery(Rule):
             return {"battery": np.empty(0), "battery_at_start": np.empty(0), "stations": stations}
         return {
             "battery": np.array([_room(robot) for robot in robots]),
-            "battery_at_start": np.array([_at_start(robot) for robot in robots]),
+            "battery_at_start": np.array([_at_start(problem, i) for i in range(len(robots))]),
             "stations": stations,
         }
 
@@ -93,7 +93,7 @@ class Battery(Rule):
         if battery is None or np.isfinite(problem.usage_with_calls[i, j]) or math.isinf(outlook.least):
             return None
         least, unit = outlook.least, problem.usage_unit
-        holds = f"its battery holds {_at_start(problem.robots[i]):.2f} {unit} above its reserve"
+        holds = f"its battery holds {_at_start(problem, i):.2f} {unit} above its reserve"
         if not problem.mission.stations:
             return f"takes at least {least:.2f} {unit}, {holds}"
         return f"takes at least {least:.2f} {unit}, {holds}, and no station is near enough"
@@ -118,5 +118,9 @@ def _room(robot: Robot) -> float:
     return math.inf if robot.battery is None else robot.battery.capacity - robot.battery.least
 
 
-def _at_start(robot: Robot) -> float:
-    return math.inf if robot.battery is None else robot.battery.level_at_start - robot.battery.least
+def _at_start(problem: Question, i: int) -> float:
+    battery = problem.robots[i].battery
+    if battery is None:
+        return math.inf
+    level = problem.levels[i] if problem.levels else battery.level_at_start
+    return max(0.0, level - battery.least)

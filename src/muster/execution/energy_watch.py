@@ -1,0 +1,148 @@
+"""Watches the energy of robots: who runs low on the way, who is empty, and who goes to charge of itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from muster.execution.changes import Change
+from muster.execution.robot_state import Activity, RobotState
+from muster.execution.station_calls import Call
+from muster.execution.stations import Stations
+from muster.execution.task_ledger import Ledger
+from muster.execution.task_motion import along, path_length, place, travel_s
+from muster.mission.model import Station
+from muster.motion.port import Place
+
+TOLERANCE = 0.01
+"""Share of the capacity by which a level may be lower than planned; a robot arrives with at least as much."""
+_LOW = 0.05  # share of the capacity above what brings a robot to a station, with which it goes there if it is free
+_FULL = 0.99
+_ORDER = 0.2  # share of the capacity that an order takes, as long as none is done
+
+
+@dataclass
+class EnergyWatch:
+    """Looks at robots that have batteries.
+
+    Parameters
+    ----------
+    stations, crew, ledger
+        of the executor.
+    way
+        from where a robot is; None: there is none.
+    ahead
+        by robot what it uses after each task of its route, by the plan in force.
+    standing
+        whether the fleet stays on duty, so that orders may come.
+    """
+
+    stations: Stations
+    crew: Mapping[str, RobotState]
+    ledger: Ledger
+    way: Callable[[RobotState, Place], Sequence[Place] | None]
+    ahead: Callable[[], Mapping[str, Mapping[str, float]]]
+    standing: bool = False
+
+    def empty(self) -> Iterator[RobotState]:
+        """Robots whose telemetry tells that their batteries are empty."""
+        return (one for one in self.crew.values() if not one.out and one.energy is not None and one.energy.is_empty)
+
+    def look(self, now: float) -> Iterator[Change]:
+        """Robots whose energy does not last to their next charge, or the end of their route: they are planned anew."""
+        for state in self.crew.values():
+            if state.out or state.energy is None:
+                continue
+            missing = self._missing(state, now)
+            if missing <= state.warned_short + TOLERANCE * state.energy.battery.capacity:
+                continue
+            state.warned_short = missing
+            if state.activity is Activity.RETURNING:
+                state.stop(now)
+                continue
+            yield Change(
+                "energy_low",
+                {
+                    "robot": state.robot.id,
+                    "charge": round(state.energy.share, 6),
+                    "missing": round(missing, 6),
+                    "drain": round(state.energy.drain, 4),
+                },
+            )
+
+    def _missing(self, state: RobotState, now: float) -> float:
+        """By how much a robot would come below its reserve before it charges next; below 0: it does not."""
+        energy = state.energy
+        assert energy is not None
+        if state.activity is Activity.RETURNING:
+            needed = state.travel_left_s if state.in_time else state.way_left_m
+        elif state.activity in (Activity.DRIVING, Activity.WORKING) and state.route:
+            after = self.ahead().get(state.robot.id, {}).get(state.route[0])
+            if after is None:
+                return 0.0
+            call = next((one for one in state.calls if self.stations.known[one.station].gives_energy), None)
+            needed = state.used_after(now) - state.used + after - (0.0 if call is None else call.left)
+        else:
+            return 0.0
+        return needed * energy.drain - energy.above_reserve
+
+    def own_call(self, state: RobotState) -> Call | None:
+        """Where a robot goes to charge that has nothing to do, if it is to; None: it stays, or goes home."""
+        energy = state.energy
+        if energy is None or energy.share >= _FULL:
+            return None
+        found = self._nearest(state)
+        if found is None:
+            return None
+        station, needed = found
+        if self._is_low(state, needed, station):
+            return Call(station.id, None, planned=False)
+        return None
+
+    def _is_low(self, state: RobotState, to_station: float, station: Station) -> bool:
+        energy = state.energy
+        assert energy is not None
+        capacity = energy.battery.capacity
+        if state.home is not None and not state.at_home:
+            home = self._usage(state, state.home)
+            if home is not None and energy.above_reserve < energy.drain * home:
+                return True
+        if not (self.standing or self.ledger.open):
+            return False
+        if energy.above_reserve < energy.drain * to_station + _LOW * capacity:
+            return True
+        order = self._mean_usage(capacity)
+        free = self.stations.free_slots(station) > 0
+        return self.standing and free and energy.above_reserve < energy.drain * (order + to_station)
+
+    def gets_home(self, state: RobotState) -> bool:
+        """Whether the energy of a robot brings it to where its route ends, its reserve included."""
+        if state.energy is None or state.home is None:
+            return True
+        home = self._usage(state, state.home)
+        return home is None or state.energy.level >= state.energy.drain * home
+
+    def _nearest(self, state: RobotState) -> tuple[Station, float] | None:
+        """The station that gives energy to which a robot uses least, and that; None: it reaches none."""
+        energy = state.energy
+        assert energy is not None
+        ways = [(self._usage(state, place(s.position)), s) for s in self.stations.working if s.gives_energy]
+        left = energy.level - TOLERANCE * energy.battery.capacity
+        near = [(usage, s) for usage, s in ways if usage is not None and energy.drain * usage <= left]
+        if not near:
+            return None
+        usage, station = min(near, key=lambda one: (self.stations.free_slots(one[1]) <= 0, one[0], one[1].id))
+        return station, usage
+
+    def _usage(self, state: RobotState, goal: Place) -> float | None:
+        """What the way from where a robot is to a place uses; None where there is none."""
+        way = self.way(state, goal)
+        if way is None:
+            return None
+        there = along(way)
+        return travel_s(state.times, state.position, there) if state.in_time else path_length(state.position, there)
+
+    def _mean_usage(self, capacity: float) -> float:
+        """What a task of this fleet takes, on average of those that are remembered."""
+        usages = [flown for _, flown in self.ledger.usage.values()]
+        return sum(usages) / len(usages) if usages else _ORDER * capacity

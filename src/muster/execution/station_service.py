@@ -1,0 +1,192 @@
+"""Service at stations: robots go there, wait for a slot, and charge, swap their batteries or unload."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from muster.execution.changes import Change
+from muster.execution.goods_ledger import GoodsLedger, tied_goods
+from muster.execution.robot_state import Activity, RobotState
+from muster.execution.station_calls import Call
+from muster.execution.stations import Stations
+from muster.execution.task_ledger import Ledger
+from muster.execution.task_motion import along, place
+from muster.mission.model import Station
+from muster.motion.port import Place, Waypoint
+
+CHARGE_MARGIN = 0.02
+"""Share of the capacity that a robot charges more than planned: no way is driven exactly as it was planned."""
+AT_SLOT_M = 0.3
+"""Metres between two bodies at a station, or between a body and the station, that count as being there."""
+_MISSING = 1e-3  # share of the capacity by which a charge may stay behind
+
+
+@dataclass
+class StationService:
+    """Carries out calls at stations, one robot a method call.
+
+    Parameters
+    ----------
+    stations, ledger, goods
+        of the executor.
+    way
+        from where a robot is; None: there is none.
+    emit, ask
+        receive events, and changes that require a new plan.
+    """
+
+    stations: Stations
+    ledger: Ledger
+    goods: GoodsLedger
+    way: Callable[[RobotState, Place], Sequence[Place] | None]
+    emit: Callable[[str, Mapping[str, Any]], None]
+    ask: Callable[[Iterable[Change]], None]
+
+    def advance(self, state: RobotState, now: float) -> None:
+        """Check whether a robot has arrived at a station, or its service is over."""
+        if state.activity is Activity.TO_STATION and (state.arrived or self._is_there(state)):
+            self._arrive(state, now)
+        elif state.activity is Activity.SERVED and state.arrived:
+            self._end(state, now)
+
+    def set_out(self, state: RobotState, call: Call, now: float) -> Iterator[Change]:
+        """Send a robot to a station."""
+        station = self.stations.known[call.station]
+        way = self.way(state, place(station.position))
+        if way is None:
+            self.stations.cut_off.add(station.id)
+            yield Change("station_unreachable", {"station": station.id, "robot": state.robot.id})
+            return
+        state.station, state.at_home, state.work = station.id, False, None
+        state.send(now, Activity.TO_STATION, along(way, station.id))
+        self.emit("goes_to_station", {"robot": state.robot.id, "station": station.id} | _level(state))
+
+    def serve_or_wait(self, state: RobotState, now: float) -> None:
+        """Begin the service of a robot that waits at a station, or say for what it waits."""
+        if self.stations.has_slot_for(state):
+            self._begin(state, now)
+            return
+        served = [other.robot.id for other in self.stations.served(state.station)]
+        words = f"waits for a slot at {state.station}: {', '.join(served) or 'others come first'}"
+        if not state.wait_words:
+            self.emit("waits_for_slot", {"robot": state.robot.id, "station": state.station, "served": served})
+        state.wait_words = words
+
+    def keeps(self, state: RobotState, call: Call | None) -> bool:
+        """Whether a robot on a call goes on with it under a new plan whose next call is this one."""
+        current = state.call
+        return current is not None and call is not None and call.station == state.station == current.station
+
+    def _arrive(self, state: RobotState, now: float) -> None:
+        if state.arrived:
+            state.begin_activity(now, Activity.QUEUEING)
+        else:
+            state.send(now, Activity.QUEUEING, ())
+        state.queued_s, state.sent_again = now, 0
+        self.emit("arrives_at_station", {"robot": state.robot.id, "station": state.station} | _level(state))
+
+    def _is_there(self, state: RobotState) -> bool:
+        """Whether a robot is as near to a station as others that are there let it."""
+        if state.robot.radius_m == 0:
+            return False
+        others = [one.robot.radius_m for one in self.stations.at(state.station) if one.activity in _STANDING]
+        near_m = max(others, default=-math.inf) + state.robot.radius_m + AT_SLOT_M
+        return math.dist(state.position, self._place(state)) <= near_m
+
+    def _place(self, state: RobotState) -> Place:
+        return place(self.stations.known[state.station].position)
+
+    def _begin(self, state: RobotState, now: float) -> None:
+        station = self.stations.known[state.station]
+        state.slot_wait_s += now - state.queued_s
+        state.wait_words = ""
+        others = self.stations.served(station.id)
+        there = state.position if others and state.robot.radius_m > 0 else self._place(state)
+        state.note_energy()
+        state.service_s = _takes_s(station, state)
+        state.send(
+            now,
+            Activity.SERVED,
+            [Waypoint(there, hold_s=state.service_s, label=station.id, uses=0.0, service=station.id)],
+        )
+        told = {"robot": state.robot.id, "station": station.id, "services": list(station.services)}
+        self.emit("service_begins", told | {"takes_s": round(state.service_s, 6)} | _level(state))
+
+    def _end(self, state: RobotState, now: float) -> None:
+        station = self.stations.known[state.station]
+        before = 0.0 if state.energy is None else state.energy.level
+        state.note_energy()
+        if state.energy is not None and state.energy.told and self._goes_on(state, station, before, now):
+            return
+        if state.energy is not None and not state.energy.told:
+            state.energy.add(_to_add(station, state))
+        gone = self.goods.unload(state.robot.id, tied_goods(self.ledger)) if station.unloads else {}
+        call = state.call
+        if call is not None:
+            state.calls.remove(call)
+        state.stops.append(station.id)
+        state.visits += 1
+        state.warned_short = 0.0
+        state.begin_activity(now, Activity.IDLE)
+        self.emit("service_ends", {"robot": state.robot.id, "station": station.id, "unloaded": gone} | _level(state))
+        if call is not None and not call.planned and self._has_open_tasks():
+            self.ask([Change("robot_charged", {"robot": state.robot.id, "station": station.id})])
+
+    def _goes_on(self, state: RobotState, station: Station, before: float, now: float) -> bool:
+        """Go on where telemetry tells that less was added than was to be, as long as anything is."""
+        missing = _to_add(station, state)
+        energy = state.energy
+        if energy is None or missing <= _MISSING * energy.battery.capacity or energy.level <= before:
+            return False
+        begun = state.begun_s
+        again_s = _takes_s(station, state)
+        state.send(
+            now,
+            Activity.SERVED,
+            [Waypoint(state.position, hold_s=again_s, label=station.id, uses=0.0, service=station.id)],
+        )
+        state.service_s += again_s
+        state.begun_s = begun
+        return True
+
+    def _has_open_tasks(self) -> bool:
+        """Whether there are tasks that no robot is to do."""
+        routed = {name for state in self.stations.crew.values() if not state.out for name in state.route}
+        return any(task.id not in routed and task.id not in self.ledger.expired for task in self.ledger.open)
+
+
+_STANDING = (Activity.QUEUEING, Activity.SERVED)
+
+
+def level_after_service(station: Station, state: RobotState) -> float:
+    """What the battery of a robot holds when its service at a station is over; it must have one."""
+    energy = state.energy
+    assert energy is not None
+    return energy.level + _to_add(station, state)
+
+
+def _to_add(station: Station, state: RobotState) -> float:
+    """What a robot is still to get at a station, in the unit of usage."""
+    energy = state.energy
+    if energy is None or not station.gives_energy:
+        return 0.0
+    call = state.call
+    until = 1.0
+    if call is not None and call.until is not None and station.charges and station.partial:
+        until = min(1.0, call.until + CHARGE_MARGIN)
+    return max(0.0, until * energy.battery.capacity - energy.level)
+
+
+def _takes_s(station: Station, state: RobotState) -> float:
+    """Seconds that the service of a robot takes."""
+    if station.charge_per_s is not None:
+        return _to_add(station, state) / station.charge_per_s
+    return station.swap_s if station.swaps and state.energy is not None else 0.0
+
+
+def _level(state: RobotState) -> dict[str, Any]:
+    """The level of a robot's battery, as events have it: a share."""
+    return {} if state.energy is None else {"charge": round(state.energy.share, 6)}
