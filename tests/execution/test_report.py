@@ -59,9 +59,10 @@ def test_it_prints_what_the_command_promises():
     assert data["tasks_done"] == ["x", "y"]
     assert data["tasks_lost"] == [{"task": "z", "reason": "left out by the plan"}]
     assert (data["contacts"], data["min_distance_m"], data["reallocations"]) == (2, 3.2, 0)
+    at_stations = {"least_charge": None, "charged": 0.0, "station_visits": 0, "slot_wait_s": 0.0}
     assert data["robots"] == [
-        {"robot": "a", "usage_planned": 8, "usage_flown": pytest.approx(8), "charge": None},
-        {"robot": "b", "usage_planned": 3, "usage_flown": pytest.approx(3), "charge": None},
+        {"robot": "a", "usage_planned": 8, "usage_flown": pytest.approx(8), "charge": None} | at_stations,
+        {"robot": "b", "usage_planned": 3, "usage_flown": pytest.approx(3), "charge": None} | at_stations,
     ]
     assert data["starts_s"] == {"x": pytest.approx(6, abs=0.02), "y": pytest.approx(8, abs=0.02)}
     assert data["ends_s"] == {"x": pytest.approx(8, abs=0.02), "y": pytest.approx(8, abs=0.04)}

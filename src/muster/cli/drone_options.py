@@ -1,4 +1,4 @@
-"""The options of `muster simulate` for drones and batteries: --wind, --gusts, --rotors, --battery."""
+"""The options of `muster simulate` for drones and batteries: --wind, --gusts, --rotors, --battery, --drain."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import click
 
 from muster.mission.errors import ParameterError
 
-IN_THIS_PROCESS = ("wind", "gusts", "rotors", "batteries")
+IN_THIS_PROCESS = ("wind", "gusts", "rotors", "batteries", "drain")
 
 
 def drone_options(verb: Callable[..., Any]) -> Callable[..., Any]:
@@ -31,14 +31,22 @@ def drone_options(verb: Callable[..., Any]) -> Callable[..., Any]:
                 metavar="ROBOT=SHARE",
                 help="A battery that begins with this share, 0 to 1; `all` for every robot.",
             ),
+            click.option(
+                "--drain",
+                multiple=True,
+                metavar="ROBOT=FACTOR",
+                help="A battery that drains so many times as fast as by usage; FACTOR alone for every robot.",
+            ),
         )
     ):
         verb = option(verb)
     return verb
 
 
-def conditions_of(wind: str | None, gusts: float | None, batteries: tuple[str, ...], *, rotors: bool) -> dict[str, Any]:
-    """Keyword arguments for what was given: `wind`, `batteries`, `rotor_level`."""
+def conditions_of(
+    wind: str | None, gusts: float | None, batteries: tuple[str, ...], drain: tuple[str, ...], *, rotors: bool
+) -> dict[str, Any]:
+    """Keyword arguments for what was given: `wind`, `batteries`, `drain`, `rotor_level`."""
     from muster.simulation import Wind
 
     found: dict[str, Any] = {}
@@ -46,6 +54,8 @@ def conditions_of(wind: str | None, gusts: float | None, batteries: tuple[str, .
         found["wind"] = Wind(velocity_mps=_velocity(wind), gusts_mps=gusts or 0.0)
     if batteries:
         found["batteries"] = _charges(batteries)
+    if drain:
+        found["drain"] = _drains(drain)
     if rotors:
         found["rotor_level"] = True
     return found
@@ -62,6 +72,20 @@ def _velocity(text: str | None) -> tuple[float, float, float]:
         raise ParameterError(f"--wind: {text}; expected EAST,NORTH or EAST,NORTH,UP in m/s, such as 3,-1")
     east, north, up = (*numbers, 0.0)[:3]
     return east, north, up
+
+
+def _drains(texts: tuple[str, ...]) -> dict[str, float]:
+    drains: dict[str, float] = {}
+    for text in texts:
+        robot, _, factor = text.rpartition("=")
+        robot = robot or "all"
+        if robot in drains:
+            raise ParameterError(f"--drain: {text}; expected each robot at most once, as ROBOT=FACTOR, or FACTOR alone")
+        try:
+            drains[robot] = float(factor)
+        except ValueError:
+            raise ParameterError(f"--drain: {text}; expected a number above 0, or ROBOT=FACTOR") from None
+    return drains
 
 
 def _charges(texts: tuple[str, ...]) -> dict[str, float]:

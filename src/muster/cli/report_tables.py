@@ -18,6 +18,7 @@ _MOST_HELD_UP = 5
 """Rows of waiting in traffic that are printed."""
 _CAUSES = {
     "traffic": "other robots",
+    "slot": "slots at stations",
     "prerequisite": "prerequisites",
     "window": "time windows",
     "lag": "lags",
@@ -45,6 +46,9 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     if any(row.get("charge") is not None for row in report.get("robots", ())):
         columns = (*columns, "battery")
         rows = [(*row, _charge(of)) for row, of in zip(rows, report["robots"], strict=True)]
+    if any(robot.battery for robot in mission.all_robots):
+        columns = (*columns, "least", f"charged [{unit}]", "visits", "waited [s]")
+        rows = [(*row, *_at_stations(of)) for row, of in zip(rows, report["robots"], strict=True)]
     print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
     _print_orders(report.get("orders"))
@@ -66,6 +70,17 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
 
 def _charge(row: Mapping[str, Any]) -> str:
     return "-" if row.get("charge") is None else f"{100 * row['charge']:.1f} %"
+
+
+def _at_stations(row: Mapping[str, Any]) -> tuple[str, ...]:
+    """The least level of a robot's battery, what was added to it, how often, and for how long the robot waited."""
+    least = row.get("least_charge")
+    return (
+        "-" if least is None else f"{100 * least:.1f} %",
+        number(row.get("charged", 0.0)),
+        str(row.get("station_visits", 0)),
+        number(row.get("slot_wait_s", 0.0)),
+    )
 
 
 def _how(report: Report) -> str:

@@ -152,6 +152,7 @@ def command(
     gusts: float | None,
     rotors: bool,
     batteries: tuple[str, ...],
+    drain: tuple[str, ...],
     pose: str | None,
     sensors: tuple[str, ...],
     record: Path | None,
@@ -185,7 +186,7 @@ def command(
     require_drawable(plot, gantt, found)
     require_filmable(world, film, film_speed, still)
     noise, localise = noise_of(noises), localise_of(sensors)
-    conditions = conditions_of(wind, gusts, batteries, rotors=rotors)
+    conditions = conditions_of(wind, gusts, batteries, drain, rotors=rotors)
     standing = standing_of(orders, until, stay=stay)
     speed = 1.0 if foxglove is not None and speed is None else speed
     loaded = mission.load(verbose=verbose)

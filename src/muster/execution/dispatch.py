@@ -279,6 +279,7 @@ class Dispatch:
             yield from self.refuse(state, task, late, now)
             return
         may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task)
+        state.charged_idle = False
         state.to_task, state.works = len(there), self._peers is None and may_begin
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)

@@ -87,9 +87,12 @@ class EnergyWatch:
         return needed * energy.drain - energy.above_reserve
 
     def own_call(self, state: RobotState) -> Call | None:
-        """Where a robot goes to charge that has nothing to do, if it is to; None: it stays, or goes home."""
+        """Where a robot goes to charge that has nothing to do, if it is to; None: it stays, or goes home.
+
+        It goes once, until it has something to do again.
+        """
         energy = state.energy
-        if energy is None or energy.share >= _FULL:
+        if energy is None or energy.share >= _FULL or state.charged_idle:
             return None
         found = self._nearest(state)
         if found is None:
@@ -107,7 +110,7 @@ class EnergyWatch:
             home = self._usage(state, state.home)
             if home is not None and energy.above_reserve < energy.drain * home:
                 return True
-        if not (self.standing or self.ledger.open):
+        if not (self.standing or has_tasks_without_robot(self.ledger, self.crew)):
             return False
         if energy.above_reserve < energy.drain * to_station + _LOW * capacity:
             return True
@@ -146,3 +149,9 @@ class EnergyWatch:
         """What a task of this fleet takes, on average of those that are remembered."""
         usages = [flown for _, flown in self.ledger.usage.values()]
         return sum(usages) / len(usages) if usages else _ORDER * capacity
+
+
+def has_tasks_without_robot(ledger: Ledger, crew: Mapping[str, RobotState]) -> bool:
+    """Whether there are tasks that could be done, and that no robot is to do."""
+    routed = {name for state in crew.values() if not state.out for name in state.route}
+    return any(task.id not in routed and task.id not in ledger.expired for task in ledger.open)

@@ -29,7 +29,7 @@ from muster.execution.punctuality import Punctuality
 from muster.execution.reallocation import Reallocation, Revision, first_ahead, reasons_in_one_line
 from muster.execution.record import ExecutionEvent, NoObserver, Observer
 from muster.execution.remaining_problem import RemainingMission
-from muster.execution.report import Account
+from muster.execution.report import Account, StationAccount
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.script import Script
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
@@ -48,6 +48,15 @@ from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
+
+
+def _at_stations(state: RobotState) -> StationAccount | None:
+    """What a robot did at stations; None of one that has no battery and was at none."""
+    energy = state.energy
+    if energy is None and not state.visits:
+        return None
+    least, charged = (None, 0.0) if energy is None else (energy.least / energy.battery.capacity, energy.charged)
+    return StationAccount(least, charged, state.visits, state.slot_wait_s)
 
 
 def _is_free(state: RobotState, now: float) -> bool:
@@ -504,7 +513,8 @@ class Executor:
             mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
             reallocations=self._plans,
             orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s),
-            charges={name: state.charge for name, state in self.crew.items() if state.charge is not None},
+            charges={name: share for name, state in self.crew.items() if (share := state.share_left) is not None},
+            stations={name: one for name, state in self.crew.items() if (one := _at_stations(state)) is not None},
             shifts_exceeded_s=self._shifts_exceeded(),
             traffic=self.traffic.account.with_waits(self.traffic.waits),
             back_s=tuple(self._back_s()) if self.mission.rules.makespan_includes_return else (),

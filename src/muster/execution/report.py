@@ -17,6 +17,26 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
+@dataclass(frozen=True)
+class StationAccount:
+    """What one robot did at stations.
+
+    Parameters
+    ----------
+    least_charge
+        the least share of its battery that was left; None: it has none.
+    charged
+        what was added to it, in the unit of usage.
+    visits, waited_s
+        how often it was served, and for how long it waited for slots.
+    """
+
+    least_charge: float | None
+    charged: float
+    visits: int
+    waited_s: float
+
+
 @dataclass(frozen=True, kw_only=True)
 class Account:
     """What is known of a mission that was carried out by those who did it.
@@ -33,6 +53,8 @@ class Account:
         as in `Report`.
     charges
         by robot the share of its battery that it last reported, of those that do.
+    stations
+        by robot with a battery, or that was at a station, what it did there.
     shifts_exceeded_s
         by robot how long it was under way after its shift, of those that were.
     back_s
@@ -53,6 +75,7 @@ class Account:
     reallocations: int
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     charges: Mapping[str, float] = field(default_factory=dict)
+    stations: Mapping[str, StationAccount] = field(default_factory=dict)
     shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
@@ -63,13 +86,19 @@ class Account:
 class RobotReport:
     """Usage of one robot in the mission's unit: of the plan that it began with, and measured. 0 planned: it joined.
 
-    `charge` is the share of its battery that it last reported; None where it reports none.
+    `charge` is the share of its battery that was left at last; None where it has none that reports. `least_charge` is
+    the least share, `charged` what was added at stations, in the mission's unit, `station_visits` how often it was
+    served there, and `slot_wait_s` for how long it waited for that; None and 0 of a robot that does not charge.
     """
 
     robot: str
     usage_planned: float
     usage_flown: float
     charge: float | None = None
+    least_charge: float | None = None
+    charged: float = 0.0
+    station_visits: int = 0
+    slot_wait_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -169,13 +198,13 @@ class Report:
         how often two robots touched, and the least distance between their centres, None for one robot; both None where
         nobody measured it.
     waiting_s
-        seconds that robots waited, in all: at tasks done, and in traffic.
+        seconds that robots waited, in all: at tasks done, in traffic, and for slots at stations.
     traffic
         who held up whom in traffic, the longest waiting first.
     waiting_by_cause_s
-        seconds that robots waited, by cause: `traffic`; and at tasks, done or not, where a task has a rule about time
-        or teams: `prerequisite`, `window`, `lag`, `team`, `start` (of a task that begins with it), `dependant` (so that
-        another task can begin soon enough after it).
+        seconds that robots waited, by cause: `traffic`; `slot` at stations; and at tasks, done or not, where a task has
+        a rule about time or teams: `prerequisite`, `window`, `lag`, `team`, `start` (of a task that begins with it),
+        `dependant` (so that another task can begin soon enough after it).
     lateness_s
         by how much tasks done ended after their due times, in all.
     missed
@@ -282,12 +311,9 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         tasks_lost=(*ledger.lost_and_forgotten.items(), *account.lost.items()),
         contacts=contacts,
         min_distance_m=min_distance_m,
-        waiting_s=ledger.waiting_s + account.traffic.waiting_s,
+        waiting_s=ledger.waiting_s + account.traffic.waiting_s + _slot_wait_s(account),
         reallocations=account.reallocations,
-        robots=tuple(
-            RobotReport(robot, account.usage_planned.get(robot, 0.0), used, account.charges.get(robot))
-            for robot, used in account.used.items()
-        ),
+        robots=tuple(_robot(account, robot, used) for robot, used in account.used.items()),
         starts_s={task: ledger.starts_s[task] for task in done},
         ends_s={task: ledger.ends_s[task] for task in done},
         objective=_objective(account),
@@ -310,6 +336,16 @@ def broken_off(report: Report, account: Account, reason: str) -> Report:
     told = {*report.tasks_done, *(task for task, _ in report.tasks_lost)}
     under_way = tuple((task.id, reason) for task in account.ledger.open if task.id not in told)
     return replace(report, tasks_lost=report.tasks_lost + under_way)
+
+
+def _robot(account: Account, robot: str, used: float) -> RobotReport:
+    row = RobotReport(robot, account.usage_planned.get(robot, 0.0), used, account.charges.get(robot))
+    at = account.stations.get(robot)
+    if at is None:
+        return row
+    return replace(
+        row, least_charge=at.least_charge, charged=at.charged, station_visits=at.visits, slot_wait_s=at.waited_s
+    )
 
 
 def _task(ledger: Ledger, task: str) -> TaskReport:
@@ -336,10 +372,16 @@ def _waiting_by_cause(account: Account) -> dict[str, float]:
     causes = dict(ledger.retired.waits_s)
     if account.traffic.pairs:
         causes["traffic"] = account.traffic.waiting_s
+    if _slot_wait_s(account) > 0:
+        causes["slot"] = _slot_wait_s(account)
     for by_cause in ledger.waits_s.values():
         for cause, seconds in by_cause.items():
             causes[cause] = causes.get(cause, 0.0) + seconds
     return dict(sorted(causes.items()))
+
+
+def _slot_wait_s(account: Account) -> float:
+    return sum(one.waited_s for one in account.stations.values())
 
 
 def _forgotten(ledger: Ledger) -> dict[str, int]:

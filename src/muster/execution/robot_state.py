@@ -75,6 +75,7 @@ class RobotState:
     service_s: float = 0.0  # how long its service takes
     visits: int = 0  # so often it was served at a station
     slot_wait_s: float = 0.0  # for so long it waited for slots
+    charged_idle: bool = False  # whether it has gone to charge of itself, and has done no task since
     out: str = ""
     out_s: float = 0.0  # since when
     out_at: Place | None = None  # where it was then
@@ -294,6 +295,11 @@ class RobotState:
     def charge(self) -> float | None:
         """The share of its battery that is left, as it last reported; None if it does not."""
         return None if self.telemetry is None else self.telemetry.charge
+
+    @property
+    def share_left(self) -> float | None:
+        """The share of its battery that is left, as the mission has it, else as it last reported; None: not known."""
+        return self.charge if self.energy is None else self.energy.share
 
     def service_left_s(self, now: float) -> float:
         """Seconds until its service at a station ends."""

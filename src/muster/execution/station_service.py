@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from muster.execution.changes import Change
+from muster.execution.energy_watch import has_tasks_without_robot
 from muster.execution.goods_ledger import GoodsLedger, tied_goods
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.station_calls import Call
@@ -81,6 +82,7 @@ class StationService:
         return current is not None and call is not None and call.station == state.station == current.station
 
     def _arrive(self, state: RobotState, now: float) -> None:
+        state.note_energy()
         if state.arrived:
             state.begin_activity(now, Activity.QUEUEING)
         else:
@@ -132,7 +134,8 @@ class StationService:
         state.warned_short = 0.0
         state.begin_activity(now, Activity.IDLE)
         self.emit("service_ends", {"robot": state.robot.id, "station": station.id, "unloaded": gone} | _level(state))
-        if call is not None and not call.planned and self._has_open_tasks():
+        state.charged_idle = call is not None and not call.planned
+        if state.charged_idle and has_tasks_without_robot(self.ledger, self.stations.crew):
             self.ask([Change("robot_charged", {"robot": state.robot.id, "station": station.id})])
 
     def _goes_on(self, state: RobotState, station: Station, before: float, now: float) -> bool:
@@ -151,11 +154,6 @@ class StationService:
         state.service_s += again_s
         state.begun_s = begun
         return True
-
-    def _has_open_tasks(self) -> bool:
-        """Whether there are tasks that no robot is to do."""
-        routed = {name for state in self.stations.crew.values() if not state.out for name in state.route}
-        return any(task.id not in routed and task.id not in self.ledger.expired for task in self.ledger.open)
 
 
 _STANDING = (Activity.QUEUEING, Activity.SERVED)

@@ -107,7 +107,7 @@ def _robot(state: RobotState, executor: Executor, *, limited: bool) -> RobotStat
         route=tuple(state.route),
         used=state.used,
         usage_left=None if capacity is None else max(0.0, capacity - state.used),
-        charge=state.charge if state.energy is None else state.energy.share,
+        charge=state.share_left,
         available=state.available,
         station=state.station if state.activity in AT_STATION else "",
         on_board=executor.goods.load(state.robot.id),

@@ -83,7 +83,8 @@ class Telemetry:
     inertial
         of its inertial unit; None where it has none, or has not moved yet.
     charge
-        the share of its work capacity that its battery has left, 0 to 1; None where it does not report that.
+        the share of its battery that is left, 0 to 1, and of its work capacity where the mission gives it no battery;
+        None where it does not report that.
     refused
         why it cannot reach the next way point of this order, by its own navigation; empty while it goes on.
     waits_for

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.errors import ParameterError
 from muster.motion.laws import PROFILE
 from muster.running.worlds import MakeWorld, world_named
-from muster.simulation.batteries import NO_CHARGES, Charges
+from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
 from muster.simulation.wind import CALM, Wind
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ def recorded_world(
     law: str = PROFILE,
     wind: Wind = CALM,
     batteries: Charges = NO_CHARGES,
+    drain: Drains = NO_DRAINS,
     rotor_level: bool = False,
     **how: Any,
 ) -> SimulatedWorld:
@@ -46,6 +47,8 @@ def recorded_world(
         how["wind"] = _taken(make, "wind", wind, f"expected none: the world {name} has no wind; physics has")
     if batteries:
         how["batteries"] = _taken(make, "batteries", batteries, f"expected none: the world {name} has no batteries")
+    if drain:
+        how["drain"] = _taken(make, "drain", drain, f"expected none: the world {name} has no batteries")
     if rotor_level:
         why = f"expected the world physics: {name} has no rotors"
         how["rotor_level"] = _taken(make, "rotor_level", rotor_level, why)

@@ -50,10 +50,10 @@ def simulate(
         receive every event and state, such as `muster.report.live.FoxgloveServer`.
     how
         as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`, `wind`,
-        `batteries`, `rotor_level`, `on_look`, `on_world`; `ignore`, rules that do not hold, whatever the plan says of
-        itself; `planning`, the options with which the rest is planned again; `standing`, for a fleet that stays on
-        duty (a `muster.execution.Standing`); and `speed`, times real time, `on_event`, which is called with each
-        event, and `halt`, which ends it when it is set.
+        `batteries`, `drain`, `rotor_level`, `on_look`, `on_world`; `ignore`, rules that do not hold, whatever the plan
+        says of itself; `planning`, the options with which the rest is planned again; `standing`, for a fleet that
+        stays on duty (a `muster.execution.Standing`); and `speed`, times real time, `on_event`, which is called with
+        each event, and `halt`, which ends it when it is set.
 
     Raises
     ------

@@ -35,7 +35,7 @@ from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
-from muster.simulation.batteries import NO_CHARGES, Charges
+from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
 from muster.traffic.names import DEFAULT
 from muster.verification import verify
 
@@ -78,7 +78,10 @@ class Simulation:
     wind
         in which drones fly, in the physics world.
     batteries
-        shares of full batteries with which robots begin, by id or for `all`; these report a charge.
+        shares of full batteries with which robots begin, by id or for `all`; these report a charge, and those to which
+        the mission gives a battery.
+    drain
+        how many times as fast as by usage batteries drain, by id or for `all`.
     rotor_level
         whether all drones of the physics world are simulated rotor by rotor.
     planning
@@ -116,6 +119,7 @@ class Simulation:
         noise: Noise = NO_NOISE,
         wind: Wind = CALM,
         batteries: Charges = NO_CHARGES,
+        drain: Drains = NO_DRAINS,
         rotor_level: bool = False,
         pose: str | None = None,
         localise: Localise | None = None,
@@ -144,6 +148,7 @@ class Simulation:
             law=law,
             wind=wind,
             batteries=batteries,
+            drain=drain,
             rotor_level=rotor_level,
             seed=seed,
             dt_s=dt_s,

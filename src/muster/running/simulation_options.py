@@ -25,6 +25,7 @@ class WorldOptions(TypedDict, total=False):
     noise: Noise
     wind: Wind
     batteries: Mapping[str, float]
+    drain: Mapping[str, float]
     rotor_level: bool
     pose: str | None
     localise: Localise | None

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 MakeWorld = Callable[..., "SimulatedWorld"]
 """Makes a world of a mission: `make(mission, seed=, dt_s=, avoidance=, noise=, observer=, observe_s=)`, with
-`law=` where it is not `profile`, and `wind=`, `batteries=`, `rotor_level=` where they are asked for."""
+`law=` where it is not `profile`, and `wind=`, `batteries=`, `drain=`, `rotor_level=` where they are asked for."""
 
 
 def _checked(name: str, found: object) -> MakeWorld:

@@ -1,7 +1,8 @@
-"""Batteries of simulated robots: what each begins with, and what it reports."""
+"""Batteries of simulated robots: what each begins with, what drains it, and what it reports."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from types import MappingProxyType
 
@@ -11,9 +12,15 @@ from muster.mission.near_matches import did_you_mean
 
 ALL = "all"
 """Stands for every robot in the place of an id."""
-Charges = Mapping[str, float]
-"""By robot, or for `ALL`, the share of a full battery that it begins with, 0 to 1; who is not named reports none."""
+ByRobot = Mapping[str, float]
+"""A number by robot, or for `ALL`."""
+Charges = ByRobot
+"""The share of a full battery with which a robot begins, 0 to 1; who is not named begins as the mission says, and
+reports none where that gives it no battery."""
+Drains = ByRobot
+"""How many times as fast as by usage the battery of a robot drains; 1 for who is not named."""
 NO_CHARGES: Charges = MappingProxyType({})
+NO_DRAINS: Drains = MappingProxyType({})
 
 
 def require_charges(charges: Charges, robots: Collection[str]) -> None:
@@ -24,26 +31,53 @@ def require_charges(charges: Charges, robots: Collection[str]) -> None:
     ParameterError
         for these.
     """
+    _require_robots("battery", charges, robots)
     for robot, share in charges.items():
-        if robot != ALL and robot not in robots:
-            raise ParameterError(f"battery: robot {robot}; expected {ALL} or a robot{did_you_mean(robot, robots)}")
         if not 0 <= share <= 1:
             raise ParameterError(f"battery: {robot}={share:g}; expected a share from 0 to 1")
 
 
-def charge_at_start(charges: Charges, robot: str) -> float | None:
-    """The share that a robot begins with; None where it has no battery that reports."""
-    return charges.get(robot, charges.get(ALL))
-
-
-def capacity_in_usage(robot: Robot) -> float:
-    """What a full battery lets a robot use in the kinematic world: its work capacity, in the unit of usage.
+def require_drains(drains: Drains, robots: Collection[str]) -> None:
+    """Refuse factors that are not above 0, and robots that there are not.
 
     Raises
     ------
     ParameterError
-        if the mission does not say that.
+        for these.
     """
+    _require_robots("drain", drains, robots)
+    for robot, factor in drains.items():
+        if not 0 < factor < math.inf:
+            raise ParameterError(f"drain: {robot}={factor:g}; expected a number above 0")
+
+
+def _require_robots(what: str, values: ByRobot, robots: Collection[str]) -> None:
+    for robot in values:
+        if robot != ALL and robot not in robots:
+            raise ParameterError(f"{what}: robot {robot}; expected {ALL} or a robot{did_you_mean(robot, robots)}")
+
+
+def charge_at_start(charges: Charges, robot: Robot) -> float | None:
+    """The share that a robot begins with; None where it has no battery that reports."""
+    by_mission = None if robot.battery is None else robot.battery.at_start
+    return charges.get(robot.id, charges.get(ALL, by_mission))
+
+
+def drain_of(drains: Drains, robot: str) -> float:
+    """How many times as fast as by usage the battery of a robot drains."""
+    return drains.get(robot, drains.get(ALL, 1.0))
+
+
+def capacity_in_usage(robot: Robot) -> float:
+    """What a full battery lets a robot use, in the unit of usage: its battery's capacity, else its work capacity.
+
+    Raises
+    ------
+    ParameterError
+        if the mission says neither.
+    """
+    if robot.battery is not None:
+        return robot.battery.capacity
     if robot.work_capacity is None or robot.work_capacity == 0:
         raise ParameterError(
             f"battery: robot {robot.id} has no work_capacity; expected one, which is what its battery holds in the "
@@ -57,16 +91,39 @@ class Battery:
 
     Parameters
     ----------
+    capacity
+        what it holds when it is full.
     at_start
         the share that it begins with.
     drained
-        returns the share of a full battery that was drained so far.
+        returns what was drained so far, in the unit of the capacity.
+    drain
+        times that.
     """
 
-    def __init__(self, at_start: float, drained: Callable[[], float]) -> None:
-        self._at_start, self._drained = at_start, drained
+    def __init__(self, capacity: float, at_start: float, drained: Callable[[], float], drain: float = 1.0) -> None:
+        self.capacity, self.drain = capacity, drain
+        self._level, self._drained = at_start * capacity, drained
+        self._seen: float | None = None
+
+    @property
+    def level(self) -> float:
+        """What is left; an empty battery stays empty until it is charged."""
+        drained = self._drained()
+        more = drained if self._seen is None else drained - self._seen
+        self._seen = drained
+        self._level = max(0.0, self._level - self.drain * more)
+        return self._level
 
     @property
     def charge(self) -> float:
-        """The share that is left; an empty battery stays empty."""
-        return max(0.0, self._at_start - self._drained())
+        """The share that is left."""
+        return self.level / self.capacity
+
+    def add(self, amount: float) -> None:
+        """Charge it, until it is full."""
+        self._level = min(self.capacity, self.level + amount)
+
+    def fill(self) -> None:
+        """Put a full one in its place."""
+        self.add(self.capacity)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,16 @@ from muster.motion.port import Inertial, Telemetry, Waypoint
 from muster.perception.dead_reckoning import Odometry
 from muster.simulation.batteries import Battery
 from muster.simulation.noise import Noise
+
+
+@dataclass(frozen=True)
+class Serving:
+    """A stay at a way point for which a station serves the robot: the station, order and number of the way point."""
+
+    station: str
+    order: int
+    number: int
+    hold_s: float
 
 
 class SimulatedPort:
@@ -40,7 +50,7 @@ class SimulatedPort:
         self._name_of = name_of
         self._trajectories = trajectories
         self.battery: Battery | None = None
-        self._held_before_s = 0.0
+        self._held_before_s = self._stayed_before = 0.0
         self._axes = np.array([1.0, 1.0, float(len(robot.position) == 3)])
         self._number = number
         self._crowd = crowd
@@ -69,7 +79,7 @@ class SimulatedPort:
         for point in waypoints:
             _check(point)
         stops = list(map(_stop, waypoints))
-        self._held_before_s = self.held_s
+        self._held_before_s, self._stayed_before = self.held_s, self.stay_usage
         self._orders += 1
         self._sent = {self._orders: tuple(waypoints)}
         labelled = [bool(p.label) for p in waypoints]
@@ -90,8 +100,40 @@ class SimulatedPort:
     @property
     def held_s(self) -> float:
         """Seconds that it has stayed at way points, as far as they are passed."""
+        return self._held_before_s + sum(point.hold_s for point in self._passed if not point.service)
+
+    @property
+    def stay_usage(self) -> float:
+        """What its stays have used, with usage by distance: as orders say, else their seconds times its speed."""
+        return self._stayed_before + sum(
+            point.hold_s * self.body.speed_mps if point.uses is None else point.uses for point in self._passed
+        )
+
+    @property
+    def serving(self) -> Serving | None:
+        """The stay for which a station serves it, from when it goes to that way point; None: there is none."""
         *_, order, passed = self._crowd.report(self._number)
-        return self._held_before_s + sum(point.hold_s for point in self._sent.get(order, ())[:passed])
+        points = self._sent.get(order, ())
+        if passed >= len(points) or not points[passed].service:
+            return None
+        return Serving(points[passed].service, order, passed, points[passed].hold_s)
+
+    def has_passed(self, serving: Serving) -> bool:
+        """Whether a stay was carried out to its end."""
+        *_, order, passed = self._crowd.report(self._number)
+        return order == serving.order and passed > serving.number
+
+    @property
+    def true_position(self) -> tuple[float, float, float]:
+        """Where it is, whatever it takes itself for."""
+        x, y, z = self._crowd.positions()[self._number].tolist()
+        return x, y, z
+
+    @property
+    def _passed(self) -> Sequence[Waypoint]:
+        """The way points that it has passed of its last order."""
+        *_, order, passed = self._crowd.report(self._number)
+        return self._sent.get(order, ())[:passed]
 
     def odometry(self) -> Odometry:
         """What odometry counted in the last step of the world, noise included; also of a muted robot."""

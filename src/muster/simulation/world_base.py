@@ -30,14 +30,19 @@ from muster.motion.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.batteries import (
     NO_CHARGES,
+    NO_DRAINS,
     Battery,
     Charges,
+    Drains,
     capacity_in_usage,
     charge_at_start,
+    drain_of,
     require_charges,
+    require_drains,
 )
 from muster.simulation.noise import NO_NOISE, Noise
-from muster.simulation.port import SimulatedPort
+from muster.simulation.port import Serving, SimulatedPort
+from muster.simulation.station_service import LOOK_S, WorldStations
 from muster.simulation.walls import Slab, faces_and_slabs
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
 
@@ -90,7 +95,11 @@ class WorldBase(SimulatedWorld, ABC):
     arrival_m
         the distance from a way point at which a robot that cannot get nearer has arrived; undisturbed ones go to 1 mm.
     batteries
-        shares of full batteries with which robots begin, by id or for `all`; only these report a charge.
+        shares of full batteries with which robots begin, by id or for `all`; else as the mission says. Who has none by
+        either reports no charge. A robot whose battery, given by the mission, is empty stops; one that recovers has a
+        full one again.
+    drain
+        how many times as fast as by usage batteries drain, by id or for `all`.
     observer, observe_s
         called at the beginning and then at each step, or at most this often; costs time.
 
@@ -119,6 +128,7 @@ class WorldBase(SimulatedWorld, ABC):
         horizon_s: float = 2.0,
         arrival_m: float = 0.02,
         batteries: Charges = NO_CHARGES,
+        drain: Drains = NO_DRAINS,
         observer: Observer | None = None,
         observe_s: float = 0.0,
     ) -> None:
@@ -152,7 +162,11 @@ class WorldBase(SimulatedWorld, ABC):
             seed=seed,
         )
         require_charges(batteries, [robot.id for robot in mission.all_robots])
-        self._batteries = batteries
+        require_drains(drain, [robot.id for robot in mission.all_robots])
+        self._batteries, self._drain = batteries, drain
+        self._stations = WorldStations.of(mission.stations)
+        self._under_way_s: dict[str, float] = {}  # of robots with a battery of the mission
+        self._empty: set[str] = set()
         self._in_time = mission.rules.usage == "time"
         self._walls: dict[tuple[Body, frozenset[str]], int] = {}
         self._faces: dict[tuple[Body, frozenset[str]], Faces] = {}
@@ -185,6 +199,8 @@ class WorldBase(SimulatedWorld, ABC):
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         stride = self._observed_steps if self._observer is not None else _SLICE
+        if self._under_way_s:
+            stride = min(stride, max(1, round(LOOK_S / self._dt_s)))
         while self.time_s + self._dt_s <= until_s + 1e-6 * self._dt_s:
             target = min(until_s, (self._crowd.steps // stride + 1) * stride * self._dt_s)
             passed = self._advance(target)
@@ -221,10 +237,19 @@ class WorldBase(SimulatedWorld, ABC):
         trajectories = self._trajectories_of(robot)
         port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories, self._name_of)
         self._ports[robot.id] = port
-        at_start = charge_at_start(self._batteries, robot.id)
+        at_start = charge_at_start(self._batteries, robot)
         if at_start is not None:
-            port.battery = Battery(at_start, self._drained_by(robot, number))
+            self._put_in(port, robot, at_start)
         return port
+
+    def _put_in(self, port: SimulatedPort, robot: Robot, at_start: float) -> None:
+        """Give a robot its battery: of the mission, drained by usage; else as the world has it."""
+        drain = drain_of(self._drain, robot.id)
+        if robot.battery is None:
+            port.battery = Battery(1.0, at_start, self._drained_by(robot, self._number(robot.id)), drain)
+        else:
+            self._under_way_s[robot.id] = 0.0
+            port.battery = Battery(robot.battery.capacity, at_start, self._usage_of(robot), drain)
 
     def fail(self, robot: str, *, silent: bool = True) -> None:
         self._crowd.fail(self._number(robot))
@@ -234,6 +259,10 @@ class WorldBase(SimulatedWorld, ABC):
     def recover(self, robot: str) -> None:
         self._crowd.recover(self._number(robot))
         self._ports[robot].unmute()
+        battery = self._ports[robot].battery
+        if robot in self._empty and battery is not None:
+            self._empty.discard(robot)
+            battery.fill()
 
     def silence(self, robot: str) -> None:
         self._number(robot)
@@ -354,8 +383,28 @@ class WorldBase(SimulatedWorld, ABC):
         A stop costs what it costs where the mission does not say how long it takes: its seconds times the speed.
         """
         port, capacity = self._ports[robot.id], capacity_in_usage(robot)
-        per_metre, per_second = (1 / robot.speed_mps, 1.0) if self._in_time else (1.0, robot.speed_mps)
-        return lambda: (per_metre * self._crowd.travelled()[number] + per_second * port.held_s) / capacity
+        if self._in_time:
+            return lambda: (self._crowd.travelled()[number] / robot.speed_mps + port.held_s) / capacity
+        return lambda: (self._crowd.travelled()[number] + port.stay_usage) / capacity
+
+    def _usage_of(self, robot: Robot) -> Callable[[], float]:
+        """What tells a robot's usage, in the mission's unit: way and work, or the time under way and at work."""
+        port, number = self._ports[robot.id], self._number(robot.id)
+        if self._in_time:
+            return lambda: self._under_way_s[robot.id]
+        return lambda: float(self._crowd.travelled()[number]) + port.stay_usage
+
+    def _look_at_batteries(self, served: Mapping[str, Serving | None], busy: Collection[str], seconds: float) -> None:
+        """Robots under way use energy, those that were served get some; who is empty stops for good."""
+        largest_m = max(robot.radius_m for robot in self._robots)
+        for robot in self._under_way_s:
+            port = self._ports[robot]
+            if robot in busy:
+                self._under_way_s[robot] += seconds
+            self._stations.serve(port, served[robot], seconds, largest_m)
+            if port.battery is not None and port.battery.level <= 0.0 and robot not in self._empty:
+                self._empty.add(robot)
+                self._crowd.fail(self._number(robot))
 
     def _limits(self, robot: Robot) -> Limits:
         return limits_of(robot)
@@ -384,9 +433,12 @@ class WorldBase(SimulatedWorld, ABC):
             self._turn_doors()
         ids = list(self._numbers)
         passed = []
+        begin_s, served = self.time_s, {robot: self._ports[robot].serving for robot in self._under_way_s}
+        busy = {robot for robot, serving in served.items() if serving is None and not self.idle(robot)}
         for time, number, order, count, idle in self._go_on(until_s):
             label = self._ports[ids[number]].label(order, count)
             passed.append(WaypointPassed(time, ids[number], order, count, label, idle))
+        self._look_at_batteries(served, busy, self.time_s - begin_s)
         if self._crowd.steps % self._observed_steps == 0:
             self._observe()
         return tuple(passed)

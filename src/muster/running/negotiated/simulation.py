@@ -29,7 +29,7 @@ from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.simulation import OnWorld
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.simulation import CALM, NO_NOISE, Noise, Wind
-from muster.simulation.batteries import NO_CHARGES, Charges
+from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
 from muster.traffic.names import DEFAULT, RESERVE
 
 
@@ -66,6 +66,7 @@ def negotiate_and_carry_out(
     noise: Noise = NO_NOISE,
     wind: Wind = CALM,
     batteries: Charges = NO_CHARGES,
+    drain: Drains = NO_DRAINS,
     rotor_level: bool = False,
     pose: str | None = None,
     localise: Localise | None = None,
@@ -117,6 +118,7 @@ def negotiate_and_carry_out(
             law=law,
             wind=wind,
             batteries=batteries,
+            drain=drain,
             rotor_level=rotor_level,
             seed=seed,
             dt_s=dt_s,

@@ -1,0 +1,1 @@
+"""Disturbed missions with goods, batteries and stations, in the kinematic world."""
