@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-server campaign-api network-figures disturbances disturbances-timed disturbances-traffic help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-goods campaign-server campaign-api network-figures disturbances disturbances-timed disturbances-traffic help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -59,6 +59,9 @@ disturbances: $(VENV)/developed
 disturbances-timed: $(VENV)/developed
 	$(BIN)/python -m tests.disturbances.timed $(or $(DISTURBANCES_FLAGS),2000)
 
+campaign-goods: $(VENV)/developed
+	$(BIN)/python -m tests.disturbances.goods $(or $(CAMPAIGN_FLAGS),2000)
+
 disturbances-traffic: $(VENV)/developed
 	$(BIN)/python -m tests.disturbances.traffic $(or $(DISTURBANCES_FLAGS),2000)
 
@@ -75,6 +78,7 @@ help:
 	@echo "make campaign-times  5,000 small missions with windows, lags, teams and relations, against every plan of each"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
 	@echo "                       (CAMPAIGN_FLAGS='--timed 2000': of missions with rules of time)"
+	@echo "make campaign-goods  carry out 2,000 missions with goods and batteries in which robots and stations fail"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
 	@echo "make campaign-api  many more requests, made from the description of mission control's API, than the tests make"
 	@echo "make network-figures  time robots in network namespaces, through loss and a cut (root; NETWORK_FLAGS='--robots 20')"

@@ -1,0 +1,23 @@
+"""No load is lost or delivered twice, and no robot is empty in the field; `make campaign-goods` tries 2,000 missions."""
+
+from collections import Counter
+
+from tests.disturbances.goods.trial import trial
+
+SEEDS = range(50)
+
+
+def test_missions_with_goods_and_batteries_are_carried_out_whatever_happens():
+    reports = [trial(seed) for seed in SEEDS]
+    assert [f"seed {report.seed}: {failure}" for report in reports for failure in report.failures] == []
+    counts = sum((report.counts for report in reports), Counter())
+    for kind in (
+        "load_lies",
+        "energy_low",
+        "service_ends",
+        "station_fails",
+        "station_returns",
+        "robot_fails",
+        "new_task",
+    ):
+        assert counts[kind] > 0, kind
