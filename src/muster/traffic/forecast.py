@@ -98,12 +98,15 @@ class Forecaster:
             raise ParameterError(
                 "no robot is of kind ground with a radius above 0; expected one whose traffic is forecast"
             )
+        self._stations = [(station.position[0], station.position[1]) for station in mission.stations]
         self._journeys: JointJourneys | None = None
+        self._before: JointJourneys | None = None  # where the last change made others of them
 
     def of(self, routes: Mapping[str, Sequence[RouteStop]]) -> Forecast:
         """What the traffic of routes comes to."""
-        travellers = self._travellers(routes)
-        self._journeys = self._traffic.journeys(travellers, ways=max(_LEAST_WAYS, _WAYS_EACH * len(travellers)))
+        travellers, self._before = self._travellers(routes), None
+        ways = max(_LEAST_WAYS, _WAYS_EACH * len(travellers))
+        self._journeys = self._traffic.journeys(travellers, ways=ways, places=self._stations)
         return self._told(self._journeys)
 
     def changed(self, routes: Mapping[str, Sequence[RouteStop]]) -> Forecast:
@@ -111,15 +114,19 @@ class Forecaster:
 
         It may be less, as more was sought from one forecast to the next.
         """
-        travellers = self._travellers(routes)
+        travellers, before, self._before = self._travellers(routes), self._journeys, None
         if self._journeys is None or not self._journeys.knows(travellers):
-            return self.of(routes)
+            told = self.of(routes)
+            self._before = before
+            return told
         self._journeys.change(travellers, ways=_WAYS_AFTER_CHANGE)
         return self._told(self._journeys)
 
     def undo(self) -> None:
         """Take the last change back: the next one is of the routes before it."""
-        if self._journeys is not None:
+        if self._before is not None:
+            self._journeys, self._before = self._before, None
+        elif self._journeys is not None:
             self._journeys.undo()
 
     def _travellers(self, routes: Mapping[str, Sequence[RouteStop]]) -> list[Traveller]:

@@ -97,9 +97,12 @@ class RoadmapPlan:
         self.stepwise = False
         return [on.move(traveller, edge, stop) for _, traveller, edge, stop in moves]
 
-    def journeys(self, travellers: Sequence[Traveller], *, ways: int) -> JointJourneys:
-        """How each gets through all its stops among the others; so many ways are sought to improve the first ones."""
-        on = self._network_for(travellers)
+    def journeys(self, travellers: Sequence[Traveller], *, ways: int, places: Sequence[Point] = ()) -> JointJourneys:
+        """How each gets through all its stops among the others; so many ways are sought to improve the first ones.
+
+        `places` are others where they may have to go later.
+        """
+        on = self._network_for(travellers, places)
         return JointJourneys(on, travellers, self._shared(on, travellers, ways))
 
     def reaches(self, travellers: Sequence[Traveller], number: int, places: Sequence[Point]) -> list[bool]:
