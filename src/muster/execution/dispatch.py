@@ -66,6 +66,7 @@ class Dispatch:
         self._goods = GoodsLedger() if goods is None else goods
         self.service: StationService | None = None  # of missions with stations
         self.energy: EnergyWatch | None = None
+        self._misfits: set[tuple[str, str]] = set()  # robots and tasks that did not fit what they had on board
         self._crew = crew
         self._beginning = beginning
         self._capacity = capacity
@@ -199,6 +200,15 @@ class Dispatch:
             self._leave_task(state, task, now)
         yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason})
 
+    def _leave_misfit(self, state: RobotState, task: str, reason: str, now: float) -> Iterator[Change]:
+        """A task does not fit what a robot has on board now: it may have it later, but not twice in vain."""
+        if (state.robot.id, task) in self._misfits:
+            yield from self.refuse(state, task, reason, now)
+            return
+        self._misfits.add((state.robot.id, task))
+        self._leave_task(state, task, now)
+        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason})
+
     def _leave_task(self, state: RobotState, task: str, now: float) -> None:
         """A robot that is not at work leaves a task; robots of its team that wait there stay."""
         if task not in self._ledger.starts_s:
@@ -259,7 +269,7 @@ class Dispatch:
             yield from self.refuse(state, task, f"unreachable: {reason}", now)
             return
         if wrong := self._goods.refusal(self._ledger.tasks[task], state.robot):
-            yield from self.refuse(state, task, wrong, now)
+            yield from self._leave_misfit(state, task, wrong, now)
             return
         there = along(way, task)
         delay = self._ledger.delays_s.get(task, 0.0)

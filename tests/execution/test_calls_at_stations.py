@@ -1,0 +1,153 @@
+"""Calls at stations, levels of batteries and goods on board, while plans are carried out in the simulated world."""
+
+from dataclasses import replace
+
+import pytest
+from tests.carry_charge import battery, charger, depot, mission, plan, robot, swapper, task
+
+from muster.execution import status_of
+from muster.mission.errors import ParameterError
+from muster.mission.model import Event
+from muster.running.simulation import Simulation
+
+
+def carried_out(given, ignore=(), each=None, **routes):
+    """The simulation at its end; `each` is called with it all along."""
+    how = routes.pop("how", {})
+    simulation = Simulation(given, plan(**routes), ignore=ignore, **how)
+    while not simulation.done and simulation.time_s < 1_000:
+        simulation.advance(simulation.time_s + 0.5)
+        if each is not None:
+            each(simulation)
+    assert simulation.done
+    return simulation
+
+
+def happened(simulation, *kinds):
+    return [(round(e.time_s, 1), e.data.get("robot")) for e in simulation.events if e.kind in kinds]
+
+
+def test_a_robot_charges_between_its_tasks():
+    given = mission([robot(battery=battery(30))], [task("a", 20), task("b", 2)], [charger(x=12, rate=2)])
+    report = carried_out(given, r="a dock b").result()
+    assert report.tasks_done == ("a", "b")
+    assert report.robots[0].station_visits == 1
+    assert report.robots[0].charged == pytest.approx(28, abs=0.1)
+    assert report.robots[0].least_charge == pytest.approx(2 / 30, abs=0.01)
+    assert report.robots[0].charge == pytest.approx(20 / 30, abs=0.01)
+
+
+def test_robots_are_served_in_the_order_of_their_arrival_and_wait_for_slots():
+    robots = [robot(name, x, battery=battery(60, 0.5)) for name, x in (("b", 2), ("a", -2), ("c", 1))]
+    given = mission(robots, [task(f"t{k}", 20 + k) for k in range(3)], [charger(rate=3)])
+    words = set()
+
+    def look(simulation):
+        for one in simulation.status.robots.values():
+            words.add(one.activity)
+            words.add(one.waits)
+
+    done = carried_out(given, each=look, a="dock t0", b="dock t1", c="dock t2")
+    assert [name for _, name in happened(done, "service_begins")] == ["c", "a", "b"]
+    ends = [at for at, _ in happened(done, "service_ends")]
+    begins = [at for at, _ in happened(done, "service_begins")]
+    assert begins[1:] == ends[:-1]
+    assert {"driving to dock", "queueing at dock", "charging at dock", "waits for a slot at dock: c"} <= words
+    told = done.result()
+    assert told.waiting_by_cause_s["slot"] == pytest.approx(sum(row.slot_wait_s for row in told.robots))
+    assert told.waiting_by_cause_s["slot"] > 10
+
+
+def test_a_swap_takes_its_time_and_fills_the_battery():
+    given = mission([robot(battery=battery(20))], [task("a", 10), task("b", 25)], [swapper(x=10, swap_s=6)])
+    done = carried_out(given, r="a rack b")
+    begin, end = (happened(done, kind)[0][0] for kind in ("service_begins", "service_ends"))
+    assert end - begin == pytest.approx(6, abs=0.2)
+    assert done.result().robots[0].charge == pytest.approx(5 / 20, abs=0.01)
+
+
+def test_unloading_puts_down_what_no_task_delivers():
+    tasks = [task("a", 1, load=1), task("b", 2, load=1), task("c", 9, delivers="b")]
+    given = mission([robot(load_capacity=2)], tasks, [depot(x=4)])
+    loads = set()
+    done = carried_out(given, each=lambda s: loads.add(s.status.robots["r"].on_board.get("", 0)), r="a b depot c")
+    goods = done._executor.goods
+    assert (goods.unloaded, goods.delivered, goods.on_board["r"]) == ({"": 1}, {"": 1}, [])
+    assert loads == {0, 1, 2}
+
+
+@pytest.mark.parametrize(("route", "why"), [("b a", "does not have on board"), ("a c b", "on board with it, of 1")])
+def test_a_task_that_does_not_fit_what_is_on_board_is_refused(route, why):
+    tasks = [task("a", 1, load=1), task("b", 2, delivers="a"), task("c", 3, load=1)]
+    done = carried_out(mission([robot(load_capacity=1)], tasks), r=route)
+    refused = [event.data["reason"] for event in done.events if event.kind == "task_refused"]
+    assert why in refused[0]
+    assert done._executor.goods.delivered == {"": 1}
+
+
+def test_a_battery_that_drains_faster_is_charged_earlier():
+    given = mission([robot(battery=battery(50, reserve=0.1))], [task("a", 20), task("b", 22)], [charger(x=18, rate=5)])
+    usual = carried_out(given, r="a b")
+    assert usual.result().robots[0].station_visits == 0
+    hungry = carried_out(given, r="a b", how={"drain": {"all": 2.2}})
+    assert hungry.result().robots[0].station_visits == 1
+    assert hungry.result().tasks_done == ("a", "b")
+    assert [event.data["drain"] for event in hungry.events if event.kind == "energy_low"][0] == pytest.approx(
+        2.2, abs=0.05
+    )
+
+
+def test_robots_are_planned_again_when_their_station_fails_and_when_it_returns():
+    stations = [charger("near", 10, rate=5), charger("far", -10, rate=5)]
+    given = mission([robot(battery=battery(24))], [task("a", 8), task("b", 30)], stations)
+    events = (Event(at_s=11, station_fails="near"), Event(at_s=40, station_returns="near"))
+    done = carried_out(replace(given, events=events), r="a near b")
+    kinds = [event.kind for event in done.events]
+    assert kinds.index("station_fails") < kinds.index("replanned") < kinds.index("station_returns")
+    served = [event.data["station"] for event in done.events if event.kind == "service_begins"]
+    assert served == ["near", "near"]  # until it fails, and again: the other one is too far
+    assert done.result().tasks_done == ("a", "b")
+
+
+def test_the_load_of_a_robot_that_dies_is_fetched_where_it_lies():
+    tasks = [task("a", 5, load=1, duration_s=1), task("b", 30, delivers="a")]
+    given = mission([robot("r", 0, load_capacity=1), robot("s", -5, load_capacity=1)], tasks)
+    done = carried_out(replace(given, events=(Event(at_s=16, robot_fails="r"),)), r="a b", s="")
+    ledger, goods = done._executor.ledger, done._executor.goods
+    lies = next(event for event in done.events if event.kind == "load_lies")
+    assert lies.data["task"] == "a"
+    assert lies.data["position"][0] == pytest.approx(15, abs=0.2)
+    assert ledger.done_by == {"a": "s", "b": "s"}
+    assert (goods.taken, goods.delivered, goods.lying) == ({"": 1}, {"": 1}, {})
+
+
+def test_only_who_carries_a_load_delivers_it():
+    tasks = [task("a", 5, load=1), task("b", 30, delivers="a")]
+    given = mission([robot("r", 0, load_capacity=1), robot("s", 28, load_capacity=1)], tasks)
+    done = carried_out(replace(given, events=(Event(at_s=10, new_task=task("c", 40)),)), r="a b", s="")
+    assert done._executor.ledger.done_by == {"a": "r", "b": "r", "c": "s"}
+
+
+def test_a_robot_that_is_served_is_free_when_that_is_over_and_has_the_level_of_then():
+    given = mission([robot(battery=battery(40, 0.5))], [task("a", 30)], [charger(rate=1)])
+    simulation = Simulation(given, plan(r="dock a"))
+    while status_of(simulation._executor).robots["r"].activity != "charging at dock":
+        simulation.advance(simulation.time_s + 0.5)
+    simulation.advance(simulation.time_s + 5)
+    (snapshot,) = simulation._executor._rest().crew
+    assert snapshot.level == pytest.approx(40)
+    assert snapshot.free_s == pytest.approx(20, abs=0.5)
+
+
+def test_an_empty_robot_counts_as_failed_where_it_is():
+    given = mission([robot("r", battery=battery(20)), robot("s", -9)], [task("a", 30)])
+    done = carried_out(given, ignore="battery", r="a", s="")
+    assert [name for _, name in happened(done, "robot_stuck")] == ["r"]  # the body stops, and nobody counts with that
+    failed = carried_out(given, r="a", s="", how={"batteries": {"r": 0.3}})
+    assert failed._executor.ledger.done_by == {"a": "s"}
+
+
+def test_an_unknown_station_is_refused():
+    simulation = Simulation(mission([robot()], [task("a", 5)], [charger()]), plan(r="a"))
+    with pytest.raises(ParameterError, match="station"):
+        simulation.report(Event(at_s=0, station_fails="quay"))
