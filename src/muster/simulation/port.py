@@ -150,7 +150,7 @@ class SimulatedPort:
 
     def unmute(self) -> None:
         """Let telemetry change again."""
-        self._last_word = None
+        self._last_word = self._said = None
 
     def label(self, order: int, passed: int) -> str:
         """The label of the way point with which this number of an order's way points is passed."""

@@ -100,7 +100,7 @@ class Battery(Rule):
 
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
         usage, unit = min(found.usages[i] for _, found in places), problem.usage_unit
-        holds = f"its battery holds {_at_start(problem.robots[i]):.2f} {unit} above its reserve"
+        holds = f"its battery holds {_at_start(problem, i):.2f} {unit} above its reserve"
         stations = ", and no calls at stations make up for that" if problem.mission.stations else ""
         return f"at least {usage:.2f} {unit} with it, {holds}{stations}"
 
