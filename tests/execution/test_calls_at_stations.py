@@ -92,7 +92,7 @@ def test_a_battery_that_drains_faster_is_charged_earlier():
     hungry = carried_out(given, r="a b", how={"drain": {"all": 2.2}})
     assert hungry.result().robots[0].station_visits == 1
     assert hungry.result().tasks_done == ("a", "b")
-    assert [event.data["drain"] for event in hungry.events if event.kind == "energy_low"][0] == pytest.approx(
+    assert next(event.data["drain"] for event in hungry.events if event.kind == "energy_low") == pytest.approx(
         2.2, abs=0.05
     )
 

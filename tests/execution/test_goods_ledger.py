@@ -1,7 +1,8 @@
 """The ledger of goods keeps what was taken on in balance with what became of it."""
 
-from muster.execution.goods_ledger import GoodsLedger, as_amount, negative
 from tests.carry_charge import robot, task
+
+from muster.execution.goods_ledger import GoodsLedger, as_amount, negative
 
 
 def ledger():

@@ -2,11 +2,12 @@
 
 from random import Random
 
+from tests.carry_charge import battery, charger, mission, robot
+
 import muster
 from muster.execution import Standing
 from muster.mission.model import Event, Task
 from muster.running.simulation import Simulation
-from tests.carry_charge import battery, charger, mission, robot
 
 DURATION_S = 900.0
 

@@ -66,6 +66,9 @@ _SLICE = 10_000
 _LOOKS_EVERY_M = 0.05
 """Of the way on which a robot comes to a stand: so near to each other are the places that may hold a door open."""
 
+_NOTHING = np.zeros((0, 2))
+_STILL = 1e-6  # metres, or radians, that a robot may move in a step and stand
+
 
 class WorldBase(SimulatedWorld, ABC):
     """Robots of a mission that move; deterministic by seed. Subclasses say how bodies follow their velocities.
@@ -165,7 +168,7 @@ class WorldBase(SimulatedWorld, ABC):
         require_drains(drain, [robot.id for robot in mission.all_robots])
         self._batteries, self._drain = batteries, drain
         self._stations = WorldStations.of(mission.stations)
-        self._under_way_s: dict[str, float] = {}  # of robots with a battery of the mission
+        self._moving_s: dict[str, float] = {}  # of robots with a battery of the mission
         self._empty: set[str] = set()
         self._in_time = mission.rules.usage == "time"
         self._walls: dict[tuple[Body, frozenset[str]], int] = {}
@@ -199,7 +202,7 @@ class WorldBase(SimulatedWorld, ABC):
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         stride = self._observed_steps if self._observer is not None else _SLICE
-        if self._under_way_s:
+        if self._moving_s:
             stride = min(stride, max(1, round(LOOK_S / self._dt_s)))
         while self.time_s + self._dt_s <= until_s + 1e-6 * self._dt_s:
             target = min(until_s, (self._crowd.steps // stride + 1) * stride * self._dt_s)
@@ -248,7 +251,7 @@ class WorldBase(SimulatedWorld, ABC):
         if robot.battery is None:
             port.battery = Battery(1.0, at_start, self._drained_by(robot, self._number(robot.id)), drain)
         else:
-            self._under_way_s[robot.id] = 0.0
+            self._moving_s[robot.id] = 0.0
             port.battery = Battery(robot.battery.capacity, at_start, self._usage_of(robot), drain)
 
     def fail(self, robot: str, *, silent: bool = True) -> None:
@@ -388,19 +391,25 @@ class WorldBase(SimulatedWorld, ABC):
         return lambda: (self._crowd.travelled()[number] + port.stay_usage) / capacity
 
     def _usage_of(self, robot: Robot) -> Callable[[], float]:
-        """What tells a robot's usage, in the mission's unit: way and work, or the time under way and at work."""
+        """What tells a robot's usage, in the mission's unit: way and work, or the time of both; waiting is none."""
         port, number = self._ports[robot.id], self._number(robot.id)
         if self._in_time:
-            return lambda: self._under_way_s[robot.id]
+            return lambda: self._moving_s[robot.id] + port.held_s
         return lambda: float(self._crowd.travelled()[number]) + port.stay_usage
 
-    def _look_at_batteries(self, served: Mapping[str, Serving | None], busy: Collection[str], seconds: float) -> None:
-        """Robots under way use energy, those that were served get some; who is empty stops for good."""
+    def _moved(self) -> Floats:
+        """(m, 2) metres that robots have travelled, and their headings."""
+        if not self._moving_s:
+            return _NOTHING
+        return np.column_stack([self._crowd.travelled(), self._crowd.headings()])
+
+    def _look_at_batteries(self, served: Mapping[str, Serving | None], moved: Floats, seconds: float) -> None:
+        """Robots that move use energy, those that were served get some; who is empty stops for good."""
         largest_m = max(robot.radius_m for robot in self._robots)
-        for robot in self._under_way_s:
+        for robot in self._moving_s:
             port = self._ports[robot]
-            if robot in busy:
-                self._under_way_s[robot] += seconds
+            if np.abs(moved[self._number(robot)]).max() > _STILL:
+                self._moving_s[robot] += seconds
             self._stations.serve(port, served[robot], seconds, largest_m)
             if port.battery is not None and port.battery.level <= 0.0 and robot not in self._empty:
                 self._empty.add(robot)
@@ -433,12 +442,12 @@ class WorldBase(SimulatedWorld, ABC):
             self._turn_doors()
         ids = list(self._numbers)
         passed = []
-        begin_s, served = self.time_s, {robot: self._ports[robot].serving for robot in self._under_way_s}
-        busy = {robot for robot, serving in served.items() if serving is None and not self.idle(robot)}
+        begin_s, served = self.time_s, {robot: self._ports[robot].serving for robot in self._moving_s}
+        before = self._moved()
         for time, number, order, count, idle in self._go_on(until_s):
             label = self._ports[ids[number]].label(order, count)
             passed.append(WaypointPassed(time, ids[number], order, count, label, idle))
-        self._look_at_batteries(served, busy, self.time_s - begin_s)
+        self._look_at_batteries(served, self._moved() - before, self.time_s - begin_s)
         if self._crowd.steps % self._observed_steps == 0:
             self._observe()
         return tuple(passed)
