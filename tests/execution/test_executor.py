@@ -62,7 +62,7 @@ def test_shipped_missions_are_carried_out_as_planned(name):
     carry_out(executor, world, step=step, until=3 * verdict.makespan_s + 100)
     ledger = executor.ledger
     assert executor.done
-    assert set(ledger.ends_s) == {task for route in plan.routes for task in route.tasks}
+    assert set(ledger.ends_s) == {stop.task for route in plan.routes for stop in route.stops} - {None}
     assert set(executor.lost()) == {item.task for item in plan.unassigned}
     assert not executor.revisions
     for task in mission.tasks:

@@ -32,8 +32,7 @@ def test_orders_are_done_though_batteries_hold_a_few_of_them_only():
     simulation = Simulation(given, muster.solve(given, "greedy"), standing=standing)
     kinds, idle_calls = [], 0
     while not simulation.done and simulation.time_s < 3 * DURATION_S:
-        for event in simulation.advance(simulation.time_s + 0.5):
-            kinds.append(event.kind)
+        kinds += [event.kind for event in simulation.advance(simulation.time_s + 0.5)]
         idle_calls += any(call.planned is False for state in simulation._executor.crew.values() for call in state.calls)
     report = simulation.result()
     assert simulation.done
