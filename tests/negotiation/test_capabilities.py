@@ -9,7 +9,7 @@ from muster.allocation.auction import AUCTION
 from muster.allocation.capabilities import those_that_can
 from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
-from muster.mission.model import Lag, TeamPart
+from muster.mission.model import Battery, Lag, TeamPart
 from muster.negotiation.capabilities import refuse_mission, refuse_what_is_not_agreed
 from muster.negotiation.methods import METHODS
 
@@ -130,3 +130,12 @@ def test_plain_missions_due_times_and_ignored_rules_are_accepted():
     refuse_mission(with_task(prerequisites=("s",)), none)
     for ignored, keys in {"window": {"window_s": ((5.0, 9.0),)}, "team": {"robots_needed": 2}}.items():
         refuse_what_is_not_agreed(Problem.compile(with_task(**keys), None, (ignored,)), none)
+
+
+@pytest.mark.parametrize(
+    ("of_robot", "of_task", "why"), [({"battery": Battery(capacity=9)}, {}, "battery"), ({}, {"load": 1}, "load")]
+)
+def test_missions_with_goods_or_batteries_are_not_carried_out_without_a_centre(of_robot, of_task, why):
+    robots, tasks = (Robot(id="r", position=(0, 0), **of_robot),), (Task(id="t", position=(1, 0), **of_task),)
+    with pytest.raises(ParameterError, match=f"goods or batteries.*{why}"):
+        refuse_mission(Mission(robots=robots, tasks=tasks), frozenset())

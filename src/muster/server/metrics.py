@@ -8,7 +8,7 @@ import resource
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 from prometheus_client import CollectorRegistry, Histogram
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
@@ -119,8 +119,15 @@ def _activities(services: Services) -> Counter[str]:
     """How many robots of runs under way have which activity, by the newest status."""
     activities: Counter[str] = Counter()
     for text in services.runs.statuses():
-        activities.update(robot["activity"] for robot in json.loads(text)["robots"].values())
+        activities.update(map(_activity, json.loads(text)["robots"].values()))
     return activities
+
+
+def _activity(robot: Mapping[str, Any]) -> str:
+    """What a robot does, without the station at which it does that."""
+    activity: str = robot["activity"]
+    station = robot.get("station", "")
+    return activity.removesuffix(f" at {station}").removesuffix(f" to {station}") if station else activity
 
 
 def _route(completed: CompletedRequest) -> str:

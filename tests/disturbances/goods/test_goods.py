@@ -1,4 +1,4 @@
-"""No load is lost or delivered twice, and no robot runs empty; `make campaign-goods` tries 2,000 missions."""
+"""No load is lost or delivered twice, and no robot is empty in the field; `make campaign-goods` tries 2,000."""
 
 from collections import Counter
 

@@ -282,4 +282,6 @@ def _robot(robot: RobotStatus) -> dict[str, Any]:
         "charge": None if robot.charge is None else round(robot.charge, 3),
         "available": robot.available,
         "held_up_by": robot.held_up_by,
+        "station": robot.station,
+        "on_board": dict(robot.on_board),
     }

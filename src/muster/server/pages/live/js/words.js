@@ -19,7 +19,8 @@ export function doing(robot, takenOut) {
     case "waiting": return `waits${robot.task ? ` at ${robot.task}` : ""}${waits}`;
     case "working": return `works on ${robot.task}`;
     case "returning": return "goes to where its route ends";
-    default: return robot.available ? "free" : "not yet available";
+    default: if (robot.station) return `${robot.activity}${waits ? `, waits${waits}` : ""}`; // "charging at dock"
+      return robot.available ? "free" : "not yet available";
   }
 }
 
