@@ -30,6 +30,13 @@ def with_fixed_routes(problem: Problem, plan: Plan) -> Problem:
     return replace(problem, fixed=tuple(tuple(route) for route in routes))
 
 
+def admissible_alone(problem: Problem, i: int, route: Sequence[int]) -> bool:
+    """Whether a plan is admissible in which robot i does these tasks, and nobody else anything."""
+    routes: Routes = [[] for _ in problem.robots]
+    routes[i] = list(route)
+    return bool(core.Inspection(problem.core, routes).admissible)
+
+
 def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
     """The same problem for plans whose routes begin with what robots have done or begun, be it admissible or not.
 

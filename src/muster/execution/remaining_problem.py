@@ -12,9 +12,8 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from muster import core
 from muster.allocation.charges import Charge
-from muster.allocation.fixed import with_fixed_routes
+from muster.allocation.fixed import admissible_alone, with_fixed_routes
 from muster.allocation.problem import Problem
 from muster.execution.goods_ledger import as_amount
 from muster.execution.relations import Binding
@@ -203,9 +202,7 @@ def _with_energy_to_end(problem: Problem, past: Sequence[Route]) -> Problem:
     for i, robot in enumerate(robots):
         if robot.battery is None or robot.end_position is None or not began.get(robot.id):
             continue
-        alone: list[list[int]] = [[] for _ in robots]
-        alone[i] = began[robot.id]
-        if not core.Inspection(problem.core, alone).admissible:
+        if not admissible_alone(problem, i, began[robot.id]):
             robots[i] = replace(robot, end_position=None)
     return replace(problem, robots=tuple(robots))
 
