@@ -6,7 +6,7 @@ from tests.timed_missions.missions import timed_mission
 
 import muster
 from muster.mission.errors import ParameterError
-from muster.mission.model import Robot, Task
+from muster.mission.model import Robot, Station, Task
 from muster.mission.records import specified
 from muster.mission.yaml_writer import yaml_text
 from muster.server.pages.plan import form
@@ -47,6 +47,9 @@ def test_what_is_no_number_or_may_be_two(typed):
             [{"count": 2, "type": "rover"}, {"count": 1, "kind": "air", "requires": ["camera", "gripper"]}],
         ),
         ("parts", "kind=air", [{"kind": "air"}]),
+        ("loads", "3", 3),
+        ("loads", "-1,5", -1.5),
+        ("loads", "parcels 2, water_l 1,5", {"parcels": 2, "water_l": 1.5}),
         ("choice", "true", True),
         ("text", "  ", None),
     ],
@@ -63,6 +66,7 @@ def test_cells_of_every_kind(kind, typed, value):
         ("spans", "noon to 1200", "'noon'; expected a number"),
         ("amounts", "lift_kg", "'lift_kg'; expected a name and an amount"),
         ("parts", "two rovers", "'two'; expected parts, as 2 type=rover"),
+        ("loads", "parcels", "'parcels'; expected a number"),
         ("lagged", "a(soon..)", "'soon'; expected a number"),
     ],
 )
@@ -86,7 +90,7 @@ TEXT_ALONE = {  # what is typed on the map, in a dialogue or in the text
 
 
 def test_every_key_of_robots_and_tasks_has_a_cell_or_is_known_to_have_none():
-    keys = {one.name for model in (Robot, Task) for one in specified(model)}
+    keys = {one.name for model in (Robot, Task, Station) for one in specified(model)}
     assert keys - set(form._COLUMNS) <= TEXT_ALONE
 
 

@@ -25,9 +25,9 @@ class Curve(Element, component="curve.js"):
 
 
 class Gantt(Element, component="gantt.js"):
-    """The schedule of each robot: travel, waiting, work, and what the mission asks of time.
+    """The schedule of each robot: travel, waiting, work, service at stations, its battery, and what is asked of time.
 
-    Emits `choose` with a task's id.
+    Emits `choose` with `{what: task or station, id}`.
     """
 
     def __init__(self) -> None:
@@ -37,9 +37,10 @@ class Gantt(Element, component="gantt.js"):
         self.props["clock"] = None
 
     def show(self, verdict: Mapping[str, Any]) -> None:
-        """Show a verdict's `routes`, `{robot, visits: [{task, arrives_s, starts_s, ends_s}], leaves_s, back_s}`.
+        """Show a verdict's `routes`, `{robot, stops, leaves_s, back_s, level}`.
 
-        `marks` and `clock_start_s` are as the worker's verdict has them.
+        `stops` are `{name, is_station, arrives_s, starts_s, ends_s, charged}`. `level`, `marks` and `clock_start_s` are
+        as the worker's verdict has them.
         """
         self.props["rows"] = [dict(row) for row in verdict["routes"]]
         self.props["marks"] = [dict(mark) for mark in verdict["marks"]]

@@ -1,7 +1,8 @@
 // Who does what when: thin bars for travel, hatched ones for waiting, high ones with the task's name for work.
-// Windows are shaded, deadlines and due times strokes, lateness is red, and the bars of a team are linked.
+// A service at a station is a bar of its own colour, and what a battery holds a line beneath the bars. Windows are shaded, deadlines and due times strokes, lateness is red, and the bars of a team are linked.
 
 const [LEFT, FOOT, ROW] = [84, 22, 26];
+const LEVEL = 14; // the height of the line of a battery, beneath a row
 const NAME_WIDTH = 7; // pixels a letter
 const COLORS = 8;
 const WINDOW = ROW - 1; // the height of windows and of the strokes of deadlines
@@ -40,18 +41,23 @@ export default {
                 :width="Math.max(x(mark.until) - x(mark.from_s), 1)" :y="middle(mark.row) - ${WINDOW / 2}" height="${WINDOW}">
             <title>{{ mark.words }}</title>
           </rect>
+          <g v-for="{ key, ground, line, reserve, title } in levels" :key="key" class="battery">
+            <path class="level-ground" :d="ground" /><path class="level" :d="line"><title>{{ title }}</title></path>
+            <line v-if="reserve" class="reserve" v-bind="reserve" />
+          </g>
           <g v-for="(row, k) in rows" :key="row.robot">
             <text x="${LEFT - 8}" :y="middle(k) + 4" text-anchor="end" class="name">{{ short(row.robot) }}</text>
             <template v-for="bar in bars(row)" :key="bar.key">
               <rect :class="bar.kind" :x="x(bar.from)" :width="Math.max(x(bar.until) - x(bar.from), 1)"
                     :y="middle(k) - bar.high / 2" :height="bar.high" :style="paint(bar, k)"
-                    :tabindex="bar.kind === 'work' ? 0 : -1" :role="bar.kind === 'work' ? 'button' : 'presentation'"
+                    :tabindex="isNamed(bar) ? 0 : -1" :role="isNamed(bar) ? 'button' : 'presentation'"
                     :aria-label="bar.title" @click="choose(bar)" @keydown.enter="choose(bar)">
                 <title>{{ bar.title }}</title>
               </rect>
-              <text v-if="bar.kind === 'work' && x(bar.until) - x(bar.from) > bar.task.length * ${NAME_WIDTH} + 4"
-                    class="inside" :class="'on-c' + (k % ${COLORS})" :x="(x(bar.from) + x(bar.until)) / 2"
-                    :y="middle(k) + 4" text-anchor="middle">{{ bar.task }}</text>
+              <text v-if="isNamed(bar) && x(bar.until) - x(bar.from) > bar.sign.length * ${NAME_WIDTH} + 4"
+                    class="inside" :class="bar.kind === 'work' ? 'on-c' + (k % ${COLORS}) : 'of-station'"
+                    :x="(x(bar.from) + x(bar.until)) / 2"
+                    :y="middle(k) + 4" text-anchor="middle">{{ bar.sign }}</text>
             </template>
           </g>
           <rect v-for="mark in of('late')" :key="mark.key" class="late" :data-task="mark.task" :x="x(mark.from_s)"
@@ -73,9 +79,10 @@ export default {
   props: { rows: Array, marks: Array, clock: Number },
   data() { return { width: 0 }; },
   computed: {
-    height() { return this.rows.length * ROW + FOOT; },
+    row() { return ROW + (this.rows.some(({ level }) => level) ? LEVEL : 0); },
+    height() { return this.rows.length * this.row + FOOT; },
     end() {
-      const ends = this.rows.flatMap((row) => [row.back_s ?? 0, ...row.visits.map((visit) => visit.ends_s)]);
+      const ends = this.rows.flatMap((row) => [row.back_s ?? 0, ...row.stops.map((stop) => stop.ends_s)]);
       return Math.max(...ends, 0) || 1;
     },
     ticks() {
@@ -92,7 +99,24 @@ export default {
     },
     legend() {
       const found = LEGEND.filter(([kind]) => this.of(kind).length);
-      return [["travel", "travel"], ["waiting", "waiting"], ["work", "work"], ...found];
+      const service = this.rows.some(({ stops }) => stops.some((stop) => stop.is_station)) ? [["service", "[station]"]] : [];
+      const level = this.rows.some((row) => row.level) ? [["level", "battery, empty to full"]] : [];
+      return [["travel", "travel"], ["waiting", "waiting"], ["work", "work"], ...service, ...level, ...found];
+    },
+    levels() { // of each battery over time: a line from empty to full, the ground beneath it, and the reserve
+      return this.rows.flatMap(({ robot, level }, k) => {
+        if (!level?.points.length) return [];
+        const foot = (k + 1) * this.row - 2;
+        const y = (share) => foot - share * (LEVEL - 3);
+        const corners = level.points.map(([at, share]) => `${this.x(at).toFixed(1)} ${y(share).toFixed(1)}`);
+        const [first, last] = [level.points[0], level.points.at(-1)].map(([at]) => this.x(at).toFixed(1));
+        const line = `M${corners.join("L")}`;
+        const at = y(level.reserve).toFixed(1);
+        const least = Math.min(...level.points.map(([, share]) => share));
+        const title = `battery of ${robot}: at least ${(100 * least).toFixed(0)} %`;
+        const reserve = level.reserve ? { x1: first, x2: last, y1: at, y2: at } : null;
+        return [{ key: robot, line, ground: `${line}L${last} ${foot}L${first} ${foot}Z`, reserve, title }];
+      });
     },
     label() { return `Time chart of ${this.rows.length} robots up to ${this.end.toFixed(0)} s`; },
   },
@@ -103,7 +127,8 @@ export default {
   unmounted() { this.sizes.disconnect(); },
   methods: {
     x(at) { return LEFT + ((this.width - LEFT - 14) * at) / this.end; },
-    middle(k) { return (k + 0.5) * ROW; },
+    middle(k) { return k * this.row + ROW / 2; },
+    isNamed({ kind }) { return kind === "work" || kind === "service"; },
     short(name) { return name.length > 11 ? `${name.slice(0, 10)}…` : name; },
     of(kind) { return this.shown.filter((mark) => mark.kind === kind); },
     anchor(tick) {
@@ -118,26 +143,31 @@ export default {
       if (this.hasClock) return `${clockText(this.clock + from)} to ${clockText(this.clock + until)}`;
       return `${from.toFixed(1)} to ${until.toFixed(1)} s`;
     },
-    choose(bar) { if (bar.task) this.$emit("choose", bar.task); },
+    choose(bar) { if (bar.task) this.$emit("choose", { what: bar.kind === "service" || bar.atStation ? "station" : "task", id: bar.task }); },
     paint(bar, k) {
       const color = `var(--c${k % COLORS})`;
+      if (bar.kind === "service") return {};
       return bar.kind === "waiting" ? { fill: `url(#hatch-${k % COLORS})`, stroke: color } : { fill: color };
     },
     bars(row) {
       const bars = [];
-      const add = (kind, task, from, until, high, words) => {
-        if (until - from < 1e-9 && kind !== "work") return;
-        const title = `${row.robot} ${words} ${task}: ${this.times(from, until)}`;
-        bars.push({ key: `${kind}-${task}`, kind, task, from, until, high, title });
+      const add = (kind, { name: task, is_station: atStation }, from, until, high, words) => {
+        if (until - from < 1e-9 && kind !== "work" && kind !== "service") return;
+        const sign = atStation ? `[${task}]` : task;
+        const title = `${row.robot} ${words} ${sign}: ${this.times(from, until)}`;
+        bars.push({ key: `${kind}-${task}-${bars.length}`, kind, task, sign, atStation, from, until, high, title });
       };
       let free = row.leaves_s ?? 0;
-      for (const { task, arrives_s, starts_s, ends_s } of row.visits) {
-        add("travel", task, free, arrives_s, 4, "travels to");
-        add("waiting", task, arrives_s, starts_s, 13, "waits at");
-        add("work", task, starts_s, ends_s, 19, "works on");
+      for (const stop of row.stops) {
+        const { arrives_s, starts_s, ends_s, charged } = stop;
+        add("travel", stop, free, arrives_s, 4, "travels to");
+        add("waiting", stop, arrives_s, starts_s, 13, "waits at");
+        const words = charged === null ? "is served at" : `adds ${charged.toFixed(2)} to its battery at`;
+        if (stop.is_station) add("service", stop, starts_s, ends_s, 19, words);
+        else add("work", stop, starts_s, ends_s, 19, "works on");
         free = ends_s;
       }
-      if (row.back_s) add("travel", "", free, row.back_s, 4, "goes to its end");
+      if (row.back_s) add("travel", { name: "", is_station: false }, free, row.back_s, 4, "goes to its end");
       return bars;
     },
   },

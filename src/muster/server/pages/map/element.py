@@ -20,9 +20,9 @@ class MissionMap(
 
     | event | data |
     |---|---|
-    | `choose` | `{what: robot, task or zone; id; corner of a zone}`, or null |
+    | `choose` | `{what: robot, task, station or zone; id; corner of a zone}`, or null |
     | `move` | the same, with `x` and `y` in metres: dragged there, `from` [x, y]; `moves`: how many there were here |
-    | `add` | `{what: the mode; x; y}`: clicked on free ground in the mode `task` or `robot` |
+    | `add` | `{what: the mode; x; y}`: clicked on free ground in the mode `task`, `robot` or `station` |
     | `zone` | `{corners: [[x, y], ...]}`: drawn in the mode `zone` |
     | `leave` | nothing: Escape, while nothing is being drawn |
     | `remove`, `ask` | what is chosen, at the keys Delete and Enter; a zone that is removed with its `corners` |
@@ -63,7 +63,7 @@ class MissionMap(
         self.props["scene"] = {**scene, "moves": moves}
 
     def show_plan(self, plan: Mapping[str, Any] | None) -> None:
-        """Show routes: `{routes: [{robot, tasks, lines}], left_out: [ids]}`, or none."""
+        """Show routes: `{routes: [{robot, tasks, order, lines}], left_out: [ids]}`, or none."""
         self.props["plan"] = plan
 
     def wait(self, words: str) -> None:
@@ -71,11 +71,11 @@ class MissionMap(
         self.props["waiting"] = words
 
     def set_mode(self, mode: str) -> None:
-        """Say what a click on free ground means: `select`, or to add a `task` or `robot`, or to draw a `zone`."""
+        """Say what a click means: `select`, or to add a `task`, `robot` or `station`, or to draw a `zone`."""
         self.props["mode"] = mode
 
     def choose(self, what: str, name: str) -> None:
-        """Mark a robot or task, and bring it into sight."""
+        """Mark a robot, task or station, and bring it into sight."""
         self.run_method("reveal", {"what": what, "id": name})
 
     def choose_none(self) -> None:

@@ -10,6 +10,7 @@ import { fillTable, told, withShapes } from "muster-map/words.js";
 const NOTES = {
   task: "Click where the new task is (Enter: in the middle of the map); Escape ends adding.",
   robot: "Click where the new robot begins (Enter: in the middle of the map); Escape ends adding.",
+  station: "Click where the new station is (Enter: in the middle of the map); Escape ends adding.",
   zone: "Click the corners of the zone (space: in the middle of the map). Enter, a double-click or the first corner closes it; Backspace takes the last corner back, Escape leaves it.",
 };
 const EDITS = ["move", "add", "remove", "zone"];
@@ -33,7 +34,7 @@ export default {
                 title="What comes before what (r)" aria-label="Prerequisites">⇢</button>
       </div>
       <p ref="said" class="sr-only" aria-live="polite"></p>
-      <table ref="table" class="sr-only" aria-label="Robots and tasks of the map"></table>
+      <table ref="table" class="sr-only" aria-label="Robots, tasks and stations of the map"></table>
     </div>`,
   props: { scene: Object, plan: Object, editable: Boolean, mode: { type: String, default: "select" }, group: String, label: String,
            waiting: String },
@@ -88,7 +89,7 @@ export default {
       else if (name === "prerequisites") this.prerequisites = data;
       else this.$emit(name, name === "move" ? { ...data, moves: ++this.moves } : data);
     },
-    // From Python and from scripts: `one` is {what: "robot" | "task", id}, or null.
+    // From Python and from scripts: `one` is {what: "robot" | "task" | "station", id}, or null.
     choose(one, byHand = false) {
       this.stage.chosen = one;
       this.$refs.said.textContent = one ? told(this.stage, one) : "";

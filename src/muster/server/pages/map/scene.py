@@ -23,6 +23,7 @@ def scene_of(
     return {
         "robots": [_robot(robot) for robot in mission.get("robots") or ()],
         "tasks": [_task(task) for task in mission.get("tasks") or ()],
+        "stations": [_station(station) for station in mission.get("stations") or ()],
         "boundary": [list(corner[:2]) for corner in ground["boundary"]] if ground.get("boundary") else None,
         "zones": [_zone(zone, k) for k, zone in enumerate(ground.get("zones") or ())],
         "image": dict(image) if image else None,
@@ -57,6 +58,20 @@ def _task(task: Mapping[str, Any]) -> dict[str, Any]:
         "prerequisites": [
             str(before["task"] if isinstance(before, Mapping) else before) for before in task.get("prerequisites") or ()
         ],
+        "delivers": None if task.get("delivers") is None else str(task["delivers"]),
+    }
+
+
+def _station(station: Mapping[str, Any]) -> dict[str, Any]:
+    x, y, *rest = station["position"]
+    services = [str(service) for service in station.get("services") or ()]
+    return {
+        "id": str(station["id"]),
+        "x": x,
+        "y": y,
+        "z": rest[0] if rest else None,
+        "services": services,
+        "slots": station.get("slots") or 1,
     }
 
 

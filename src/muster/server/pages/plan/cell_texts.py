@@ -117,6 +117,11 @@ def _amounts(typed: str, where: str) -> dict[str, float]:
     return amounts
 
 
+def _loads(typed: str, where: str) -> float | dict[str, float]:
+    """`3`, or `parcels 2, water_l 1.5`: of the only commodity, or by commodity."""
+    return _amounts(typed, where) if any(map(_AMOUNT.fullmatch, _pieces(typed))) else number_of(typed, where)
+
+
 def _amounts_text(value: Any) -> str:
     return ", ".join(f"{name} {text_of(amount)}" for name, amount in value.items())
 
@@ -161,6 +166,7 @@ _READERS: Mapping[str, Callable[[str, str], object]] = {
     "spans": lambda typed, where: _spans(typed, where, number_of),
     "clock spans": lambda typed, where: _spans(typed, where, _any_text),
     "amounts": _amounts,
+    "loads": _loads,
     "parts": _parts,
 }
 _WRITERS: Mapping[str, Callable[[Any], str]] = {
@@ -168,5 +174,6 @@ _WRITERS: Mapping[str, Callable[[Any], str]] = {
     "spans": _spans_text,
     "clock spans": _spans_text,
     "amounts": _amounts_text,
+    "loads": _amounts_text,
     "parts": _parts_text,
 }

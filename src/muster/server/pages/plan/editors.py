@@ -18,7 +18,13 @@ from muster.server.pages.plan.text_view import TextView
 from muster.server.pages.plan.zone_form import open_zone
 from muster.server.pages.visitor import may_command, on_the_wall
 
-_MODES = {"select": "Move and choose", "task": "Add tasks", "robot": "Add robots", "zone": "Draw zones"}
+_MODES = {
+    "select": "Move and choose",
+    "task": "Add tasks",
+    "robot": "Add robots",
+    "station": "Add stations",
+    "zone": "Draw zones",
+}
 
 
 class Editors:

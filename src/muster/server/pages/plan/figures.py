@@ -9,9 +9,10 @@ from typing import Any
 from nicegui import ui
 
 from muster.mission.plan import gap
+from muster.mission.stations import station_sign
 
 Choose = Callable[[str, str], None]
-"""Told `robot` or `task` and an id, when somebody clicks it."""
+"""Told `robot`, `task` or `station` and an id, when somebody clicks it."""
 
 _COLORS = 8
 _CLICKED = """(event) => {
@@ -27,6 +28,7 @@ _MEANINGS = {
     "Total cost": "what all robots use together for travel and work",
     "Greatest usage": "what the robot uses that is used most",
     "Ends after": "when the last robot has done its last task",
+    "At stations": "how often robots charge, swap batteries or unload, and what that adds to all batteries",
     "Equality": "how evenly usage is shared: 1 where all robots are used alike, less where some do most",
     "Rules ignored": "whoever had this planned wanted it without these rules of the mission",
     "The judge says": "the plan was checked against every rule of the mission by a part that had no hand in making it",
@@ -50,6 +52,7 @@ def figures_of(plan: Mapping[str, Any], verdict: Mapping[str, Any] | None = None
         ("Greatest usage", _number(judged.get("max_usage", plan.get("max_usage")), unit)),
         ("Ends after", _number(judged.get("makespan_s", plan.get("makespan_s")), "s")),
         ("With traffic", _number(plan.get("time_with_traffic_s"), "s")),
+        ("At stations", _at_stations(judged, unit)),
         ("Equality", _number(plan.get("equality_index"), "")),
     ]
     if verdict is not None:
@@ -120,6 +123,27 @@ def _chips(tasks: Iterable[str]) -> str:
     return f'<div class="chips">{chips}</div>'
 
 
+def _stop_chips(route: Mapping[str, Any]) -> str:
+    """The tasks of a route and, in brackets, its stations in order; without a schedule its tasks alone."""
+    stops = [(stop["name"], stop["is_station"]) for stop in route["stops"]]
+    stops = stops or [(name, False) for name in route["tasks"]]
+    chips = [
+        _named("station", name, escape(station_sign(name)), "chip station", f"station {name}")
+        if is_station
+        else _named("task", name, escape(name), "chip", f"task {name}")
+        for name, is_station in stops
+    ]
+    return f'<div class="chips">{"".join(chips)}</div>'
+
+
+def _at_stations(judged: Mapping[str, Any], unit: str) -> str:
+    """How often robots are at stations, and what is charged there; empty where none is."""
+    visits, charged = judged.get("station_visits", 0), judged.get("charged", 0.0)
+    if not visits:
+        return ""
+    return f"{visits} time{'' if visits == 1 else 's'}" + (f", {_number(charged, unit)} charged" if charged else "")
+
+
 def _robot_row(k: int, route: Mapping[str, Any]) -> str:
     robot, capacity, color = str(route["robot"]), route.get("capacity"), f"background: var(--c{k % _COLORS})"
     swatch = f'<i class="swatch" style="{color}"></i>'
@@ -128,14 +152,19 @@ def _robot_row(k: int, route: Mapping[str, Any]) -> str:
     if capacity:
         share = min(route["usage"] / capacity, 1.0)
         usage += f'<div class="meter" aria-hidden="true"><div style="width: {share:.0%}; {color}"></div></div>'
-    tasks = _chips(str(task) for task in route["tasks"])
+    tasks = _stop_chips(route)
     return f'<tr><td>{name}</td><td>{tasks}</td><td class="number">{usage}</td></tr>'
 
 
 def lines_of(plan: Mapping[str, Any], verdict: Mapping[str, Any]) -> dict[str, Any]:
     """The routes of a judged plan for the map."""
     routes = [
-        {"robot": route["robot"], "tasks": list(route["tasks"]), "lines": verdict["lines"].get(route["robot"])}
+        {
+            "robot": route["robot"],
+            "tasks": list(route["tasks"]),
+            "order": list(route["order"]),
+            "lines": verdict["lines"].get(route["robot"]),
+        }
         for route in verdict["routes"]
     ]
     return {"routes": routes, "left_out": [item["task"] for item in plan.get("unassigned") or ()]}

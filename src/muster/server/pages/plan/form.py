@@ -1,4 +1,4 @@
-"""A mission as a form: tables of robots, tasks and rules. What is typed goes into the text, cell by cell."""
+"""A mission as a form: tables of robots, tasks, stations and rules. What is typed goes into the text, cell by cell."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from nicegui import background_tasks, ui
 
 from muster.mission.errors import MusterError, ParameterError
-from muster.mission.model import OBJECTIVES, Robot, Rules, Task
+from muster.mission.model import OBJECTIVES, Robot, Rules, Station, Task
 from muster.mission.records import specified
 from muster.mission.value_types import Number, Whole
 from muster.server.pages.editing.draft import Draft
@@ -59,6 +59,22 @@ _TASK_TIMES = (
     Column("other_robot_than", "words"),
     Column("starts_with", "words"),
 )
+_ROBOT_GOODS = (
+    Column("load_capacity", "loads", hint="as 10, or parcels 4, water_l 10"),
+    Column("load_at_start", "loads", hint="as 2, or parcels 1"),
+    Column("battery", "amounts", hint="as capacity 500, at_start 1, reserve 0.1"),
+)
+_TASK_GOODS = (
+    Column("load", "loads", hint="as 3, or parcels 2; below 0 it is put down"),
+    Column("delivers", hint="the id of a task with a load"),
+)
+_STATIONS = (
+    Column("services", "words", hint="charge, swap or unload; charge or swap beside unload"),
+    Column("slots", "number"),
+    Column("charge_per_s", "number"),
+    Column("swap_s", "number"),
+    Column("partial", "choice", ("true", "false")),
+)
 _RULES = (
     Column("objective", "choice", OBJECTIVES),
     Column("usage", "choice", ("distance", "time")),
@@ -69,13 +85,13 @@ _RULES = (
     Column("timing", "choice", ("profile", "constant")),
     Column("makespan_includes_return", "choice", ("true", "false")),
 )
-_SHOWN = {"rules": "rules", "robot": "robots", "task": "tasks"}
+_SHOWN = {"rules": "rules", "robot": "robots", "task": "tasks", "station": "stations"}
 _AXES = {"x": 0, "y": 1, "z": 2}
-_COLUMNS = {
-    column.key: column for column in (*_PLACE, _HEIGHT, *_ROBOTS, *_ROBOT_TIMES, *_TASKS, *_TASK_TIMES, *_RULES)
-}
+_OF_ROBOTS, _OF_TASKS = (*_ROBOTS, *_ROBOT_TIMES, *_ROBOT_GOODS), (*_TASKS, *_TASK_TIMES, *_TASK_GOODS)
+_COLUMNS = {column.key: column for column in (*_PLACE, _HEIGHT, *_OF_ROBOTS, *_OF_TASKS, *_STATIONS, *_RULES)}
+_GOODS = {column.key for column in (*_ROBOT_GOODS, *_TASK_GOODS)}
 _TIMES = {column.key for column in (*_ROBOT_TIMES, *_TASK_TIMES)}
-_AMOUNTS = {column.key for column in _COLUMNS.values() if column.kind == "amounts"}
+_AMOUNTS = {column.key for column in _COLUMNS.values() if column.kind in ("amounts", "loads")}
 
 
 def _explained(model: type[Any], columns: Sequence[Column]) -> tuple[Column, ...]:
@@ -91,7 +107,7 @@ def _explained(model: type[Any], columns: Sequence[Column]) -> tuple[Column, ...
 
 
 class Form:
-    """Three tables over the text of a draft."""
+    """Tables over the text of a draft."""
 
     def __init__(self, draft: Draft, edit: Callable[..., Awaitable[bool]], *, editable: bool) -> None:
         self._draft = draft
@@ -105,15 +121,18 @@ class Form:
                 raising.props('title="Every robot and task gets a height z, which is 0 at first"')
         self._timed = ui.checkbox("Times, teams and relations", on_change=self.show).props("dense")
         self._timed.props('title="Columns for windows, deadlines, shifts, teams, abilities and relations of tasks"')
+        self._goods = ui.checkbox("Goods and energy", on_change=self.show).props("dense")
+        self._goods.props('title="Loads, deliveries and batteries, and the stations where robots charge or unload"')
         with ui.element("div").classes("forms"):
             self._rules = Table("Rules", editable=editable, grows=False)
             self._robots = Table("Robots", editable=editable)
             self._tasks = Table("Tasks", editable=editable)
+            self._stations = Table("Stations", editable=editable)
         if editable:
             self._listen()
 
     def _listen(self) -> None:
-        for table, what in ((self._robots, "robot"), (self._tasks, "task")):
+        for table, what in ((self._robots, "robot"), (self._tasks, "task"), (self._stations, "station")):
             table.on("cell", lambda event, team=_SHOWN[what]: self._cell(team, event.args))
             table.on("add", lambda _, what=what: self._edit("add_beside", what))
             table.on("drop", lambda event, what=what: self._edit("drop", what, event.args))
@@ -126,7 +145,7 @@ class Form:
     async def _show(self) -> None:
         await self._read()
         if not self._draft.is_editing:  # otherwise it is shown again when that is done
-            for table in (self._rules, self._robots, self._tasks):
+            for table in (self._rules, self._robots, self._tasks, self._stations):
                 table.forget()
 
     async def _read(self) -> None:
@@ -137,16 +156,21 @@ class Form:
             self._message.text = f"The text cannot be shown: {words_of(error)}"
             return
         self._message.text = ""
-        robots, tasks = (_rows(data.get(team)) for team in ("robots", "tasks"))
-        in_space = any("z" in row for row in (*robots, *tasks))
+        robots, tasks, stations = (_rows(data.get(team)) for team in ("robots", "tasks", "stations"))
+        in_space = any("z" in row for row in (*robots, *tasks, *stations))
         self._flat.set_visibility(not in_space)
         place = (*_PLACE, _HEIGHT) if in_space else _PLACE
         self._rules.show(_explained(Rules, _RULES), [_row(data.get("rules") or {})])
         timed = self._timed.value or any(not _TIMES.isdisjoint(row) for row in (*robots, *tasks))
         self._timed.set_value(timed)
-        of_robots, of_tasks = (_ROBOT_TIMES, _TASK_TIMES) if timed else ((), ())
+        carries = self._goods.value or bool(stations) or any(not _GOODS.isdisjoint(row) for row in (*robots, *tasks))
+        self._goods.set_value(carries)
+        of_robots = (*(_ROBOT_TIMES if timed else ()), *(_ROBOT_GOODS if carries else ()))
+        of_tasks = (*(_TASK_TIMES if timed else ()), *(_TASK_GOODS if carries else ()))
         self._robots.show(_explained(Robot, (Column("id"), *place, *_ROBOTS, *of_robots)), robots)
         self._tasks.show(_explained(Task, (Column("id"), *place, *_TASKS, *of_tasks)), tasks)
+        self._stations.show(_explained(Station, (Column("id"), *place, *_STATIONS)), stations)
+        self._stations.set_visibility(carries)
 
     async def _cell(self, team: str, change: Mapping[str, Any]) -> None:
         key, row, name = str(change["key"]), int(change["row"]), str(change["id"])

@@ -47,7 +47,7 @@ class PlanPanel:
         self._chart = ui.element("div").classes("panel scrolling").props("hidden")
         with self._chart:
             self._gantt = Gantt()
-            self._gantt.on("choose", lambda event: self._choose_named("task", event.args))
+            self._gantt.on("choose", lambda event: self._choose_named(event.args["what"], event.args["id"]))
 
     @property
     def entry(self) -> PlanEntry | None:

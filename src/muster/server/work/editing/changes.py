@@ -1,4 +1,4 @@
-"""Changes of a mission's text by map and form: places, robots, tasks, single cells of tables."""
+"""Changes of a mission's text by map and form: places, robots, tasks, stations, single cells of tables."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from muster.server.work.editing.edits import EditError, append, data_of, remove,
 from muster.server.work.editing.nodes import Path
 from muster.server.work.editing.zones import add_zone
 
-TEAMS = {"robot": "robots", "task": "tasks"}
+TEAMS = {"robot": "robots", "task": "tasks", "station": "stations"}
+_PREFIXES = {"robot": "r_", "task": "", "station": "station_"}
+_FIRST_STATION = {"services": ["charge"], "charge_per_s": 1}
 
 
 def move(text: str, one: Mapping[str, Any], x: float, y: float) -> str:
-    """Put a robot, a task, or the corner of a zone elsewhere; a height stays.
+    """Put a robot, a task, a station, or the corner of a zone elsewhere; a height stays.
 
     A corner is known by its number and its zone's, and by where it was (`from`) where that is given: others may have
     those numbers by now.
@@ -32,20 +34,22 @@ def move(text: str, one: Mapping[str, Any], x: float, y: float) -> str:
 
 
 def add(text: str, what: str, x: float, y: float) -> str:
-    """Put a new robot or task there; a robot is like the last one, a task has the type of the last one.
+    """Put a new robot, task or station there; it is like the last one, but a task has only the type of the last one.
 
     Where the mission is in space and there is no last one, it is put on the ground.
     """
     items = data_of(text).get(TEAMS[what]) or []
     last = items[-1] if items and isinstance(items[-1], dict) else {}
     height = list(last.get("position", []))[2:] or ([0] if is_in_space(data_of(text)) else [])
-    alike = {key: value for key, value in last.items() if what == "robot" or key == "type"}
-    new = {"id": _free_id(items, "r_" if what == "robot" else ""), "position": [x, y, *height]}
+    alike = {key: value for key, value in last.items() if what != "task" or key == "type"}
+    if what == "station" and not last:
+        alike = _FIRST_STATION
+    new = {"id": _free_id(items, _PREFIXES[what]), "position": [x, y, *height]}
     return append(text, (TEAMS[what],), {**new, **{k: v for k, v in alike.items() if k not in (*new, "lat_lon")}})
 
 
 def add_beside(text: str, what: str) -> str:
-    """Put a new robot or task two metres east of the last one."""
+    """Put a new robot, task or station two metres east of the last one."""
     items: Sequence[Any] = data_of(text).get(TEAMS[what]) or []
     position = items[-1].get("position") if items and isinstance(items[-1], dict) else None
     x, y = position[:2] if isinstance(position, list) and len(position) > 1 else (0.0, 0.0)
@@ -53,7 +57,7 @@ def add_beside(text: str, what: str) -> str:
 
 
 def drop(text: str, what: str, name: str | int, corners: Sequence[Sequence[float]] | None = None) -> str:
-    """Take a robot, a task or a zone out; what names it elsewhere (prerequisites, relations, locks) lets go of it.
+    """Take a robot, task, station or zone out; prerequisites, relations, deliveries and locks let go of it.
 
     A zone is known by its number, and by its `corners` where they are given: another one may have that number by now.
     """
@@ -63,12 +67,16 @@ def drop(text: str, what: str, name: str | int, corners: Sequence[Sequence[float
             raise EditError(f"zone {int(name) + 1} is another one by now; choose it again")
         return remove(text, path)
     text = remove(text, _path_of(text, TEAMS[what], str(name)))
-    for key in _NAMING_TASKS if what == "task" else ("only_robots",):
+    for key in _NAMING[what]:
         text = _let_go(text, key, str(name))
     return text
 
 
-_NAMING_TASKS = ("prerequisites", "same_robot_as", "other_robot_than", "starts_with")
+_NAMING = {
+    "task": ("prerequisites", "same_robot_as", "other_robot_than", "starts_with", "delivers"),
+    "robot": ("only_robots",),
+    "station": (),
+}
 
 
 def _let_go(text: str, key: str, name: str) -> str:
@@ -116,18 +124,18 @@ def rename(text: str, name: str) -> str:
 
 
 def is_in_space(data: Mapping[str, Any]) -> bool:
-    """Whether a robot or a task has a height."""
+    """Whether a robot, a task or a station has a height."""
     return any(len(position) > 2 for position in _positions(data).values())
 
 
 def raised(text: str) -> str:
-    """Make a mission 3-D: every robot and task that has no height gets the height 0."""
+    """Make a mission 3-D: every robot, task and station that has no height gets the height 0."""
     positions = _positions(data_of(text))
     return set_values(text, {path: [*place, 0] for path, place in positions.items() if len(place) == 2})
 
 
 def _positions(data: Mapping[str, Any]) -> dict[Path, list[Any]]:
-    """The places of robots and tasks as they are written, by where they stand."""
+    """The places of robots, tasks and stations as they are written, by where they stand."""
     return {
         (team, k, "position"): item["position"]
         for team in TEAMS.values()
@@ -145,7 +153,7 @@ def _with_row_of(text: str, path: Sequence[str | int], name: str | None) -> Path
 
 
 def _path_of(text: str, team: str, name: str, row: int | None = None) -> Path:
-    """Where the only robot or task of this id stands; one without an id, whose name is empty, is known by its row."""
+    """Where the only item of this id stands; one without an id, whose name is empty, is known by its row."""
     items = data_of(text).get(team) or []
     rows = [k for k, item in enumerate(items) if isinstance(item, dict) and str(item.get("id", "")) == name]
     if not name:

@@ -46,7 +46,7 @@ def add_zone(
 
 
 def _around(corners: Iterable[Corner], data: Mapping[str, Any]) -> list[list[float]]:
-    items = [*(data.get("robots") or []), *(data.get("tasks") or [])]
+    items = [*(data.get("robots") or []), *(data.get("tasks") or []), *(data.get("stations") or [])]
     places = [item["position"] for item in items if isinstance(item, dict) and isinstance(item.get("position"), list)]
     points = [*corners, *(place[:2] for place in places)]
     west, south = (_neat(min(float(point[k]) for point in points) // 1 - _MARGIN_M) for k in (0, 1))

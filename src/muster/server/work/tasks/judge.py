@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from muster.mission.model import Mission
-from muster.report.gantt import row_of
+from muster.report.gantt import plan_rows
 from muster.report.route_lines import Places, RobotLines, robot_lines
 from muster.report.time_marks import page_marks
 from muster.server.work.missions import mission_of, plan_of
@@ -21,16 +21,21 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 
     It is what `muster verify --format json` prints, with `waiting_s`, `routes`, `lines`, `marks` and `clock_start_s`.
 
-    `routes` has for each robot, in mission order, its figures and `visits` with their times. `lines` has for each
-    robot's id `travel`, `work` and `end`, each a list of polylines in metres of the map frame. `marks` are the time
-    windows, deadlines, due times, lateness and teams of a time chart, by the numbers of `routes`; `clock_start_s` is
-    when the mission starts, seconds from midnight, where it says so.
+    `routes` has for each robot, in mission order, its figures, `visits` and `stops` with their times; `order`, its
+    tasks and stations as they are shown; and `level`, what its battery holds over time: `points`, [seconds, share of
+    the capacity], and the `reserve`; None without one. `lines` has for each robot's id `travel`, `work` and `end`, each
+    a list of polylines in metres of the map frame. `marks` are the time windows, deadlines, due times, lateness and
+    teams of a time chart, by the numbers of `routes`; `clock_start_s` is when the mission starts, seconds from
+    midnight, where it says so.
     """
     mission = mission_of(arguments["mission"])
     verdict = verify(mission, plan_of(arguments["plan"]), arguments.get("ignore", ()), arguments.get("objective"))
-    routes = [asdict(route) for route in verdict.routes]
+    rows = plan_rows(mission, verdict)
+    routes = [
+        {**asdict(route), "order": route.order, "level": None if row.level is None else asdict(row.level)}
+        for route, row in zip(verdict.routes, rows, strict=True)
+    ]
     own = {"waiting_s": verdict.waiting_s, "routes": routes, "lines": lines(mission, verdict)}
-    rows = tuple(map(row_of, verdict.routes))
     return {**verdict.as_dict(), **own, **page_marks(mission.tasks, rows, mission.starts_at)}
 
 

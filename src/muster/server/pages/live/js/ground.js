@@ -168,12 +168,14 @@ function shapedTypes(known, tasks) {
   return [...known, ...all.filter((type) => !known.includes(type))];
 }
 
-// Boundary and zones of a plain mission.
-function groundOf({ map: chart }) {
+const laid = ({ id, services, slots = 1, position: [x, y, z] }) => ({ id, services, slots, x, y, z });
+
+// Boundary, zones and stations of a plain mission.
+function groundOf({ map: chart, stations = [] }) {
   const zones = (chart?.zones ?? []).map(({ polygon, forbidden_to: whom = ["ground", "air"], floor_m: floor, ceiling_m: ceiling }, k) => ({
     corners: polygon,
     partly: whom.length < 2 || (floor ?? null) !== null || (ceiling ?? null) !== null,
     label: `zone ${k + 1}, closed to ${whom.map((kind) => `${kind} robots`).join(" and ")}`,
   }));
-  return { boundary: chart?.boundary ?? null, zones };
+  return { boundary: chart?.boundary ?? null, zones, stations: stations.map(laid) };
 }

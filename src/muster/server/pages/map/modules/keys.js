@@ -78,8 +78,9 @@ export function listenToKeys(element, stage, emit, modeOf, { letters = true } = 
   }
 
   function next(step) {
-    const { robots, tasks } = stage.scene;
-    const all = [...robots.map(({ id }) => ({ what: "robot", id })), ...tasks.map(({ id }) => ({ what: "task", id }))];
+    const { robots, tasks, stations } = stage.scene;
+    const named = (items, what) => items.map(({ id }) => ({ what, id }));
+    const all = [...named(robots, "robot"), ...named(tasks, "task"), ...named(stations, "station")];
     if (!all.length) return;
     const here = all.findIndex(({ what, id }) => stage.places.is(stage.chosen, what, id));
     const one = all[here < 0 ? (step > 0 ? 0 : all.length - 1) : (here + step + all.length) % all.length];

@@ -5,11 +5,12 @@ import { drawPrerequisites, drawRoutes, drawTrails } from "./lines.js";
 import { Live } from "./live.js";
 import { readTheme } from "./looks.js";
 import { drawRobots, drawTasks, robotRadius, short, taskRadius } from "./marks.js";
+import { drawStations, STATION_RADIUS } from "./stations.js";
 import { Pictures } from "./pictures.js";
 import { Sketch } from "./sketch.js";
 import { boundsOf, View } from "./view.js";
 
-const EMPTY = { robots: [], tasks: [], zones: [], boundary: null, image: null, tiles: null };
+const EMPTY = { robots: [], tasks: [], stations: [], zones: [], boundary: null, image: null, tiles: null };
 const HANDLE = 5; // pixels, half the side of the handle at a corner of a zone
 const REACH = 8; // pixels around a mark within which it is meant
 
@@ -41,6 +42,7 @@ export class Stage {
   index() {
     this.places = {
       tasks: new Map(this.scene.tasks.map((task) => [task.id, task])),
+      stations: new Map(this.scene.stations.map((station) => [station.id, station])),
       robotIndex: new Map(this.scene.robots.map((robot, k) => [robot.id, k])),
       is: (one, what, id) => one !== null && one.what === what && one.id === id,
     };
@@ -72,10 +74,10 @@ export class Stage {
     return boundsOf([...this.marks(), ...(boundary ?? []), ...(image ? this.pictures.floorCorners(image) : [])]);
   }
 
-  // Places of what is put on the ground: robots, tasks, corners of zones.
+  // Places of what is put on the ground: robots, tasks, stations, corners of zones.
   marks() {
-    const { robots, tasks, zones } = this.scene;
-    return [...[...robots, ...tasks].map(({ x, y }) => [x, y]), ...zones.flatMap((zone) => zone.corners)];
+    const { robots, tasks, stations, zones } = this.scene;
+    return [...[...robots, ...tasks, ...stations].map(({ x, y }) => [x, y]), ...zones.flatMap((zone) => zone.corners)];
   }
 
   fit() {
@@ -120,6 +122,7 @@ export class Stage {
     drawRoutes(context, view, this.routes, places, theme, only);
     const task = chosen?.what === "task" ? chosen.id : null;
     if (this.showPrerequisites || task) drawPrerequisites(context, view, scene, places, theme, task);
+    drawStations(context, view, this);
     drawTasks(context, view, this);
     if (this.editable) this.paintHandles(context);
     drawScaleBar(context, view, theme);
@@ -152,12 +155,13 @@ export class Stage {
 
   find({ what, id, corner }) {
     if (what === "task") return this.places.tasks.get(id) ?? null;
+    if (what === "station") return this.places.stations.get(id) ?? null;
     if (what === "robot") return this.scene.robots[this.places.robotIndex.get(id)] ?? null;
     const point = this.scene.zones[id]?.corners[corner ?? 0];
     return point ? { x: point[0], y: point[1] } : null;
   }
 
-  // What is at a pixel: robots before tasks before corners of zones; the nearest of each.
+  // What is at a pixel: robots before tasks before stations before corners of zones; the nearest of each.
   at(px, py) {
     const nearest = (items, radius) => {
       let best = null;
@@ -173,9 +177,11 @@ export class Stage {
       return { what: "robot", id: robot.id, x, y };
     });
     const tasks = this.scene.tasks.map(({ id, x, y }) => ({ what: "task", id, x, y }));
+    const stations = this.scene.stations.map(({ id, x, y }) => ({ what: "station", id, x, y }));
     const corners = this.editable ? this.corners() : [];
     return nearest(robots, robotRadius(this.scene, this.theme) - 4)
-      ?? nearest(tasks, taskRadius(this.scene, this.theme) - 2) ?? nearest(corners, HANDLE);
+      ?? nearest(tasks, taskRadius(this.scene, this.theme) - 2)
+      ?? nearest(stations, STATION_RADIUS * this.theme.scale - 2) ?? nearest(corners, HANDLE);
   }
 
   corners() {

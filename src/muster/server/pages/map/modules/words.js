@@ -1,4 +1,4 @@
-// The map in words: what is chosen or pointed at, and a table of robots and tasks for those who do not see it.
+// The map in words: what is chosen or pointed at, and a table of robots, tasks and stations for those who do not see it.
 
 import { SHAPES } from "./looks.js";
 
@@ -10,6 +10,7 @@ export function told(stage, one) {
   const found = stage.find(one);
   if (!found) return "";
   if (one.what === "zone") return `corner ${one.corner + 1} of ${stage.scene.zones[one.id].label}`;
+  if (one.what === "station") return toldStation(stage, found);
   return one.what === "robot" ? toldRobot(stage, found) : toldTask(stage, found);
 }
 
@@ -19,8 +20,17 @@ function toldRobot(stage, robot) {
   const parts = [`robot ${robot.id}`, robot.type, robot.kind === "air" ? "flies" : "", place({ x, y, z: robot.z })];
   if (activity) parts.push(activity);
   if (out) parts.push("is out");
-  if (route?.tasks) parts.push(route.tasks.length ? `does ${route.tasks.join(", ")}` : "has no task");
+  const order = route?.order ?? route?.tasks;
+  if (order) parts.push(order.length ? `does ${order.join(", ")}` : "has no task");
   return parts.filter(Boolean).join("; ");
+}
+
+function toldStation(stage, station) {
+  const slots = station.slots > 1 ? `${station.slots} slots` : "";
+  const sign = `[${station.id}]`;
+  const who = stage.routes.filter(({ order }) => order?.includes(sign)).map(({ robot }) => robot);
+  const served = who.length ? `serves ${who.join(", ")}` : "";
+  return [`station ${station.id}`, station.services.join(", "), slots, place(station), served].filter(Boolean).join("; ");
 }
 
 function toldTask(stage, task) {
@@ -30,6 +40,7 @@ function toldTask(stage, task) {
   if (stage.leftOut.has(task.id)) parts.push("left out of the plan");
   if (stage.impossible.has(task.id)) parts.push(stage.whyNot(task));
   if (task.prerequisites.length) parts.push(`after ${task.prerequisites.join(", ")}`);
+  if (task.delivers) parts.push(`delivers ${task.delivers}`);
   const state = stage.live.tasks.get(task.id);
   if (state) parts.push(state);
   return parts.filter(Boolean).join("; ");
@@ -50,7 +61,9 @@ export function fillTable(table, stage) {
   const robots = stage.scene.robots.map((r) => row(["robot", r.id, r.type, metres(r.x), metres(r.y), height(r), "", ""], "td"));
   const tasks = stage.scene.tasks.map((t) => row(
     ["task", t.id, t.type, metres(t.x), metres(t.y), height(t), t.prerequisites.join(" "), nameOf(stage.assigned.get(t.id))], "td"));
-  table.replaceChildren(row(["what", "name", "type", "x in m", "y in m", "z in m", "after", "done by"], "th"), ...robots, ...tasks);
+  const stations = stage.scene.stations.map((s) => row(
+    ["station", s.id, s.services.join(" "), metres(s.x), metres(s.y), height(s), "", ""], "td"));
+  table.replaceChildren(row(["what", "name", "type", "x in m", "y in m", "z in m", "after", "done by"], "th"), ...robots, ...tasks, ...stations);
 }
 
 // Shapes by task type, in the order in which types appear.
