@@ -131,10 +131,15 @@ def test_a_makespan_is_in_seconds_and_a_bound_that_is_missing_is_told() -> None:
 
 
 def test_the_map_gets_lines_and_what_is_left_out() -> None:
-    verdict = {"routes": [{"robot": "x", "tasks": ("1",)}], "lines": {"x": {"travel": [[[0, 0], [1, 1]]]}}}
+    verdict = {
+        "routes": [{"robot": "x", "tasks": ("1",), "order": ("1", "[dock]")}],
+        "lines": {"x": {"travel": [[[0, 0], [1, 1]]]}},
+    }
     shown = lines_of({"unassigned": [{"task": "9"}]}, verdict)
     assert shown["left_out"] == ["9"]
-    assert shown["routes"] == [{"robot": "x", "tasks": ["1"], "lines": {"travel": [[[0, 0], [1, 1]]]}}]
+    assert shown["routes"] == [
+        {"robot": "x", "tasks": ["1"], "order": ["1", "[dock]"], "lines": {"travel": [[[0, 0], [1, 1]]]}}
+    ]
 
 
 def test_times_are_told_from_now() -> None:

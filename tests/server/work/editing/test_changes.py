@@ -126,3 +126,22 @@ def test_places_that_others_share_are_not_raised_behind_their_backs() -> None:
     shared = "robots:\n  - {id: a, position: &p [1, 2]}\ntasks:\n  - {id: 1, position: *p, z: *p}\n"
     with pytest.raises(EditError, match="change it in the text itself"):
         changes.raised(shared)
+
+
+def test_stations_are_placed_moved_set_and_dropped_like_tasks() -> None:
+    text = changes.add(TEXT, "station", 1, 2)
+    first = {"id": "station_0", "position": [1, 2, 2.5], "services": ["charge"], "charge_per_s": 1}
+    assert data_of(text)["stations"] == [{**first, "position": [1, 2, 0]}]
+    text = changes.set_cell(text, ("stations", 0, "slots"), 2, "station_0")
+    text = changes.add_beside(text, "station")
+    assert data_of(text)["stations"][1] == {**first, "id": "station_1", "position": [3, 2, 0], "slots": 2}
+    text = changes.move(text, {"what": "station", "id": "station_1"}, 5, 6)
+    assert data_of(text)["stations"][1]["position"] == [5, 6, 0]
+    text = changes.set_cell(text, ("stations", 1, "id"), "rack", "station_1")
+    text = changes.drop(text, "station", "station_0")
+    assert [one["id"] for one in data_of(text)["stations"]] == ["rack"]
+
+
+def test_a_delivery_lets_go_of_a_task_that_goes() -> None:
+    text = changes.set_cell(TEXT, ("tasks", 1, "delivers"), "9", "8")
+    assert "delivers" not in data_of(changes.drop(text, "task", "9"))["tasks"][1]

@@ -58,7 +58,7 @@ def _task(task: Mapping[str, Any]) -> dict[str, Any]:
         "prerequisites": [
             str(before["task"] if isinstance(before, Mapping) else before) for before in task.get("prerequisites") or ()
         ],
-        "delivers": None if task.get("delivers") is None else str(task["delivers"]),
+        **({} if task.get("delivers") is None else {"delivers": str(task["delivers"])}),
     }
 
 

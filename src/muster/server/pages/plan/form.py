@@ -119,10 +119,11 @@ class Form:
             if editable:
                 raising = ui.button("Make it 3-D", on_click=lambda: self._edit("raised")).props("outline dense")
                 raising.props('title="Every robot and task gets a height z, which is 0 at first"')
-        self._timed = ui.checkbox("Times, teams and relations", on_change=self.show).props("dense")
-        self._timed.props('title="Columns for windows, deadlines, shifts, teams, abilities and relations of tasks"')
-        self._goods = ui.checkbox("Goods and energy", on_change=self.show).props("dense")
-        self._goods.props('title="Loads, deliveries and batteries, and the stations where robots charge or unload"')
+        with ui.element("div").classes("bar"):
+            self._timed = ui.checkbox("Times, teams and relations", on_change=self.show).props("dense")
+            self._timed.props('title="Columns for windows, deadlines, shifts, teams, abilities and relations of tasks"')
+            self._goods = ui.checkbox("Goods and energy", on_change=self.show).props("dense")
+            self._goods.props('title="Loads, deliveries and batteries, and the stations where robots charge or unload"')
         with ui.element("div").classes("forms"):
             self._rules = Table("Rules", editable=editable, grows=False)
             self._robots = Table("Robots", editable=editable)
