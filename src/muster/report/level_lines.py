@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from muster.mission.model import Battery
+from muster.mission.model import Battery, Robot
+from muster.report.record import Recording
 from muster.report.styles import FAINT, LEVEL
 from muster.verification import RouteFigures, Stop
 
@@ -32,6 +33,22 @@ def planned_level(route: RouteFigures, battery: Battery) -> Level | None:
     if route.back_s is not None:
         points.append((route.back_s, battery.level_at_start + route.charged - route.usage))
     return Level(tuple((at_s, level / battery.capacity) for at_s, level in points), battery.reserve)
+
+
+def recorded_level(recording: Recording, robot: Robot) -> Level | None:
+    """The level as events told it, straight between them; None of a robot without a battery."""
+    if robot.battery is None:
+        return None
+    told = [(0.0, robot.battery.at_start)]
+    for event in recording.events:
+        charge = event.data.get("charge")
+        if event.data.get("robot") == robot.id and isinstance(charge, int | float):
+            told.append((event.time_s, float(charge)))
+    rows = (recording.report or {}).get("robots") or ()
+    last = next((row.get("charge") for row in rows if row.get("robot") == robot.id), None)
+    if isinstance(last, int | float):
+        told.append((recording.duration_s, float(last)))
+    return Level(tuple(told), robot.battery.reserve)
 
 
 def draw_levels(ax: Any, levels: Sequence[Level | None]) -> list[tuple[Any, str]]:

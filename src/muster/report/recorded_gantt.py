@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from muster.report.activity_spans import TRAFFIC, TRAVEL, WAITING, WORK, spans
+from muster.report.activity_spans import SERVICE, TRAFFIC, TRAVEL, WAITING, WORK, spans
 from muster.report.canvas import add_legend, add_title, note_entries
 from muster.report.fonts import Names
+from muster.report.level_lines import recorded_level
 from muster.report.record import Recording
 from muster.report.recorded_tracks import outcome
 from muster.report.route_ground import drawn_prerequisites
-from muster.report.time_chart import Row, TimeChart, Work, duration, lasting, new_chart_axes
+from muster.report.time_chart import Row, Service, TimeChart, Work, duration, lasting, new_chart_axes
 from muster.report.time_limits import draw_limits
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def plot_flown_gantt(recording: Recording) -> Axes:
-    """Draw when each robot travelled, worked and waited, at tasks and in traffic.
+    """Draw when each robot travelled, worked, was served and waited, at tasks, at stations and in traffic.
 
     There is a row for each robot of the mission, then for those that joined.
 
@@ -32,7 +33,7 @@ def plot_flown_gantt(recording: Recording) -> Axes:
     """
     mission, tasks = recording.mission, recording.tasks
     rows, until_s = recorded_rows(recording), recording.duration_s
-    ax = new_chart_axes(len(rows))
+    ax = new_chart_axes(len(rows), levels=any(row.level is not None for row in rows))
     planned = [version.plan.makespan_s for version in recording.plans[:1] if version.plan.makespan_s is not None]
     chart = TimeChart(
         rows=rows,
@@ -62,6 +63,10 @@ def recorded_rows(recording: Recording) -> tuple[Row, ...]:
                 travel=lasting((span.from_s, span.until_s) for span in own if span.kind == TRAVEL),
                 waiting=lasting((span.from_s, span.until_s) for span in own if span.kind == WAITING),
                 traffic=lasting((span.from_s, span.until_s) for span in own if span.kind == TRAFFIC),
+                services=tuple(
+                    Service(span.station, span.from_s, span.until_s) for span in own if span.kind == SERVICE
+                ),
+                level=recorded_level(recording, robot),
             )
         )
     return tuple(rows)

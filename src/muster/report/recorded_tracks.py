@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from muster.mission.model import Mission
 from muster.report.canvas import (
     add_legend,
     add_title,
@@ -22,6 +23,7 @@ from muster.report.fonts import Names
 from muster.report.record import Recording
 from muster.report.record.mission_state import DONE, OPEN
 from muster.report.route_lines import Places, places
+from muster.report.station_marks import draw_stations, station_names
 from muster.report.styles import ALARM, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
 
 if TYPE_CHECKING:
@@ -71,10 +73,24 @@ def outcome(recording: Recording) -> list[str]:
 def _draw(ax: Any, recording: Recording, names: Names) -> None:
     chart, spatial = recording.mission.map, recording.mission.dimensions == 3
     ground = [] if chart is None else draw_map(ax, chart, recording.image, spatial=spatial)
-    entries = [*_draw_tracks(ax, recording, names), *_draw_tasks(ax, recording, names), *ground, *note_entries(names)]
+    stations = _draw_stations(ax, recording.mission, names)
+    entries = [
+        *_draw_tracks(ax, recording, names),
+        *_draw_tasks(ax, recording, names),
+        *stations,
+        *ground,
+        *note_entries(names),
+    ]
     add_legend(ax, entries)
     facts = [f"{recording.duration_s:.1f} s", *outcome(recording)]
     add_title(ax, names.title(recording.mission.name), facts, "" if recording.complete else "the record breaks off")
+
+
+def _draw_stations(ax: Any, mission: Mission, names: Names) -> list[tuple[Any, str]]:
+    entries = draw_stations(ax, places([station.position for station in mission.stations], mission.dimensions))
+    for position, text, look in station_names(mission, names):
+        write(ax, places([position], mission.dimensions)[0], shortened(text), (0, 9), halo=True, **look)
+    return entries
 
 
 def _draw_tracks(ax: Any, recording: Recording, names: Names) -> list[tuple[Any, str]]:
@@ -110,6 +126,7 @@ def _limits(recording: Recording) -> tuple[Places, Places]:
     flown = recording.tracks.positions[:, :, :dimensions].reshape(-1, dimensions)
     corners = [] if mission.map is None else map_corners(mission.map, recording.image)
     tasks = recording.outcome.tasks.values()
-    still = places([*(task.position for task in tasks), *(robot.position for robot in recording.robots)], dimensions)
+    stops = [*(task.position for task in tasks), *(station.position for station in mission.stations)]
+    still = places([*stops, *(robot.position for robot in recording.robots)], dimensions)
     points = np.vstack([flown[np.isfinite(flown).all(axis=1)], still, places(corners, dimensions)])
     return limits(points, 0.06, on_ground=mission.map is not None)

@@ -21,6 +21,7 @@ INK: Rgb = (34, 34, 34)
 QUIET_INK: Rgb = (95, 99, 105)
 _NOT_TOLD = (
     *("sets_out", "arrives", "starts", "robot_at_end", "mission_ended"),
+    *("goes_to_station", "arrives_at_station", "service_begins"),
     *("waits_in_traffic", "goes_on", "robot_stands_aside", "robot_goes_round", "robot_makes_room"),
 )
 _LONGEST = 64

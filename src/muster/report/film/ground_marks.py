@@ -1,4 +1,4 @@
-"""Marks on the ground of a film: tasks, trails, and rings around robots.
+"""Marks on the ground of a film: stations, tasks, trails, and rings around robots.
 
 A task is white with a grey rim while it is open, white with the robot's colour around it while a robot works on it, and
 wholly in the colour of the robot that has done it; lost tasks are red, cancelled ones grey. The ring around a robot is
@@ -11,16 +11,16 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from muster.mission.model import Robot, Task
+from muster.mission.model import Robot, Station, Task
 from muster.motion.grid import Floats
 from muster.report.film.interpolation import RunInterpolation
 from muster.report.record.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
-from muster.report.styles import ALARM, LEFT_OUT, robot_style
+from muster.report.styles import ALARM, LEFT_OUT, SERVICE, SERVICE_EDGE, robot_style
 from muster.simulation.physics.buildings import Rgba
 from muster.simulation.physics.visual_marks import Mark, ball, disc, strip
 
-TASK_PX, RING_PX, TRAIL_PX = 7.0, 7.0, 2.2
-"""Least sizes in pixels of a film: radii of tasks and rings, width of trails."""
+TASK_PX, RING_PX, TRAIL_PX, STATION_PX = 7.0, 7.0, 2.2, 9.0
+"""Least sizes in pixels of a film: radii of tasks, rings and stations, width of trails."""
 _LEVEL_M = 0.0015
 """Between what lies upon each other, as a share of a pixel's size where this is more."""
 _STANDS_M = 0.3
@@ -65,6 +65,8 @@ class GroundMarks:
         """
         mission_state = self._moments.mission_state
         colors = {name: robot_style(k).color for k, name in enumerate(mission_state.robots)}
+        for station in mission_state.mission.stations:
+            yield from self._station(station)
         for name, task in mission_state.tasks.items():
             who = colors.get(self._moments.busy_with.get(name, ""), LEFT_OUT)
             yield from self._task(task, mission_state.states[name], who)
@@ -86,6 +88,18 @@ class GroundMarks:
     def _piece(self, robot: int, start: Floats, end: Floats) -> Mark | None:
         lift, color = (0.0, 0.0, self._level_m), rgba(robot_style(robot).color, faded=0.45)
         return strip(start + lift, end + lift, TRAIL_PX * self._pixel_m, self._level_m, color)
+
+    def _station(self, station: Station) -> Iterator[Mark]:
+        """A cross on the ground below it."""
+        middle = np.array([*station.position[:2], self._ground_m + 2 * self._level_m])
+        arm = STATION_PX * self._pixel_m
+        for along in (np.array([arm, 0.0, 0.0]), np.array([0.0, arm, 0.0])):
+            for grown, color, lift in ((1.15, SERVICE_EDGE, 0.0), (1.0, SERVICE, self._level_m)):
+                end, width = along * grown, arm * (0.72 if lift == 0.0 else 0.5)
+                at = middle + np.array([0.0, 0.0, lift])
+                band = strip(at - end, at + end, width, self._level_m, rgba(color))
+                if band is not None:
+                    yield band
 
     def _task(self, task: Task, state: str, who: str) -> Iterator[Mark]:
         rim, core = {

@@ -10,13 +10,14 @@ import cv2
 import numpy as np
 
 from muster.mission.model import Mission
+from muster.mission.stations import station_sign
 from muster.motion.grid import Floats
 from muster.report.film.captions import Picture, rgb, write_names
 from muster.report.film.footage import Footage
-from muster.report.film.ground_marks import RING_PX, TASK_PX, GroundMarks, rgba
+from muster.report.film.ground_marks import RING_PX, STATION_PX, TASK_PX, GroundMarks, rgba
 from muster.report.film.interpolation import RunInterpolation
 from muster.report.film.view import Frame, View, view_of
-from muster.report.styles import QUIET_TEXT, robot_style
+from muster.report.styles import QUIET_TEXT, SERVICE_EDGE, robot_style
 from muster.simulation.physics.buildings import Heights
 from muster.simulation.physics.posed_scene import PosedScene
 from muster.simulation.physics.rendering import Lens, Renderer
@@ -111,6 +112,7 @@ def name_all(
         at = pixels(places)
         at[:, 1] += TASK_PX + 13.0
         write_names(picture, [(task.id, rgb(QUIET_TEXT)) for task in tasks], at, 11, 400)
+    _name_stations(picture, moments.mission_state.mission, pixels, ground_m)
     names = [(robot.id, rgb(robot_style(k).color)) for k, robot in enumerate(robots)]
     rings = np.array([max(robot.radius_m / pixel_m, RING_PX) for robot in robots])
     at = pixels(poses[: len(robots), :3])
@@ -118,10 +120,20 @@ def name_all(
     write_names(picture, names, at, 13, 600)
 
 
+def _name_stations(picture: Picture, mission: Mission, pixels: Callable[[Floats], Floats], ground_m: float) -> None:
+    if not 0 < len(mission.stations) <= _MOST_NAMED:
+        return
+    at = pixels(np.array([(*station.position[:2], ground_m) for station in mission.stations]))
+    at[:, 1] += STATION_PX + 13.0
+    names = [(station_sign(station.id), rgb(SERVICE_EDGE)) for station in mission.stations]
+    write_names(picture, names, at, 11, 400)
+
+
 def places_of(mission: Mission, poses: Floats) -> Floats:
-    """The places that a picture has to show, (k, 3) metres: tasks, robots' tracks, the map's boundary and zones."""
+    """The places that a picture has to show, (k, 3) metres: stops, robots' tracks, the map's boundary and zones."""
     found = [place for task in mission.tasks for place in (task.position, task.entry, task.exit) if place is not None]
     found += [robot.position for robot in mission.robots]
+    found += [station.position for station in mission.stations]
     found += [event.new_task.position for event in mission.events if event.new_task is not None]
     places = np.array([(*place, 0.0)[:3] for place in found]).reshape(-1, 3)
     way = poses[:, :, :3].reshape(-1, 3)

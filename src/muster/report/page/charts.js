@@ -1,4 +1,4 @@
-// Charts over time, all with the same axis: what robots do, how near they are to each other, how high they are.
+// Charts over time, all with the same axis: what robots do, their batteries, how near they are, how high they are.
 
 const LABELS = 64; // pixels left of every chart
 const AXIS = 18; // pixels below
@@ -6,6 +6,7 @@ const MOST_PAIRS = 15;
 const LABEL_HEIGHT = 12;
 const ganttPicture = document.getElementById("gantt");
 const distancePicture = document.getElementById("distance-chart");
+const batteryPicture = document.getElementById("battery-chart");
 const heightPicture = document.getElementById("height-chart");
 let cursors = [];
 
@@ -14,6 +15,8 @@ function drawCharts() {
   drawGantt();
   document.getElementById("distances").hidden = !nearest;
   document.getElementById("heights").hidden = !data.spatial;
+  document.getElementById("batteries").hidden = !robots.some(({ level }) => level);
+  if (robots.some(({ level }) => level)) drawBatteries();
   if (nearest) drawDistances();
   if (data.spatial) drawHeights();
 }
@@ -54,13 +57,13 @@ function showCharts(now) {
 
 // Bars of what robots do
 
-const BAR_SHARES = { travel: 0.2, waiting: 0.55, traffic: 0.4, work: 0.8 };
+const BAR_SHARES = { travel: 0.2, waiting: 0.55, traffic: 0.4, work: 0.8, service: 0.8 };
 
 function drawGantt() {
   const row = Math.min(Math.max(220 / robots.length, 2.5), 24);
   ganttPicture.style.height = `${row * robots.length + AXIS}px`;
   const [width, height] = fitted(ganttPicture);
-  picturedAs(ganttPicture, `Time chart of ${robots.length} robots: travel, waiting, waiting in traffic and work`);
+  picturedAs(ganttPicture, `Time chart of ${robots.length} robots: travel, waiting, waiting in traffic, work and service at stations`);
   timeAxis(ganttPicture, width, height);
   const patterns = svg("defs");
   ganttPicture.append(patterns);
@@ -97,9 +100,9 @@ function bar({ robot, task, kind, from, until }, x, row) {
     "data-task": task,
     x: x(from),
     y: (robot + 0.5) * row - height / 2,
-    width: Math.max(x(until) - x(from), kind === "work" ? 1.6 : 0.6),
+    width: Math.max(x(until) - x(from), kind === "work" || kind === "service" ? 1.6 : 0.6),
     height,
-    ...(kind === "traffic" ? {} : { fill: kind === "waiting" ? `url(#hatch-${robot})` : color }),
+    ...(kind === "traffic" || kind === "service" ? {} : { fill: kind === "waiting" ? `url(#hatch-${robot})` : color }),
     ...(kind === "waiting" ? { stroke: color, "stroke-width": 0.8 } : {}),
   });
   const doing = DOING[kind];
@@ -128,12 +131,12 @@ function lineChart(picture, low, high, unit) {
     const label = `${Number(value.toPrecision(6))} ${unit}`;
     picture.append(svg("text", { x: LABELS - 6, y: y(value) + 3, "text-anchor": "end" }, label));
   }
-  const line = (values, attributes) => {
+  const line = (values, attributes, moments = times) => {
     let pen = "M";
     let d = "";
     values.forEach((value, k) => {
       if (value === null) { pen = "M"; return; }
-      d += `${pen}${x(times[k]).toFixed(1)} ${y(Math.min(value, 2 * high - low)).toFixed(1)}`;
+      d += `${pen}${x(moments[k]).toFixed(1)} ${y(Math.min(value, 2 * high - low)).toFixed(1)}`;
       pen = "L";
     });
     picture.append(svg("path", { d: d || "M0 0", ...attributes }));
@@ -161,6 +164,18 @@ function drawDistances() {
   end();
   const least = nearest.metres.reduce((a, b) => (b === null ? a : Math.min(a, b)), Infinity);
   picturedAs(distancePicture, `Distance of the nearest two robots over time; least ${least.toFixed(2)} m`);
+}
+
+// What each battery holds; the greatest reserve as a thin line.
+function drawBatteries() {
+  const { line, end } = lineChart(batteryPicture, 0, 100, "%");
+  const reserve = Math.max(...robots.map((robot) => robot.reserve ?? 0));
+  if (reserve) line([100 * reserve, 100 * reserve], { class: "reserve" }, [0, duration]);
+  for (const { level, color, id } of robots) {
+    if (level) line(level.map(([, share]) => share), { class: "level", stroke: color, "data-robot": id }, level.map(([at]) => at));
+  }
+  end();
+  picturedAs(batteryPicture, `Batteries of ${robots.filter(({ level }) => level).length} robots over time, per cent`);
 }
 
 function drawHeights() {

@@ -13,9 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.event_descriptions import event_line
-from muster.mission.model import Map, Zone
+from muster.mission.model import Map, Station, Zone
+from muster.mission.stations import station_sign
 from muster.motion.grid import Grid
 from muster.report.activity_spans import spans
+from muster.report.level_lines import recorded_level
 from muster.report.page.distances import nearest
 from muster.report.record import Recording, Tracks
 from muster.report.record.mission_state import ALARMING, OPEN, OUT, MissionState
@@ -46,9 +48,10 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "times": _differences(tracks.times_s),
         "robots": [_robot(recording, tracks, k, gone) for k in range(len(order))],
         "tasks": _tasks(recording),
+        "stations": [_station(station) for station in recording.mission.stations],
         "plans": _plans(recording, order),
         "spans": [
-            [order[bar.robot], bar.task, bar.kind, _thousandths(bar.from_s), _thousandths(bar.until_s)]
+            [order[bar.robot], bar.goal, bar.kind, _thousandths(bar.from_s), _thousandths(bar.until_s)]
             for bar in bars
             if bar.robot in order
         ],
@@ -107,7 +110,17 @@ def _robot(recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any]
     }
     if recording.mission.dimensions == 3:
         data["z"] = _differences(tracks.positions[:, k, 2])
+    level = recorded_level(recording, robot)
+    if level is not None:
+        data["level"] = [[_thousandths(at_s), round(100_000 * share)] for at_s, share in level.points]
+        data["reserve"] = level.reserve
     return data
+
+
+def _station(station: Station) -> dict[str, Any]:
+    slots = f", {station.slots} slots" if station.slots > 1 else ""
+    label = f"station {station.id}: {', '.join(station.services)}{slots}"
+    return {"sign": station_sign(station.id), "place": _millimetres(station.position[:2]), "label": label}
 
 
 def _gone(recording: Recording) -> dict[str, list[list[Any]]]:

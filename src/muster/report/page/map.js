@@ -3,6 +3,7 @@
 const MARGIN = 26; // pixels around what is shown
 const MOST_NAMED_TASKS = 80;
 const MOST_NAMED_ROBOTS = 30;
+const MOST_NAMED_STATIONS = 40;
 const TASK_SCALE = Math.min(Math.max(Math.sqrt(MOST_NAMED_TASKS / tasks.length), 0.3), 1); // smaller in a crowd
 const ROBOT_SCALE = Math.min(Math.max(Math.sqrt(MOST_NAMED_ROBOTS / robots.length), 0.4), 1);
 const mapPicture = document.getElementById("map");
@@ -18,7 +19,7 @@ function drawMap() {
   project = projection(width, height);
   routes = svg("g");
   shownPlan = -1;
-  mapPicture.append(...floorParts(), routes);
+  mapPicture.append(...floorParts(), routes, ...stations.map(stationMark));
   trails = robots.map(trail);
   taskMarks = tasks.map(taskMark);
   robotMarks = robots.map(robotMark);
@@ -32,6 +33,7 @@ function projection(width, height) {
   const add = (x, y) => { if (x !== null) { xs.push(x); ys.push(y); } };
   for (const task of tasks) for (const [, x, y] of task.places) add(x, y);
   for (const robot of robots) for (let k = 0; k < robot.x.length; k += 1) add(robot.x[k], robot.y[k]);
+  for (const { place: [x, y] } of stations) add(x, y);
   for (const [x, y] of mapCorners()) add(x, y);
   const least = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
   const most = (values) => values.reduce((a, b) => Math.max(a, b), -Infinity);
@@ -141,6 +143,14 @@ function taskMark(task) {
   const shapes = svg("g", { transform: `scale(${TASK_SCALE})` }, ...taskShapes());
   const mark = svg("g", { class: "task", "data-task": task.id }, shapes, svg("title"));
   if (tasks.length <= MOST_NAMED_TASKS) mark.append(svg("text", { x: 8, y: 4 }, task.id));
+  return mark;
+}
+
+function stationMark({ sign, place: [x, y], label }) {
+  const cross = svg("path", { d: "M3-8V-3H8V3H3V8H-3V3H-8V-3H-3V-8Z" });
+  const transform = `translate(${project.x(x)} ${project.y(y)})`;
+  const mark = svg("g", { class: "station", "data-station": sign, transform }, cross, svg("title", {}, label));
+  if (stations.length <= MOST_NAMED_STATIONS) mark.append(svg("text", { x: 10, y: 4 }, sign));
   return mark;
 }
 

@@ -2,6 +2,7 @@
 
 const DOING = {
   travel: "travels to", waiting: "waits at", traffic: "waits in traffic on the way to", work: "works on",
+  service: "is served at",
 };
 const robotList = document.getElementById("robots");
 const eventList = document.getElementById("events");

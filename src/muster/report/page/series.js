@@ -1,5 +1,5 @@
 // The data of the page: series back from differences, values between two moments, and making elements.
-// Metres, seconds and radians from here on.
+// Metres, seconds, radians and per cent from here on.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 
@@ -19,6 +19,7 @@ const robots = data.robots.map((robot, index) => ({
   y: series(robot.y),
   z: robot.z ? series(robot.z) : null,
   heading: series(robot.heading),
+  level: robot.level ? robot.level.map(([at, share]) => [at / 1000, share / 1000]) : null,
   gone: robot.gone.map(([at, is]) => [at / 1000, is]),
 }));
 const tasks = data.tasks.map((task) => ({
@@ -26,6 +27,7 @@ const tasks = data.tasks.map((task) => ({
   places: task.places.map((place) => place.map((value) => value / 1000)),
   states: task.states.map(([at, state, robot]) => [at / 1000, state, robot]),
 }));
+const stations = data.stations.map((one) => ({ ...one, place: one.place.map((value) => value / 1000) }));
 const plans = data.plans.map((plan) => ({ ...plan, at: plan.at / 1000 }));
 const spans = data.spans.map(([robot, task, kind, from, until]) => ({
   robot, task, kind, from: from / 1000, until: until / 1000,

@@ -39,7 +39,8 @@ function tickStep(range, count) {
 function fillLegend() {
   const found = MARK_NAMES.filter(([kind]) => marks.some((mark) => mark.kind === kind));
   const inTraffic = spans.some(({ kind }) => kind === "traffic") ? [["traffic", "in traffic"]] : [];
-  const entries = [...["travel", "waiting", "work"].map((kind) => [kind, kind]), ...inTraffic, ...found];
+  const served = spans.some(({ kind }) => kind === "service") ? [["service", "[station]"]] : [];
+  const entries = [...["travel", "waiting", "work"].map((kind) => [kind, kind]), ...served, ...inTraffic, ...found];
   const named = entries.map(([kind, words]) => html("span", {}, html("i", { class: kind }), words));
   document.getElementById("legend").replaceChildren(...named);
 }

@@ -127,5 +127,6 @@ class Publisher(ABC):
                 self._write("/map", 0.0, json_messages.grid_message(image))
         robots = [scene.robot_entity(0.0, robot, k) for k, robot in enumerate(mission.robots)]
         tasks = [scene.task_entity(0.0, task, self._mission_state.states[task.id]) for task in mission.tasks]
-        self._write("/scene", 0.0, scene.update([*scene.map_entities(mission.map), *tasks, *robots]))
+        stations = [scene.station_entity(station) for station in mission.stations]
+        self._write("/scene", 0.0, scene.update([*scene.map_entities(mission.map), *stations, *tasks, *robots]))
         self._flush()

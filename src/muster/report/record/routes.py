@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
@@ -40,10 +40,10 @@ class RouteLines:
     ) -> list[Point]:
         robot = mission_state.robots[name]
         line = [self._flat(places.get(name, robot.position))]
-        left = [mission_state.tasks[task] for task in tasks if mission_state.states.get(task, DONE) not in _OVER]
-        for task in left:
-            line += self._leg(name, mission_state, line[-1], self._flat(task.entry or task.position))
-            line += [self._flat(place) for place in (task.position, task.exit or task.position) if place != line[-1]]
+        left = list(_left(tasks, mission_state))
+        for entry, place, leave in left:
+            line += self._leg(name, mission_state, line[-1], self._flat(entry))
+            line += [self._flat(one) for one in (place, leave) if one != line[-1]]
         end = robot.place_at_end(mission_state.mission.rules)
         if end is not None and left:
             line += self._leg(name, mission_state, line[-1], self._flat(end))
@@ -60,3 +60,20 @@ class RouteLines:
     def _flat(self, place: Point) -> Point:
         """As many coordinates as the mission has."""
         return tuple(float(value) for value in (*place, 0.0)[: self._dimensions])
+
+
+def _left(names: Sequence[str], mission_state: MissionState) -> Iterator[tuple[Point, Point, Point]]:
+    """Entry, position and exit of each stop that is still ahead: stations after the last task that is over, too."""
+    stations = {station.id: station.position for station in mission_state.mission.stations}
+    over = [k for k, name in enumerate(names) if name not in stations and _is_over(name, mission_state)]
+    for k, name in enumerate(names):
+        if name in stations:
+            if k > max(over, default=-1):
+                yield (stations[name],) * 3
+        elif k not in over:
+            task = mission_state.tasks[name]
+            yield task.entry or task.position, task.position, task.exit or task.position
+
+
+def _is_over(task: str, mission_state: MissionState) -> bool:
+    return mission_state.states.get(task, DONE) in _OVER

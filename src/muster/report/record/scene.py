@@ -1,14 +1,15 @@
-"""The scene of a mission for 3-D viewers: foxglove.SceneUpdate with map, tasks, robots and planned routes."""
+"""The scene of a mission for 3-D viewers: foxglove.SceneUpdate with map, tasks, stations, robots and planned routes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from muster.mission.model import Map, Point, Robot, Task, Zone
+from muster.mission.model import Map, Point, Robot, Station, Task, Zone
+from muster.mission.stations import station_sign
 from muster.report.record.json_messages import MAP_FRAME, body_frame, pose, stamp
 from muster.report.record.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
-from muster.report.styles import ALARM, FRAME, LEFT_OUT, robot_style
+from muster.report.styles import ALARM, FRAME, LEFT_OUT, SERVICE_EDGE, robot_style
 
 _LEAST_RADIUS_M = 0.1  # so that a robot without a radius is seen
 _TASK_RADIUS_M = 0.12
@@ -50,6 +51,21 @@ def task_entity(now: float, task: Task, state: str) -> dict[str, Any]:
     ball = {"pose": pose(place), "size": {"x": side, "y": side, "z": side}, "color": _color(_TASK_COLORS[state])}
     text = _text(task.id, (place[0], place[1], place[2] + 2 * side))
     return _entity(f"task/{task.id}", now, {"state": state}, spheres=[ball], texts=[text])
+
+
+def station_entity(station: Station) -> dict[str, Any]:
+    """A station: a flat drum with its id in brackets."""
+    place, side = _in_space(station.position), 4 * _TASK_RADIUS_M
+    drum = {
+        "pose": pose(place),
+        "size": {"x": side, "y": side, "z": side / 8},
+        "bottom_scale": 1.0,
+        "top_scale": 1.0,
+        "color": _color(SERVICE_EDGE),
+    }
+    text = _text(station_sign(station.id), (place[0], place[1], place[2] + side / 2))
+    notes = {"services": " ".join(station.services)}
+    return _entity(f"station/{station.id}", 0.0, notes, cylinders=[drum], texts=[text])
 
 
 def route_entity(now: float, robot: str, index: int, points: Sequence[Point]) -> dict[str, Any]:
