@@ -10,7 +10,7 @@ namespace muster {
 namespace {
 
 constexpr double kRounding = 1e-12;
-constexpr std::size_t kMostLabels = 16;  // at a stop
+constexpr std::size_t kMostLabels = 32;  // at a stop
 constexpr std::size_t kMostRemembered = 1 << 20;
 constexpr int kFewStations = 3;  // of which all pairs are tried on the way to a stop
 
@@ -39,7 +39,7 @@ bool StationCalls::measure(int robot, std::span<const int> route, std::span<cons
   begin(robot, own.labels);
   own.called = run(robot, own.labels, own.tasks, works);
   if (own.called.usage == kNever) return false;
-  trace(robot, own, best_of(own.labels), works);
+  trace(robot, own, best_of(robot, own.labels), works);
   return true;
 }
 
@@ -169,7 +169,7 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   if (moves && problem_.must_end(robot) && !cross(robot, labels, from, problem_.end(robot), rest_[rest.size()], 0.0)) {
     return {kNever, kNever};
   }
-  const int best = best_of(labels);
+  const int best = best_of(robot, labels);
   const Label& last = labels.all[best];
   if (moves && last.frontier.first().time > problem_.available_until(robot) * (1.0 + kRounding))
     return {kNever, kNever};
@@ -390,13 +390,16 @@ void StationCalls::add(Labels& labels, Label&& label) {
   labels.all.erase(worst);
 }
 
-int StationCalls::best_of(const Labels& labels) const {
+// The best within the robot's capacity, if any is.
+int StationCalls::best_of(int robot, const Labels& labels) const {
   const auto [first, last] = labels.at_stop.back();
   int best = first;
   const auto key = [&](int k) {
     const Label& label = labels.all[k];
     const double time = label.frontier.first().time;
-    return in_time_ ? std::tuple(label.extra, time, label.usage) : std::tuple(label.extra, label.usage, time);
+    const bool above = !problem_.fits(robot, label.usage);
+    return in_time_ ? std::tuple(above, label.extra, time, label.usage)
+                    : std::tuple(above, label.extra, label.usage, time);
   };
   for (int k = first + 1; k < last; ++k) {
     if (key(k) < key(best)) best = k;

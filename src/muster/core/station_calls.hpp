@@ -97,7 +97,7 @@ class StationCalls {
   double work_usage(int robot, int task, std::span<const double> works) const;
   double least_onward(int robot, int from) const;
   std::span<const int> stations_between(int robot, int from, int to);
-  int best_of(const Labels& labels) const;
+  int best_of(int robot, const Labels& labels) const;
   double needed_after_work(int robot, const Labels& labels, int last) const;
   static const Frontier& after_work(const Labels& labels, int last);
   bool ends_before_return(int robot) const;

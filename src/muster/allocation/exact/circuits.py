@@ -23,7 +23,8 @@ Leg = tuple[int, int, int]
 class Circuits:
     """The routes of a problem of which only some pairs (m, n) of robot and task are usable, in a model."""
 
-    def __init__(self, problem: Problem, usable: Bools, costs: Costs) -> None:
+    def __init__(self, problem: Problem, usable: Bools, costs: Costs, *, with_detours: bool = False) -> None:
+        self._with_detours = with_detours
         self.problem, self.rules, self.costs = problem, problem.timed_rules, costs
         self.model = cp_model.CpModel()
         self.robots, self.tasks = range(len(problem.robots)), range(len(problem.tasks))
@@ -35,6 +36,7 @@ class Circuits:
         self.used = [self.model.new_bool_var("") for _ in self.robots]
         self.done = [self.model.new_bool_var("") for _ in self.tasks]
         self._worked = {pair: self._work(*pair) for pair in self.does}
+        self.detours: dict[int, Any] = {}  # by robot, where calls at stations may add to its usage
         self.usage = [self._circuit(i) for i in self.robots]
         self._keep_beginnings()
         self._keep_prerequisites()
@@ -92,6 +94,9 @@ class Circuits:
         for j in mine:
             model.add_implication(self.does[i, j], self.used[i])
         usage = model.new_int_var(0, self._most(i), "")
+        if self._with_detours:
+            self.detours[i] = model.new_int_var(0, self.costs.longest, "")
+            terms.append(self.detours[i])
         model.add(usage == sum(terms))
         return usage
 
@@ -116,13 +121,13 @@ class Circuits:
 
     def _keep_prerequisites(self) -> None:
         for j in self.tasks:
-            for k in self.problem.prerequisites[j]:
+            for k in self.problem.awaited[j]:
                 self.model.add_implication(self.done[j], self.done[k])
 
     def _rank_units(self) -> None:
         """Rule out deadlocks: a rank of each unit that grows along every leg and from every prerequisite."""
         problem, unit = self.problem, self.rules.unit
-        if not any(problem.prerequisites) and not self.rules.with_teams and len(self.rules.units) == len(self.tasks):
+        if not any(problem.awaited) and not self.rules.with_teams and len(self.rules.units) == len(self.tasks):
             return
         last = len(self.tasks) - 1
         rank = [self.model.new_int_var(0, last, "") for _ in self.tasks]
@@ -130,7 +135,7 @@ class Circuits:
             if a != self.start:
                 self.model.add(rank[unit[b]] >= rank[unit[a]] + 1).only_enforce_if(leg)
         for j in self.tasks:
-            for k in problem.prerequisites[j]:
+            for k in problem.awaited[j]:
                 self.model.add(rank[unit[j]] >= rank[unit[k]] + 1).only_enforce_if(self.done[j])
 
     def route_of(self, i: int, after: dict[tuple[int, int], int]) -> list[int]:
@@ -140,6 +145,10 @@ class Circuits:
             route.append(at)
             at = after[i, at]
         return route
+
+    def legs_from_start(self, i: int, tasks: Sequence[int]) -> set[Leg]:
+        """The legs with which a route begins."""
+        return {(i, a, b) for a, b in pairwise([self.start, *tasks])}
 
     def legs_of(self, routes: Sequence[Sequence[int]]) -> set[Leg]:
         """The legs that routes are made of."""

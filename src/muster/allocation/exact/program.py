@@ -18,6 +18,7 @@ from ortools.sat.python import cp_model
 
 from muster.allocation.exact.circuits import Circuits
 from muster.allocation.exact.costs import Costs, Routes, like_robots
+from muster.allocation.exact.goods import Cut, add_goods, most_detours, needs_stations
 from muster.allocation.exact.members import add_members
 from muster.allocation.exact.times import Times
 from muster.allocation.problem import Bools, Problem
@@ -62,34 +63,44 @@ class Program:
     def __init__(self, problem: Problem, usable: Bools, weights: Sequence[int]) -> None:
         self._problem = problem
         self._weights = weights
-        self._costs = Costs.of(problem, sums=max(len(problem.tasks), len(problem.robots)))
+        sums, detours = max(len(problem.tasks), len(problem.robots)), most_detours(problem)
+        self._costs = Costs.of(problem, sums=sums, begin=detours)
         self._rules = problem.timed_rules
-        self._circuits = Circuits(problem, usable, self._costs)
+        self._circuits = Circuits(problem, usable, self._costs, with_detours=needs_stations(problem))
         self.model = self._circuits.model
         self._done = self._circuits.done
         add_members(self._circuits)
+        add_goods(self._circuits)
         self._times: Times | None = None
         if problem.has_timed_rules or problem.objective == "makespan":
             self._times = Times(self._circuits, sum(weights) if problem.objective == "lateness" else 1)
         self.scale = self._costs.scale
-        self.per = 1.0
+        self.per = self._value_per = 1.0
         self.groups = like_robots(problem, usable)
         for group in self.groups:
             for i, k in pairwise(group):
                 self.model.add(self._circuits.usage[i] >= self._circuits.usage[k])
         self._maximises = False
+        self._least_of: Callable[[Sequence[int]], Any] | None = None  # what of the objective some tasks come to
+        self._of_values: list[Cut] = []
 
     def _value(self, objective: str) -> Any:
         """The objective in units of the scale, times `per`; for `average` the sum over tasks."""
         if self._times is not None and objective in ("makespan", "lateness"):
             self.scale = self._times.scale
             if objective == "makespan":
-                return self._times.makespan()
-            self.per = self._weights[0] / self._problem.tasks[0].priority
-            return self._times.lateness(self._weights)
+                makespan = self._times.makespan()
+                self._least_of = lambda tasks: makespan
+                return makespan
+            self.per = self._value_per = self._weights[0] / self._problem.tasks[0].priority
+            late = self._times.lateness(self._weights)
+            self._least_of = lambda tasks: sum(late.get(j, 0) for j in tasks)
+            return sum(late.values())
         self.scale, usage = self._costs.scale, self._circuits.usage
         if objective == "average":
-            return sum(self._arrivals())
+            arrivals = self._arrivals()
+            self._least_of = lambda tasks: sum(arrivals[j] for j in tasks)
+            return sum(arrivals)
         greatest = self.model.new_int_var(0, self._costs.longest, "")
         if objective not in ("total", "lateness"):
             self.model.add_max_equality(greatest, usage)
@@ -129,6 +140,8 @@ class Program:
         if most is not None:
             self.model.add(value <= self.scale.at_most(most * self.per))
         self.model.minimize(value)
+        for cut in self._of_values:
+            self._cut_value(cut)
 
     def minimise_total(self, weight: int, lateness: float) -> None:
         """Minimise the total cost of plans of this weight that are no later."""
@@ -179,6 +192,31 @@ class Program:
     def forbid(self, routes: Routes) -> None:
         """Leave out all plans with these routes of some robots, which are not admissible in real numbers."""
         self.model.add_bool_or([self._circuits.legs[key].negated() for key in self._circuits.legs_of(routes)])
+
+    def cut(self, cut: Cut) -> None:
+        """Let all routes that begin alike, of this robot and those like it, use what calls at stations add."""
+        circuits = self._circuits
+        for i in next(group for group in self.groups if cut.robot in group):
+            legs = circuits.legs_of([cut.tasks if k == i else () for k in circuits.robots]) if cut.whole else set()
+            driven = [circuits.legs[key] for key in legs or circuits.legs_from_start(i, cut.tasks)]
+            if math.isinf(cut.adds):
+                self.model.add_bool_or([leg.negated() for leg in driven])
+            else:
+                least = min(self._costs.scale.at_least(cut.adds), self._costs.longest)
+                self.model.add(circuits.detours[i] >= least).only_enforce_if(*driven)
+        self._of_values.append(cut)
+        if self._least_of is not None:
+            self._cut_value(cut)
+
+    def _cut_value(self, cut: Cut) -> None:
+        """Let the part of the objective that is of a route's tasks be what the route comes to by itself."""
+        if not cut.value or self._least_of is None or math.isinf(cut.adds):
+            return
+        circuits = self._circuits
+        for i in next(group for group in self.groups if cut.robot in group):
+            legs = circuits.legs_of([cut.tasks if k == i else () for k in circuits.robots])
+            least = math.floor(self.scale.at_least(cut.value) * self._value_per)
+            self.model.add(self._least_of(cut.tasks) >= least).only_enforce_if(*(circuits.legs[key] for key in legs))
 
     def hint(self, routes: Routes) -> None:
         """Tell the solver a plan to begin with; like robots change places where the program has them in order."""

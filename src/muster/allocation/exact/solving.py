@@ -17,6 +17,7 @@ from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MissingExtraError, ParameterError
 
 if TYPE_CHECKING:
+    from muster.allocation.exact.goods import Cut, StationCuts
     from muster.allocation.exact.program import Program
 
 _WORKERS = 4
@@ -112,6 +113,13 @@ class _Solving:
         if weights is None:
             raise ParameterError("priority: too many digits for a proof; expected priorities like 1, 2.5 or 0.01")
         self._weights: Sequence[int] = weights
+        self._cuts: StationCuts | None = None
+        self._given: list[Cut] = []
+        from muster.allocation.exact.goods import StationCuts, needs_stations
+
+        if needs_stations(problem):
+
+            self._cuts = StationCuts(problem)
 
     def result(self) -> ExactResult:
         if not self._problem.tasks:
@@ -141,7 +149,7 @@ class _Solving:
             return True
         program = self._program()
         program.maximise_weight()
-        most = self._run(program)
+        most = self._run(program, maximises=True)
         return self._weight() >= most
 
     def _minimise(self) -> tuple[float, float]:
@@ -192,24 +200,35 @@ class _Solving:
 
         program = Program(self._problem, self._usable, self._weights)
         program.hint(self._routes)
+        for cut in self._given:
+            program.cut(cut)
         return program
 
-    def _run(self, program: Program) -> float:
+    def _run(self, program: Program, *, maximises: bool = False) -> float:
         """Take over the program's best plan, if it is better; returns the bound of its objective, in units.
 
         A plan that is admissible only because costs were rounded is forbidden, and the program runs again.
         """
+        proven = program.unproven
         while (left := self._until - self._clock.now()) > 0 and not self._interrupted():
             solved = program.solve(left, self._seed, _WORKERS, interrupted=self._interrupted)
             if solved.routes is None:
                 return solved.bound
+            proven = min(proven, solved.bound) if maximises else max(proven, solved.bound)
             inspection = core.Inspection(self._problem.core, solved.routes)
+            cuts = self._cuts.of(solved.routes) if self._cuts else []
+            self._given += cuts
+            for cut in cuts:
+                program.cut(cut)
             if inspection.admissible:
                 self._take_over(solved.routes)
-                return solved.bound
+                if not cuts or maximises:
+                    return solved.bound
+            if cuts:
+                continue
             for some in self._not_admissible(solved.routes, inspection.usages):
                 program.forbid(some)
-        return program.unproven
+        return proven
 
     def _not_admissible(self, routes: Routes, usages: Sequence[float]) -> Iterator[Routes]:
         """Routes that rounding alone made admissible: one that is above its capacity, else all of them together."""

@@ -17,6 +17,7 @@ from ortools.sat.python import cp_model
 from muster.allocation.earliest_times import in_time
 from muster.allocation.exact.circuits import Circuits
 from muster.allocation.exact.costs import Costs
+from muster.allocation.exact.goods import most_seconds
 
 
 class Times:
@@ -28,7 +29,7 @@ class Times:
         problem, rules = self._problem, circuits.rules
         self._rules = rules
         self.available = np.array([robot.available_from_s for robot in problem.robots])
-        self.costs = Costs.of(in_time(problem), sums=sums, begin=self._latest_base())
+        self.costs = Costs.of(in_time(problem), sums=sums, begin=self._latest_base() + most_seconds(problem))
         self.scale, longest = self.costs.scale, self.costs.longest
         self._ready = self.scale.down(self.available)
         begins = [self._model.new_int_var(0, longest, "") for _ in rules.units]
@@ -123,13 +124,13 @@ class Times:
             model.add(makespan >= sum(terms))
         return makespan
 
-    def lateness(self, weights: Sequence[int]) -> Any:
-        """The sum over the tasks done of whole weights times the time that each ends after it is due."""
-        circuits, terms = self._circuits, []
+    def lateness(self, weights: Sequence[int]) -> dict[int, Any]:
+        """For each task with a due time its whole weight times the time that it ends after that, if it is done."""
+        circuits, terms = self._circuits, dict[int, Any]()
         for j in circuits.tasks:
             due = self._rules.due[j]
             if math.isfinite(due):
                 late = self._model.new_int_var(0, self.costs.longest, "")
                 self._model.add(late >= self.end[j] - self._up(due)).only_enforce_if(circuits.done[j])
-                terms.append(weights[j] * late)
-        return sum(terms)
+                terms[j] = weights[j] * late
+        return terms

@@ -1,0 +1,178 @@
+"""Loads, transports and batteries as constraints of a program, and what stations add to routes as cuts.
+
+Stations are no part of the program, which is a relaxation without them. Where a route of its plan must call at some, or
+cannot be done, the cut says so of all routes that begin alike: a logic-based Benders decomposition ([hooker2003]), of
+which the labelling of the core is the subproblem.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from muster import core
+from muster.allocation.earliest_times import opened
+from muster.allocation.exact.circuits import Circuits
+from muster.allocation.exact.costs import real_costs
+from muster.allocation.problem import Problem
+from muster.allocation.rules.battery import Battery
+from muster.allocation.rules.load import Load, pickups
+
+_LOAD_UNITS = 2.0**24  # of the greatest amount
+_ROUNDING = 1e-9
+
+
+def needs_stations(problem: Problem) -> bool:
+    """Whether routes may have to call at stations."""
+    stations = problem.mission.stations
+    energy = problem.asked.get("battery") is not None and any(station.gives_energy for station in stations)
+    return energy or _unloads(problem)
+
+
+def most_detours(problem: Problem) -> float:
+    """What stations add to the usage of a route at most, as far as the program can tell it."""
+    if not needs_stations(problem):
+        return 0.0
+    n, m, stations = len(problem.tasks), len(problem.robots), len(problem.mission.stations)
+    places = [*range(n + 2 * m + stations)]
+    longest = max(float(problem.legs(i, places, places)[np.isfinite(problem.legs(i, places, places))].max()) for i in range(m))
+    return 2.0 * (n + 1) * (stations + 1) * longest
+
+
+def most_seconds(problem: Problem) -> float:
+    """How much later calls at stations make the tasks of a route at most."""
+    if not needs_stations(problem):
+        return 0.0
+    n, stations = len(problem.tasks), problem.mission.stations
+    held = max((robot.battery.capacity for robot in problem.robots if robot.battery is not None), default=0.0)
+    served = sum(station.swap_s + held / (station.charge_per_s or np.inf) for station in stations)
+    slowest = min(robot.speed_mps for robot in problem.robots)
+    ways = most_detours(problem) / (1.0 if problem.in_time else min(1.0, slowest))
+    return ways + 2.0 * (n + 1) * served
+
+
+def add_goods(circuits: Circuits) -> None:
+    """Let transports be whole, loads fit on board, and batteries last where no station fills them."""
+    problem, model = circuits.problem, circuits.model
+    for j, k in enumerate(pickups(problem)):
+        if k >= 0:
+            model.add(circuits.done[j] == circuits.done[k])
+            for i in circuits.robots:
+                model.add(circuits.does.get((i, j), 0) == circuits.does.get((i, k), 0))
+    _loads(circuits)
+    if problem.asked.get("battery") and not any(station.gives_energy for station in problem.mission.stations):
+        for i, most in enumerate(Battery().core_arrays(problem)["battery_at_start"]):
+            if np.isfinite(most):
+                model.add(circuits.usage[i] <= circuits.costs.scale.at_most(float(most)))
+
+
+def _unloads(problem: Problem) -> bool:
+    return problem.asked.get("load") is not None and any(station.unloads for station in problem.mission.stations)
+
+
+def _loads(circuits: Circuits) -> None:
+    """What is on board after each task, by commodity; where stations unload, only what is going to be delivered."""
+    problem = circuits.problem
+    arrays = Load().core_arrays(problem)
+    if circuits.rules.with_teams:
+        return  # each member takes it on board: left to the cuts
+    change, first = ("pending", "pending_at_start") if _unloads(problem) else ("load", "load_at_start")
+    for c in range(arrays["commodities"]):
+        own = arrays[change][:, c], arrays[first][:, c], arrays["load_capacity"][:, c]
+        _commodity(circuits, *own)
+
+
+def _commodity(circuits: Circuits, change: Any, first: Any, room: Any) -> None:
+    """Amounts are rounded to units, and limits give way to as many roundings as there are."""
+    model, slack = circuits.model, len(change) + 1
+    unit = _LOAD_UNITS / max(1e-12, float(np.abs(change).max()), float(np.abs(first).max()))
+    most = int(float(np.abs(first).max() + np.abs(change).sum()) * unit) + 2 * slack
+    on_board = [model.new_int_var(-slack, most, "") for _ in change]
+    for (i, a, b), leg in circuits.onward():
+        before = round(first[i] * unit) if a == circuits.start else on_board[a]
+        model.add(on_board[b] == before + round(change[b] * unit)).only_enforce_if(leg)
+    for (i, j), does in circuits.does.items():
+        if np.isfinite(room[i]) and room[i] * unit < most:
+            model.add(on_board[j] <= int(room[i] * unit) + slack).only_enforce_if(does)
+
+
+@dataclass(frozen=True)
+class Cut:
+    """What holds of all routes of a robot that begin with these tasks.
+
+    Parameters
+    ----------
+    adds
+        what calls at stations add to the usage; inf: there are no such routes.
+    value
+        the least of the objective that the tasks come to, of `average` their sum.
+    whole
+        whether it holds of the route that ends with them alone.
+    """
+
+    robot: int
+    tasks: tuple[int, ...]
+    adds: float
+    value: float
+    whole: bool
+
+
+class StationCuts:
+    """The cuts that routes of the program give."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._asked = problem
+        self._problem = replace(problem, objective="total", known=problem.measured)
+        self._counts_tasks = problem.objective in ("average", "makespan", "lateness")
+        self._known: set[tuple[int, tuple[int, ...]]] = set()
+
+    def of(self, routes: Sequence[Sequence[int]]) -> list[Cut]:
+        """The cuts of routes that were not given before."""
+        return [cut for i, route in enumerate(routes) if route for cut in self._of_route(i, tuple(route))]
+
+    def _of_route(self, i: int, route: tuple[int, ...]) -> Iterator[Cut]:
+        if (i, route) in self._known:
+            return
+        self._known.add((i, route))
+        added = 0.0
+        for count in range(1, len(route) + 1):
+            adds = self._adds(i, route[:count], self._open)
+            if adds > added + _ROUNDING * (1 + added):
+                yield Cut(i, route[:count], adds, 0.0, False)
+                added = adds
+            if adds == np.inf:
+                return
+        adds = self._adds(i, route, self._problem)
+        value = self._value(i, route) if self._counts_tasks else 0.0
+        if value or adds > added + _ROUNDING * (1 + added):
+            yield Cut(i, route, adds, value, True)
+
+    def _value(self, i: int, route: tuple[int, ...]) -> float:
+        """The objective of a route by itself, of `average` the sum; waiting for others makes none less."""
+        value = core.Inspection(self._asked.core, self._alone(i, route)).objective
+        count = len(route) if self._asked.objective == "average" else 1
+        return 0.0 if value is None or not np.isfinite(value) else value * count
+
+    def _alone(self, i: int, route: tuple[int, ...]) -> list[list[int]]:
+        return [list(route) if k == i else [] for k in range(len(self._asked.robots))]
+
+    def _adds(self, i: int, route: tuple[int, ...], problem: Problem) -> float:
+        found = core.Inspection(problem.core, self._alone(i, route))
+        if found.all_stops is None:
+            return np.inf
+        first, between, work, last = self._costs
+        usage = first[i, route[0]] + sum(between[i, a, b] for a, b in zip(route, route[1:], strict=False))
+        usage += sum(work[i, j] for j in route) + (last[i, route[-1]] if problem is self._problem else 0.0)
+        return max(0.0, float(found.usages[i] - usage))
+
+    @cached_property
+    def _open(self) -> Problem:
+        return opened(self._problem)
+
+    @cached_property
+    def _costs(self) -> tuple[Any, Any, Any, Any]:
+        return real_costs(self._problem)
