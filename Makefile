@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-auction campaign-goods campaign-server campaign-api network-figures disturbances disturbances-timed disturbances-traffic help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-auction campaign-goods campaign-server campaign-api network-figures disturbances disturbances-timed disturbances-traffic help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -40,6 +40,9 @@ campaign: $(VENV)/developed
 
 campaign-times: $(VENV)/developed
 	$(BIN)/python -m tests.timed_missions $(or $(CAMPAIGN_FLAGS),5000)
+
+campaign-carry: $(VENV)/developed
+	$(BIN)/python -m tests.carried_missions $(or $(CAMPAIGN_FLAGS),3000)
 
 campaign-auction: $(VENV)/developed
 	$(BIN)/python -m tests.negotiation.campaign $(CAMPAIGN_FLAGS)
@@ -76,6 +79,7 @@ help:
 	@echo "make figures    draw every figure of every study, and docs/figures.md (STUDIES='rvo ...'); minutes"
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
 	@echo "make campaign-times  5,000 small missions with windows, lags, teams and relations, against every plan of each"
+	@echo "make campaign-carry  3,000 small missions with goods and energy, against every plan of each"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
 	@echo "                       (CAMPAIGN_FLAGS='--timed 2000': of missions with rules of time)"
 	@echo "make campaign-goods  carry out 2,000 missions with goods and batteries in which robots and stations fail"

@@ -110,7 +110,7 @@ class _Maker:
         return tasks
 
     def _in_order(self, tasks):
-        """Prerequisites that nobody waits for: times do not count, or there is one robot, whose order they are."""
+        """Now and then prerequisites, where times do not count, so that nobody waits for them."""
         if self.with_times or self.objective in ("makespan", "lateness"):
             return tasks
         for k in range(1, len(tasks)):

@@ -27,8 +27,11 @@ class State:
         least = all(
             a <= b for a, b in ((self.usage, other.usage), (self.arrivals, other.arrivals), (self.late, other.late))
         )
-        same_goods = (self.load, self.pending) == (other.load, other.pending)
-        return least and same_goods and frontiers.covers(self.points, other.points)
+        return (
+            least
+            and (self.load, self.pending) == (other.load, other.pending)
+            and frontiers.covers(self.points, other.points)
+        )
 
 
 @dataclass(frozen=True)
@@ -65,8 +68,9 @@ class RobotRoutes:
         return found
 
     def _start(self):
-        battery = self.robot.battery
-        energy = math.inf if battery is None else battery.level_at_start - battery.least
+        energy = (
+            math.inf if self.robot.battery is None else self.robot.battery.level_at_start - self.robot.battery.least
+        )
         points = [(self.robot.available_from_s, energy)]
         return State(0.0, points, self._amounts(self.robot.load_at_start), (0.0,) * len(self.goods))
 

@@ -5,6 +5,7 @@ from random import Random
 import muster
 from muster import core
 from muster.allocation.bounds import lower_bound
+from muster.allocation.exact import solve_exactly
 from muster.allocation.problem import Problem
 from muster.verification import verify
 from tests import trials
@@ -15,6 +16,7 @@ CLOSE = 1e-7
 ROUTES = 40  # of each robot that are looked at
 ITERATIONS, LONGER = 300, 5000
 OTHERS = ("greedy", "auction", "greedy+genetic")
+EXACT_S, EXACT_EVERY = 20.0, 4
 
 
 class Report(trials.Report):
@@ -32,6 +34,8 @@ def trial(seed, *, planned=True):
         tried.bound()
         if planned:
             tried.plans()
+        if planned and seed % EXACT_EVERY == 0:
+            tried.exactly()
     return report
 
 
@@ -70,8 +74,9 @@ class Trial:
         self.report.counts["routes"] += 1
         self.report.counts["routes that keep the rules"] += figures is not None
         is_said = inspection.admissible
-        told = f"robot {number}, {order}: {figures}, but {is_said} is said"
-        self.report.check(is_said == (figures is not None), told)
+        self.report.check(
+            is_said == (figures is not None), f"robot {number}, {order}: {figures}, but {is_said} is said"
+        )
         if figures is None or not is_said:
             return
         said, true = inspection.objective, self.every.value([figures], len(order))
@@ -90,6 +95,19 @@ class Trial:
             self.report.counts["complete"] += 1
             self.report.figures.append(1 - self.quick / value if value else 0.0)
             self.report.check(self.quick <= value + CLOSE * (1 + value), f"{value} is below the bound {self.quick}")
+
+    def exactly(self):
+        """The exact solver finds the best of all plans; its proofs and bounds are true."""
+        exact = solve_exactly(self.problem, EXACT_S)
+        weight, value = self.problem.value(exact.routes)
+        self.report.counts["exact"] += 1
+        self.report.counts["exact: proven"] += exact.optimal
+        found = (weight, value)
+        self.report.check(self._reaches(found) or not exact.optimal, f"exact: {found}, but the best is {self.best}")
+        is_true = not exact.weight_proven or _near(exact.weight, self.best[0])
+        self.report.check(is_true, f"exact: the weight {exact.weight} is said to be the best")
+        least = exact.lower_bound or 0.0
+        self.report.check(not _less(self.best[1], least), f"exact: {self.best} is below the bound {least}")
 
     def _all_done(self, orders):
         return sum(map(len, orders)) == len(self.mission.tasks)

@@ -91,6 +91,8 @@ class StationCalls {
   void call_again(int robot, Labels& labels, int to, double beyond);
   bool changes(int robot, const Labels& labels, const Label& label, const Station& station) const;
   void add(Labels& labels, Label&& label);
+  double put_down(const Labels& labels, const Label& label, int commodity) const;
+  bool carry_alike(const Labels& labels, const Label& a, const Label& b) const;
   bool overloaded(int robot, const Labels& labels, const Label& label, int stop) const;
   bool runs_short(int robot, const Labels& labels, const Label& label, double rest) const;
   void carry(int robot, Labels& labels, int task) const;

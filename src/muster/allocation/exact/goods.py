@@ -7,6 +7,7 @@ which the labelling of the core is the subproblem.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -39,7 +40,9 @@ def most_detours(problem: Problem) -> float:
         return 0.0
     n, m, stations = len(problem.tasks), len(problem.robots), len(problem.mission.stations)
     places = [*range(n + 2 * m + stations)]
-    longest = max(float(problem.legs(i, places, places)[np.isfinite(problem.legs(i, places, places))].max()) for i in range(m))
+    longest = max(
+        float(problem.legs(i, places, places)[np.isfinite(problem.legs(i, places, places))].max()) for i in range(m)
+    )
     return 2.0 * (n + 1) * (stations + 1) * longest
 
 
@@ -165,7 +168,7 @@ class StationCuts:
         if found.all_stops is None:
             return np.inf
         first, between, work, last = self._costs
-        usage = first[i, route[0]] + sum(between[i, a, b] for a, b in zip(route, route[1:], strict=False))
+        usage = first[i, route[0]] + sum(between[i, a, b] for a, b in itertools.pairwise(route))
         usage += sum(work[i, j] for j in route) + (last[i, route[-1]] if problem is self._problem else 0.0)
         return max(0.0, float(found.usages[i] - usage))
 

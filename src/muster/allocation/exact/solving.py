@@ -118,7 +118,6 @@ class _Solving:
         from muster.allocation.exact.goods import StationCuts, needs_stations
 
         if needs_stations(problem):
-
             self._cuts = StationCuts(problem)
 
     def result(self) -> ExactResult:
