@@ -167,6 +167,8 @@ class RobotRoutes:
                 points = frontiers.filled(points, station.charge_per_s, self.full)
             if station.unloads:
                 load = there.pending
+            if not self._carries(load):
+                continue
             changes = load != there.load or (self.full < math.inf and station.gives_energy)
             if changes:
                 yield replace(there, points=points, load=load)

@@ -153,7 +153,11 @@ int StationCalls::call(int robot, Labels& labels, int parent, int from, int numb
   } else if (drains && station.charge > 0.0) {
     label.frontier.fill(station.charge, full);
   }
-  if (unloads_ && station.unloads) label.unloaded = static_cast<int>(labels.at_stop.size()) - 1;
+  if (unloads_ && station.unloads) {
+    label.unloaded = static_cast<int>(labels.at_stop.size()) - 1;
+    // What is to be delivered stays, though others may have put down some of it before.
+    if (overloaded(robot, labels, label, label.unloaded)) return -1;
+  }
   labels.all.push_back(std::move(label));
   return static_cast<int>(labels.all.size()) - 1;
 }
