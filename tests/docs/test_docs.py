@@ -12,7 +12,7 @@ from muster.allocation import search
 from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import VERBS, other_verbs, run
-from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
+from muster.mission.model import Battery, Map, Mission, Robot, Rules, Station, Task, Zone
 from muster.mission.records import specified
 from muster.mission.yaml_reader import parse_yaml
 from muster.planning.options import DEFAULT_ALLOCATOR
@@ -104,14 +104,14 @@ def test_the_outputs_of_what_can_be_done(tmp_path, monkeypatch, capsys):
 
 
 def test_every_key_of_a_mission_is_described():
-    keys = {f.name for model in (Mission, Rules, Robot, Task) for f in specified(model)}
+    keys = {f.name for model in (Mission, Rules, Robot, Task, Station, Battery) for f in specified(model)}
     described = set(re.findall(r"`([a-z_0-9]+)`", MISSION_FILE))
     assert keys - described == set()
 
 
 def test_the_example_missions_are_missions():
     whole = [example for example in blocks(MISSION_FILE, "yaml") if example.startswith("schema:")]
-    assert len(whole) == 8
+    assert len(whole) == 10
     assert all(parse_yaml(example, Path("example.yaml")).tasks for example in whole)
 
 
