@@ -22,7 +22,7 @@ from muster.mission.value_types import Path
 
 DEMAND, READY, DUE, SERVICE = "demand", "ready time", "due date", "service time"
 MOST_VEHICLES = 100_000
-_NONE = "0"
+NONE = "0"
 """The number in place of a pickup or delivery where a customer has none."""
 
 
@@ -36,8 +36,8 @@ class Customer:
     demand: float = 0.0
     window: tuple[float, float] | None = None
     service: float = 0.0
-    pickup: str = _NONE
-    delivery: str = _NONE
+    pickup: str = NONE
+    delivery: str = NONE
     lines: Mapping[str, int] = field(default_factory=dict)
 
     def wrong(self, file: str, name: str, value: float | str, expected: str) -> Finding:
@@ -125,7 +125,7 @@ def _task(customer: Customer) -> dict[str, Any]:
         task["duration_s"] = customer.service
     if customer.window is not None:
         task["window_s"] = list(customer.window)
-    if customer.pickup != _NONE:
+    if customer.pickup != NONE:
         task["delivers"] = customer.pickup
     elif customer.demand:
         task["load"] = customer.demand
@@ -143,7 +143,7 @@ def _wrong_customers(instance: Instance) -> Iterator[Finding]:
         if one is instance.depot:
             if one.demand:
                 yield one.wrong(file, DEMAND, one.demand, "0: this is the depot")
-        elif one.pickup == _NONE:
+        elif one.pickup == NONE:
             yield from _wrong_pickup(file, one, first)
         else:
             yield from _wrong_delivery(file, one, first)
@@ -162,7 +162,7 @@ def _wrong_times(file: str, one: Customer) -> Iterator[Finding]:
 
 def _wrong_pickup(file: str, one: Customer, everyone: Mapping[str, Customer]) -> Iterator[Finding]:
     """What is wrong with a customer whose load is taken: its delivery names it, where there is one."""
-    if one.delivery != _NONE:
+    if one.delivery != NONE:
         known = everyone.get(one.delivery)
         if known is None or known.pickup != one.id:
             yield one.wrong(file, "delivery", one.delivery, f"the number of a customer whose pickup is {one.id}")
@@ -175,7 +175,7 @@ def _wrong_pickup(file: str, one: Customer, everyone: Mapping[str, Customer]) ->
 def _wrong_delivery(file: str, one: Customer, everyone: Mapping[str, Customer]) -> Iterator[Finding]:
     """What is wrong with a customer who gets a load: it is what the pickup takes, which names this customer."""
     known = everyone.get(one.pickup)
-    if one.delivery != _NONE:
+    if one.delivery != NONE:
         yield one.wrong(file, "delivery", one.delivery, f"0 beside the pickup {one.pickup}: it is one of both")
     elif known is None or known.delivery != one.id:
         yield one.wrong(file, "pickup", one.pickup, f"the number of a customer whose delivery is {one.id}")

@@ -1,4 +1,4 @@
-"""Solomon's vehicle routing instances with time windows as missions, without loads [solomon1987]."""
+"""Solomon's vehicle routing instances with time windows as missions, with loads or without [solomon1987]."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ REFERENCES: Mapping[tuple[str, int], float] = MappingProxyType(
 """By instance and number of robots: the total distance of the best plan known, which keeps the loads too."""
 
 
-def solomon_instance(name: str, robots: int) -> Mission:
-    """A shipped instance, C101, C201, R101, R201 or RC101, with so many robots and without its demands.
+def solomon_instance(name: str, robots: int, *, loads: bool = False) -> Mission:
+    """A shipped instance, C101, C201, R101, R201 or RC101, with so many robots, and with its demands as `loads`.
 
     Raises
     ------
@@ -40,7 +40,8 @@ def solomon_instance(name: str, robots: int) -> Mission:
         names = sorted({instance for instance, _ in REFERENCES})
         raise ParameterError(f"instance: {name}; expected {' or '.join(names)}")
     with as_file(file) as path:
-        return without_loads(read_solomon(path, robots))
+        mission = read_solomon(path, robots)
+    return mission if loads else without_loads(mission)
 
 
 def without_loads(mission: Mission) -> Mission:

@@ -51,6 +51,8 @@ class CpSat:
     def cannot(self, instance: Instance) -> str | None:
         if len(instance.tasks) > _MOST_TASKS:
             return f"over {_MOST_TASKS} tasks"
+        if any(instance.goods.loads):
+            return "no goods"
         return None if _weights(instance.problem) else "no priorities of so many digits"
 
     def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:

@@ -37,6 +37,8 @@ class CpSatSchedule:
             return f"no {rule}"
         if instance.objective != "makespan":
             return f"no objective {instance.objective}"
+        if any(instance.goods.loads):
+            return "no goods"
         return "no tasks left out" if instance.optional else None
 
     def solve(self, instance: Instance, seconds: float, seed: int) -> Answer:

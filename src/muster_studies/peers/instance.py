@@ -14,6 +14,7 @@ from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.mission.plan import Plan, Route
 from muster_studies.peers.costs import Costs, time_costs, usage_costs
+from muster_studies.peers.goods import Goods, goods_of, unusual_goods
 
 Routes = Sequence[Sequence[int]]
 """For each robot the tasks of the instance, in order."""
@@ -60,7 +61,12 @@ class Instance:
     @cached_property
     def optional(self) -> bool:
         """Whether tasks may have to be left out. Without limits all that are possible can be done together."""
-        return self.limited or self.timed
+        return self.limited or self.timed or self.goods.limited
+
+    @cached_property
+    def goods(self) -> Goods:
+        """What is carried."""
+        return goods_of(self.problem, self.tasks)
 
     @cached_property
     def timed(self) -> bool:
@@ -77,6 +83,8 @@ class Instance:
             "relations": any(task.same_robot_as or task.other_robot_than or task.starts_with for task in tasks),
             "deadlines": any(task.deadline_s is not None for task in tasks),
             "lags": any(task.lags for task in tasks),
+            "charging stations": bool(problem.stations) or any(robot.battery for robot in problem.robots),
+            "goods of this kind": unusual_goods(problem, self.tasks),
             "lateness": self.objective == "lateness",
         }
         return next((rule for rule, is_there in found.items() if is_there), None)

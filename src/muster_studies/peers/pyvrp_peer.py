@@ -55,7 +55,8 @@ class _Model:
         self._types: dict[Hashable, list[int]] = {}
         for i, profile in enumerate(profiles):
             shift = instance.available_from[i], instance.available_until[i]
-            key = profile, instance.starts[i], instance.ends[i], instance.capacity[i], shift
+            limits = instance.capacity[i], instance.goods.room[i]
+            key = profile, instance.starts[i], instance.ends[i], limits, shift
             self._types.setdefault(key, []).append(i)
         self._data = self._make_data()
         self._best: tuple[int, list[Any]] | None = None  # the value, and the routes as PyVRP has them
@@ -74,21 +75,43 @@ class _Model:
         return pyvrp.ProblemData(
             locations=[pyvrp.Location(0, 0) for _ in nodes],
             clients=[
-                pyvrp.Client(location=j, prize=prize * weight, required=required, **self._window(j))
-                for j, weight in enumerate(instance.weights)
+                pyvrp.Client(
+                    location=j,
+                    pickup=self._amount(j),
+                    prize=prize * instance.weights[j],
+                    required=required,
+                    **self._window(j, "tw"),
+                )
+                for j in instance.goods.alone
             ],
+            shipments=[self._shipment(*transport, prize, required) for transport in instance.goods.transports],
             depots=[pyvrp.Depot(location=node) for node in nodes[len(instance.tasks) :]],
             vehicle_types=self._vehicle_types(None),
             distance_matrices=tables,
             duration_matrices=[self._durations(kind) for _, kind, _ in self._profile_of],
         )
 
-    def _window(self, task: int) -> dict[str, int]:
-        """When a task may begin, as a client has it."""
+    def _shipment(self, pickup: int, delivery: int, prize: int, required: bool) -> Any:
+        return self._pyvrp.Shipment(
+            pickup_location=pickup,
+            delivery_location=delivery,
+            amount=self._amount(pickup),
+            prize=prize * (self.instance.weights[pickup] + self.instance.weights[delivery]),
+            required=required,
+            **self._window(pickup, "pickup_tw"),
+            **self._window(delivery, "delivery_tw"),
+        )
+
+    def _amount(self, task: int) -> list[int]:
+        """What a task takes on board; nothing where no robot has a limit."""
+        return [self.instance.goods.loads[task]] if self.instance.goods.limited else []
+
+    def _window(self, task: int, prefix: str) -> dict[str, int]:
+        """When a task may begin, as a client or a shipment has it."""
         return {
-            name: limit
+            f"{prefix}_{name}": limit
             for window in self.instance.windows[task]
-            for name, limit in zip(("tw_early", "tw_late"), window, strict=True)
+            for name, limit in zip(("early", "late"), window, strict=True)
             if limit is not None
         }
 
@@ -116,6 +139,7 @@ class _Model:
                     start_depot=instance.starts[i] - len(instance.tasks),
                     end_depot=instance.ends_or_anywhere[i] - len(instance.tasks),
                     profile=self._profile_of[self._profile(i)],
+                    capacity=[instance.goods.room_or_all(i)] if instance.goods.limited else [],
                     **({"max_distance": min(most)} if most else {}),
                     **(self._shift(i) if instance.timed else {}),
                 )
@@ -157,7 +181,7 @@ class _Model:
         if self._best is None or self.instance.objective != "max":
             return None
         routes = [
-            self._pyvrp.Route(data, [step.idx for step in route if step.is_client()], route.vehicle_type())
+            self._pyvrp.Route(data, [step for step in route if not step.is_depot()], route.vehicle_type())
             for route in self._best[1]
         ]
         return self._pyvrp.Solution(data, routes)
@@ -169,6 +193,14 @@ class _Model:
         lengths = [0] * self.instance.robot_count
         for route in solution.routes():
             robot = left[route.vehicle_type()].pop(0)
-            routes[robot] = [step.idx for step in route if step.is_client()]
+            routes[robot] = [self._task(step) for step in route if not step.is_depot()]
             lengths[robot] = route.distance()
         return Routed(routes, lengths)
+
+    def _task(self, step: Any) -> int:
+        """The task of a step of a route."""
+        goods = self.instance.goods
+        if step.is_client():
+            return goods.alone[int(step.idx)]
+        pickup, delivery = goods.transports[int(step.idx)]
+        return pickup if step.is_pickup() else delivery

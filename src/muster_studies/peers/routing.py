@@ -90,7 +90,14 @@ class _Model:
         self._robots = range(instance.robot_count)
         self._set_costs()
         self._set_tasks()
-        if instance.has_prerequisites or instance.timed or instance.objective == "makespan":
+        if instance.goods.limited:
+            self._set_loads()
+        if (
+            instance.has_prerequisites
+            or instance.timed
+            or instance.goods.transports
+            or instance.objective == "makespan"
+        ):
             self._set_times()
 
     def _index(self, task: int) -> int:
@@ -125,6 +132,13 @@ class _Model:
             for task in range(len(instance.tasks)):
                 usage.SetCumulVarSoftUpperBound(self._index(task), 0, self._attempt.weight)
 
+    def _set_loads(self) -> None:
+        """What is on board after each task."""
+        goods, nodes = self.instance.goods, self._nodes
+        loads = self._model.RegisterUnaryTransitVector([*goods.loads, *[0] * (nodes - len(goods.loads))])
+        room = [goods.room_or_all(i) for i in self._robots]
+        self._model.AddDimensionWithVehicleCapacity(loads, 0, room, True, "loads")
+
     def _set_tasks(self) -> None:
         instance, model = self.instance, self._model
         arrivals = len(instance.tasks) if instance.objective == "average" else 1
@@ -155,6 +169,15 @@ class _Model:
         for task, before in enumerate(instance.prerequisites):
             for k in before:
                 self._set_precedence(times, k, task)
+        for transport in instance.goods.transports:
+            self._set_transport(times, *transport)
+
+    def _set_transport(self, times: Any, pickup: int, delivery: int) -> None:
+        """One robot does both, one after the other, or none does."""
+        model, first, then = self._model, self._index(pickup), self._index(delivery)
+        model.AddPickupAndDelivery(first, then)
+        model.solver().Add(model.VehicleVar(first) == model.VehicleVar(then))
+        model.solver().Add(times.CumulVar(first) <= times.CumulVar(then))
 
     @staticmethod
     def _set_windows(begin: Any, windows: Sequence[tuple[int, int | None]], horizon: int) -> None:

@@ -18,6 +18,7 @@ _LARGE = 200
 _MOST_PRIORITY = 100
 _MOST_TASKS = 2000
 Tables = npt.NDArray[np.uint32]
+_STEPS = ("job", "pickup", "delivery")
 _MOST_COST = 2**31
 """VROOM refuses costs whose sums may be beyond 32 bits: those of large missions are divided."""
 
@@ -93,12 +94,30 @@ class _Model:
             question.set_durations_matrix(name, self._durations(seconds) if instance.timed else self._costs[usage])
             question.set_costs_matrix(name, self._costs[usage])
         question.add_vehicle([self._vehicle(i, cap) for i in range(instance.robot_count)])
-        for j, weight in enumerate(instance.weights):
-            skills = None if self._all_allowed else {j + 1}
-            priority = _MOST_PRIORITY * weight // max(instance.weights) if len({*instance.weights}) > 1 else 0
-            windows = self._windows(j)
-            question.add_job(vroom.Job(j, location=j, skills=skills, priority=priority, time_windows=windows))
+        question.add_job([self._job(j) for j in instance.goods.alone])
+        question.add_job([self._shipment(*transport) for transport in instance.goods.transports])
         return question
+
+    def _job(self, task: int) -> Any:
+        pickup = self._amount(self.instance.goods.loads[task])
+        return self._vroom.Job(
+            task, location=task, pickup=pickup, time_windows=self._windows(task), **self._demands(task)
+        )
+
+    def _shipment(self, pickup: int, delivery: int) -> Any:
+        steps = [self._vroom.ShipmentStep(j, location=j, time_windows=self._windows(j)) for j in (pickup, delivery)]
+        amount = self._amount(self.instance.goods.loads[pickup])
+        return self._vroom.Shipment(*steps, amount=amount, **self._demands(pickup, delivery))
+
+    def _demands(self, *tasks: int) -> dict[str, Any]:
+        """The skills that tasks need, and their priority."""
+        weights = self.instance.weights
+        priority = _MOST_PRIORITY * max(weights[j] for j in tasks) // max(weights) if len({*weights}) > 1 else 0
+        return {"skills": None if self._all_allowed else {j + 1 for j in tasks}, "priority": priority}
+
+    def _amount(self, load: int) -> Any:
+        """An amount; of nothing where no robot has a limit."""
+        return self._vroom.Amount([load] if self.instance.goods.limited else [])
 
     def _vehicle(self, robot: int, cap: int | None) -> Any:
         """A robot; its skills are the tasks that it may do."""
@@ -112,6 +131,7 @@ class _Model:
             profile="{} {}".format(*self._profile(robot)),
             time_window=self._shift(robot) if instance.timed else None,
             skills=skills,
+            capacity=[instance.goods.room_or_all(robot)] if instance.goods.limited else [],
             max_travel_time=min(most) // self._divisor if most else None,
         )
 
@@ -124,6 +144,6 @@ class _Model:
         routes: list[list[int]] = [[] for _ in range(self.instance.robot_count)]
         lengths = [0] * self.instance.robot_count
         for route in solution.to_dict()["routes"]:
-            routes[route["vehicle"]] = [step["id"] for step in route["steps"] if step["type"] == "job"]
+            routes[route["vehicle"]] = [step["id"] for step in route["steps"] if step["type"] in _STEPS]
             lengths[route["vehicle"]] = route["cost"] * self._divisor
         return Routed(routes, lengths)
