@@ -129,6 +129,20 @@ def peers_waiting(ctx: click.Context, /, **options: Any) -> int:
     return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
 
 
+@command.command("peers-goods")
+@_comparison_options(
+    quick="One small mission a table, two of transports, and short time limits.",
+    tables="loads, customers, transports, charging",
+)
+def peers_goods(ctx: click.Context, /, **options: Any) -> int:
+    """Compare search with PyVRP, OR-Tools and VROOM on missions with goods and energy.
+
+    Loads and windows, pickups and deliveries; charging beside the best known, as the others have no stations. This is
+    `muster study peers-goods`; it needs the extra `studies`.
+    """
+    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
+
+
 @command.command("scale")
 @click.option("--tasks", metavar="N,N", default="100,1000,10000,100000", show_default=True, help="Sizes of missions.")
 @click.option("--seconds", metavar="S,S", default="1,5,20,60", show_default=True, help="Time limits.")

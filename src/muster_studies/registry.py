@@ -18,7 +18,13 @@ from muster_studies.localisation import LOCALISATION
 from muster_studies.market_5 import MARKET_5
 from muster_studies.market_rescue import MARKET_RESCUE
 from muster_studies.negotiation.study import NEGOTIATION
-from muster_studies.peers import peers_routes_study, peers_study, peers_timed_study, peers_waiting_study
+from muster_studies.peers import (
+    peers_goods_study,
+    peers_routes_study,
+    peers_study,
+    peers_timed_study,
+    peers_waiting_study,
+)
 from muster_studies.repetition import OnDone
 from muster_studies.rescue import RESCUE
 from muster_studies.rotors.study import ROTORS
@@ -67,6 +73,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     peers_timed_study(),
     peers_routes_study(),
     peers_waiting_study(),
+    peers_goods_study(),
     RVO,
     RESCUE,
     MARKET_5,

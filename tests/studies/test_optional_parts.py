@@ -43,6 +43,7 @@ HELP = [
     ["bench", "peers-timed", "--help"],
     ["bench", "peers-routes", "--help"],
     ["bench", "peers-waiting", "--help"],
+    ["bench", "peers-goods", "--help"],
     ["study", "--list"],
 ]
 LACKING = {"physics": ["study", "thesis-6.1"], "plot": ["solve", "6T-2R", "--plot", "plan.png", "-q"]}

@@ -13,7 +13,7 @@ from muster_studies.effort import Effort
 from muster_studies.peers import peers_timed_study
 from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, mission_of, perform, runs_of
 from muster_studies.peers.instance import Instance
-from muster_studies.peers.ordered_table import Ordered
+from muster_studies.peers.ordered_table import ORDERED
 from muster_studies.peers.processor_time import ProcessorStop
 from muster_studies.peers.teams_table import SETS, Teams
 from muster_studies.peers.windows_table import Windows
@@ -147,8 +147,8 @@ def test_windows_with_prerequisites_are_counted():
     effort = Effort(quick=True)
     done = {OWN: 90, "greedy": 90, "auction": 89, "CP-SAT": 91, "OR-Tools": 90}
     ends = {OWN: 100.0, "greedy": 110.0, "auction": 50.0, "CP-SAT": 200.0, "OR-Tools": 100.0001}
-    found = {run: result_of(run, ends[run.solver], done[run.solver]) for run in Ordered().jobs(effort)}
-    *rows, last = Ordered().table(effort, found).records()
+    found = {run: result_of(run, ends[run.solver], done[run.solver]) for run in ORDERED.jobs(effort)}
+    *rows, last = ORDERED.table(effort, found).records()
     assert [row["mission"] for row in rows] == ["windows-0", "windows-1"]
     assert last["auction"] == 178
     marks = {solver: last[f"{solver}, makespan [s]"] for solver in done}

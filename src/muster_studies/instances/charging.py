@@ -26,8 +26,8 @@ _ROBOTS = 2
 _CLEAR = 1.0
 """Windows are opened by so much more than they must be."""
 
-CHARGING_REFERENCES: Mapping[tuple[str, int], float] = MappingProxyType({})
-"""By instance and seed: the least total that long runs of `search` found."""
+CHARGING_REFERENCES: Mapping[tuple[str, int], float] = MappingProxyType({("R101", 0): 1912.1572})
+"""By instance and seed: the total that `search` found in 150 s of processor time."""
 
 
 def charging_mission(name: str, seed: int) -> Mission:

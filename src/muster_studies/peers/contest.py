@@ -14,11 +14,15 @@ from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.verification import verify
+from muster_studies.instances.charging import charging_mission
 from muster_studies.instances.coalitions import SKILL_SETS, counted_teams
+from muster_studies.instances.families import customers_mission
+from muster_studies.instances.goods import goods_instance
 from muster_studies.instances.orienteering import orienteering_instance
 from muster_studies.instances.precedence import precedence_mission
 from muster_studies.instances.routing import clustered_mission, routing_instance, uniform_tour
 from muster_studies.instances.solomon import solomon_instance
+from muster_studies.instances.transports import transports_mission
 from muster_studies.instances.waiting import windows_mission
 from muster_studies.peers.cp_sat import CpSat
 from muster_studies.peers.cp_sat_schedule import CpSatSchedule
@@ -43,6 +47,11 @@ WAITING_PEER = CpSatSchedule()
 GENERATED: Mapping[str, Callable[[Sequence[str]], Mission]] = {
     "uniform": lambda words: large_mission(int(words[0]), int(words[1])),
     "solomon": lambda words: solomon_instance(words[0], int(words[1])),
+    "loads": lambda words: solomon_instance(words[0], int(words[1]), loads=True),
+    "goods": lambda words: goods_instance(words[0], int(words[1])),
+    "customers": lambda words: customers_mission(words[0], *map(int, words[1:])),
+    "transports": lambda words: transports_mission(words[0], *map(int, words[1:])),
+    "charging": lambda words: charging_mission(words[0], int(words[1])),
     "windows": lambda words: windows_mission(int(words[0])),
     "waiting": lambda words: precedence_mission(words[0], *map(int, words[1:])),
     "skills": lambda words: SKILL_SETS[words[0]].instance(int(words[1])),

@@ -14,6 +14,8 @@ from muster_studies.peers.peer import Answer, missing
 from muster_studies.peers.processor_time import ProcessorStop
 from muster_studies.peers.sweep import OBJECTIVES, Routed, answered
 
+_LOADS = 10**8
+"""All loads together, about: what is too much must weigh as much as a prize, and a penalty per unit has a limit."""
 _FORBIDDEN = 10
 """A leg to a task that a robot may not do takes so many times a prize; profiles are how PyVRP restricts vehicles."""
 
@@ -104,7 +106,12 @@ class _Model:
 
     def _amount(self, task: int) -> list[int]:
         """What a task takes on board; nothing where no robot has a limit."""
-        return [self.instance.goods.loads[task]] if self.instance.goods.limited else []
+        goods = self.instance.goods
+        return [self._load_scale * goods.loads[task]] if goods.limited else []
+
+    @property
+    def _load_scale(self) -> int:
+        return max(1, _LOADS // max(1, self.instance.goods.total))
 
     def _window(self, task: int, prefix: str) -> dict[str, int]:
         """When a task may begin, as a client or a shipment has it."""
@@ -139,7 +146,7 @@ class _Model:
                     start_depot=instance.starts[i] - len(instance.tasks),
                     end_depot=instance.ends_or_anywhere[i] - len(instance.tasks),
                     profile=self._profile_of[self._profile(i)],
-                    capacity=[instance.goods.room_or_all(i)] if instance.goods.limited else [],
+                    capacity=[self._load_scale * instance.goods.room_or_all(i)] if instance.goods.limited else [],
                     **({"max_distance": min(most)} if most else {}),
                     **(self._shift(i) if instance.timed else {}),
                 )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from muster_studies.effort import Effort
 from muster_studies.peers.contest import PEERS, Result, Run, undisturbed
 from muster_studies.peers.machine import machine_and_versions, require_comparable
-from muster_studies.peers.ordered_table import Ordered
+from muster_studies.peers.ordered_table import ORDERED
 from muster_studies.peers.study import shares
 from muster_studies.peers.teams_table import Teams
 from muster_studies.peers.timed_effort import QUICK_S, seeds_of
@@ -21,7 +21,7 @@ def peers_timed_study() -> Repetition[Run, Result]:
         name="peers-timed",
         summary="search beside OR-Tools, PyVRP and VROOM: time windows, prerequisites, teams",
         document="search beside solvers from elsewhere: time windows, prerequisites, teams",
-        reproductions=(Windows(), Ordered(), Teams()),
+        reproductions=(Windows(), ORDERED, Teams()),
         perform=one_by_one(undisturbed),
         seeds=seeds_of,
         extras=("studies",),
