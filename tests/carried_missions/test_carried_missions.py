@@ -35,7 +35,7 @@ def test_no_plan_is_better_than_the_best(seed):
     assert report.counts["search misses the best"] == 0
 
 
-@pytest.mark.parametrize("seed", [1, 5, 8, 13, 19])
+@pytest.mark.parametrize("seed", [1, 5, 13, 19])
 def test_the_exact_solver_proves_the_best(seed):
     pytest.importorskip("ortools", reason="needs the extra exact")
     report = Report(seed)
