@@ -71,7 +71,7 @@ def test_shipped_missions_are_carried_out_as_planned(name):
     seen = step * (2 + 2 * len(ledger.ends_s)) if mission.rules.usage == "time" else 0.0  # time is counted in steps
     exact = 1e-2 if name == "depot" else 1e-6  # ways through the air are sampled
     for route, figures in zip(plan.routes, verdict.routes, strict=True):
-        assert executor.crew[route.robot].done == list(route.tasks)
+        assert executor.crew[route.robot].done == [stop.task for stop in route.stops if not stop.is_station]
         assert executor.crew[route.robot].used == pytest.approx(route.usage, rel=exact, abs=1e-9 + seen)
         assert executor.usage_planned[route.robot] == pytest.approx(figures.usage, rel=exact)
     late = max(ledger.ends_s.values()) - verdict.makespan_s

@@ -166,6 +166,8 @@ def test_a_plan_from_elsewhere_needs_only_routes(tmp_path):
         "makespan_s": 11,
         "lateness": 0,
         "equality_index": pytest.approx(PLAN.equality_index),
+        "station_visits": 0,
+        "charged": 0.0,
         "tasks_completed": 3,
         "tasks_total": 4,
         "weight_completed": 7,
