@@ -11,7 +11,6 @@ from muster.allocation.feasibility import Legs
 from muster.allocation.limits import Limits
 from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.timed_rules import ROUNDING
-from muster.allocation.witness_plans import closed
 
 
 def subset_ends(limits: Limits, i: int, tasks: Sequence[int]) -> Floats:
@@ -82,8 +81,19 @@ def least_ways(problem: Problem, i: int, places: Sequence[int], legs: Legs, work
 
 def followers(problem: Problem, tasks: Sequence[int]) -> list[int]:
     """For each of few tasks those that must come after it, as bits."""
-    before = [set(closed(problem, [j])) for j in tasks]
+    before = [_done_before(problem, j) for j in tasks]
     return [sum(1 << k for k in range(len(tasks)) if tasks[k] != j and j in before[k]) for j in tasks]
+
+
+def _done_before(problem: Problem, j: int) -> set[int]:
+    """The tasks that must be done before a task, or begin with one that must, and itself."""
+    found, waiting = {j}, [j]
+    while waiting:
+        k = waiting.pop()
+        new = {*problem.awaited[k], *problem.timed_rules.beginning_with(k)} - found
+        found |= new
+        waiting += new
+    return found
 
 
 def tied_pairs(problem: Problem, tasks: Sequence[int]) -> list[tuple[int, int]]:

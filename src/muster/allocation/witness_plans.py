@@ -89,7 +89,7 @@ def _searched(
 def bare_plan(problem: Problem, routes: Routes) -> Plan:
     """A plan of nothing but routes, with what is charged at stations."""
     if problem.stations:
-        by_robot = {route.robot: route for route in scheduled(problem, routes)}
+        by_robot = {route.robot: replace(route, usage=None) for route in scheduled(problem, routes)}
     else:
         by_robot = {
             robot.id: Route(robot.id, tuple(problem.tasks[j].id for j in route))
