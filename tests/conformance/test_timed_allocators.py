@@ -14,7 +14,7 @@ from muster.allocation.capabilities import ALL, FOR_GOOD, capability_table, thos
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
-from muster.mission.model import Lag
+from muster.mission.model import Battery, Lag
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)
 
@@ -27,12 +27,17 @@ CASES = {
     "team": {"robots_needed": 2},
     "relation": {"other_robot_than": ("a",)},
     "starts-with": {"starts_with": ("a",)},
+    "load": {"load": 1},
 }
 RULES_OF = {
     "lateness": {"objective": "lateness"},
     "makespan-return": {"objective": "makespan", "makespan_includes_return": True, "return_to_start": True},
 }
-OF_ROBOTS = {"shift": {"available_until_s": 200.0}, "min-tasks": {"min_tasks": 2}}
+OF_ROBOTS = {
+    "shift": {"available_until_s": 200.0},
+    "min-tasks": {"min_tasks": 2},
+    "battery": {"battery": Battery(capacity=500.0)},
+}
 
 
 def mission_of(word):
