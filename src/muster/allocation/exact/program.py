@@ -202,7 +202,7 @@ class Program:
             if math.isinf(cut.adds):
                 self.model.add_bool_or([leg.negated() for leg in driven])
             else:
-                least = min(self._costs.scale.at_least(cut.adds), self._costs.longest)
+                least = min(self._costs.scale.below(cut.adds), self._costs.longest)
                 self.model.add(circuits.detours[i] >= least).only_enforce_if(*driven)
         self._of_values.append(cut)
         if self._least_of is not None:
@@ -215,7 +215,9 @@ class Program:
         circuits = self._circuits
         for i in next(group for group in self.groups if cut.robot in group):
             legs = circuits.legs_of([cut.tasks if k == i else () for k in circuits.robots])
-            least = math.floor(self.scale.at_least(cut.value) * self._value_per)
+            least = math.floor(self.scale.below(cut.value) * self._value_per)
+            if self._problem.objective == "lateness":  # a sum of whole multiples does not come to every number
+                least = max(0, least - sum(self._weights))
             self.model.add(self._least_of(cut.tasks) >= least).only_enforce_if(*(circuits.legs[key] for key in legs))
 
     def hint(self, routes: Routes) -> None:

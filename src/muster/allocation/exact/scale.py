@@ -48,6 +48,10 @@ class Scale:
         """A limit in units that every plan keeps whose true value is at least the limit."""
         return max(0, math.floor((value * (1 - _ROUNDING) - self.slack) * self.units))
 
+    def below(self, value: float) -> int:
+        """A value in units, which is not above it."""
+        return max(0, math.floor(value * (1 - _ROUNDING) * self.units))
+
     def up(self, units: float) -> float:
         """What so many units are."""
         return units / self.units
