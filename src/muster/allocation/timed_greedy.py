@@ -54,7 +54,9 @@ def _select(
             stop.cut()
             return None
         insertion = None if unit in refused else roster.best(unit, robots)
-        if insertion is not None and (debit := _debit(problem, roster, insertion)) < least:
+        if insertion is None or insertion.unit in refused:  # of a transport it is that of the first task
+            continue
+        if (debit := _debit(problem, roster, insertion)) < least:
             chosen, least = insertion, debit
     return chosen
 
