@@ -201,14 +201,14 @@ void StationCalls::carry(int, Labels& labels, int task) const {
   }
 }
 
-// The best within the robot's capacity, if any is.
+// The best within the robot's capacity and shift, if any is.
 int StationCalls::best_of(int robot, const Labels& labels) const {
   const auto [first, last] = labels.at_stop.back();
   int best = first;
   const auto key = [&](int k) {
     const Label& label = labels.all[k];
     const double time = label.frontier.first().time;
-    const bool above = !problem_.fits(robot, label.usage);
+    const bool above = !problem_.fits(robot, label.usage) || time > problem_.available_until(robot) * (1.0 + kRounding);
     return in_time_ ? std::tuple(above, label.extra, time, label.usage)
                     : std::tuple(above, label.extra, label.usage, time);
   };
