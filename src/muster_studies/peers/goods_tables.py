@@ -81,7 +81,7 @@ CHARGING = Family(
     solvers=(OWN,),
     remark="goods-INSTANCE-ROBOTS: of Schneider, Stenger and Goeke; reference: the distance of the best plan known. "
     "charging-INSTANCE-SEED: Solomon's, in their manner, with 21 stations, a battery for 0.6 of the mean route, and "
-    "charges until it is full; reference: the least that runs of 150 s found. PyVRP, OR-Tools' "
+    "charges until it is full; reference: what one run of 150 s found. PyVRP, OR-Tools' "
     "routing library and VROOM have no charging stations; what might be made of OR-Tools' dimensions is not tried. "
     "Solomon's have 60 s too.",
     known={**_PUBLISHED, **_CHARGING},
