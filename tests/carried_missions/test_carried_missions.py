@@ -28,14 +28,14 @@ def test_routes_that_were_wrong_once_agree_with_every_plan(seed):
     assert trial(seed, planned=False).failures == []
 
 
-@pytest.mark.parametrize("seed", [*range(7), 662, 904])
+@pytest.mark.parametrize("seed", [*range(8), 662, 904])
 def test_no_plan_is_better_than_the_best(seed):
     report = trial(seed)
     assert report.failures == []
     assert report.counts["search misses the best"] == 0
 
 
-@pytest.mark.parametrize("seed", [1, 5, 13, 19])
+@pytest.mark.parametrize("seed", [1, 5, 8, 13, 19])
 def test_the_exact_solver_proves_the_best(seed):
     pytest.importorskip("ortools", reason="needs the extra exact")
     report = Report(seed)

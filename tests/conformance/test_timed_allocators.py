@@ -70,7 +70,7 @@ def holds_true(mission, plan):
 
 
 @every_allocator
-@pytest.mark.parametrize("word", sorted(ALL - {"load", "battery"}))  # of which `test_carrying_allocators` tells
+@pytest.mark.parametrize("word", sorted(ALL))
 def test_each_rule_is_kept_or_refused_by_name(allocator, word):
     mission = mission_of(word)
     assert set(Problem.compile(mission).asked) == {word}

@@ -199,7 +199,7 @@ def test_the_readme_is_short():
 
 
 @pytest.mark.parametrize(
-    "name", ["allocators", *(f"benchmarks{of}" for of in ("", "-timed", "-routes", "-waiting", "-scale"))]
+    "name", ["allocators", *(f"benchmarks{of}" for of in ("", "-timed", "-routes", "-waiting", "-goods", "-scale"))]
 )
 def test_pages_that_a_command_writes_are_as_it_wrote_them(name):
     stored = json.loads((ROOT / "docs" / "measured" / f"{name}.json").read_text(encoding="utf-8"))
