@@ -1,4 +1,4 @@
-"""--wind, --gusts, --rotors and --battery of `simulate`."""
+"""--wind, --gusts, --rotors, --battery and --drain of `simulate`."""
 
 import json
 from importlib.util import find_spec
@@ -14,26 +14,33 @@ CALM = ("6T-2R", "--iterations", "20", "-q", "--format", "json")
 
 
 def test_options_become_arguments():
-    assert conditions_of(None, None, (), rotors=False) == {}
-    assert conditions_of("3,-1", 7.7, ("all=1", "r_0=0.5"), rotors=True) == {
+    assert conditions_of(None, None, (), (), rotors=False) == {}
+    assert conditions_of("3,-1", 7.7, ("all=1", "r_0=0.5"), ("r_1=2",), rotors=True) == {
         "wind": Wind(velocity_mps=(3.0, -1.0, 0.0), gusts_mps=7.7),
         "batteries": {"all": 1.0, "r_0": 0.5},
+        "drain": {"r_1": 2.0},
         "rotor_level": True,
     }
-    assert conditions_of("1,2,3", None, (), rotors=False)["wind"].velocity_mps == (1.0, 2.0, 3.0)
-    assert conditions_of(None, 5.0, (), rotors=False)["wind"].gusts_mps == 5.0
+    assert conditions_of("1,2,3", None, (), (), rotors=False)["wind"].velocity_mps == (1.0, 2.0, 3.0)
+    assert conditions_of(None, 5.0, (), (), rotors=False)["wind"].gusts_mps == 5.0
 
 
 @pytest.mark.parametrize("wind", ["3", "a,b", "1,2,3,4", "nan,0"])
 def test_winds_that_are_none_are_refused(wind):
     with pytest.raises(ParameterError, match="expected"):
-        conditions_of(wind, None, (), rotors=False)
+        conditions_of(wind, None, (), (), rotors=False)
 
 
 @pytest.mark.parametrize("batteries", [("0.5",), ("r_0=x",), ("r_0=1", "r_0=0.5")])
 def test_batteries_that_are_none_are_refused(batteries):
     with pytest.raises(ParameterError, match="--battery"):
-        conditions_of(None, None, batteries, rotors=False)
+        conditions_of(None, None, batteries, (), rotors=False)
+
+
+@pytest.mark.parametrize("drain", [("x",), ("r_0=1", "r_0=2")])
+def test_drains_that_are_none_are_refused(drain):
+    with pytest.raises(ParameterError, match="--drain"):
+        conditions_of(None, None, (), drain, rotors=False)
 
 
 @pytest.mark.parametrize(

@@ -1,26 +1,36 @@
 """Calls at stations, levels of batteries and goods on board, while plans are carried out in the simulated world."""
 
+import math
 from dataclasses import replace
 
 import pytest
 from tests.carry_charge import battery, charger, depot, mission, plan, robot, swapper, task
 
 from muster.execution import status_of
+from muster.execution.robot_state import Activity
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
+from muster.mission.plan import RouteStop
 from muster.running.simulation import Simulation
 
 
-def carried_out(given, ignore=(), each=None, **routes):
-    """The simulation at its end; `each` is called with it all along."""
+def carried_out(given, ignore=(), each=None, charged=None, **routes):
+    """The simulation at its end; `each` is called with it all along; `charged`: by station what each call adds."""
     how = routes.pop("how", {})
-    simulation = Simulation(given, plan(**routes), ignore=ignore, **how)
+    simulation = Simulation(given, with_charges(plan(**routes), charged or {}), ignore=ignore, **how)
     while not simulation.done and simulation.time_s < 1_000:
         simulation.advance(simulation.time_s + 0.5)
         if each is not None:
             each(simulation)
     assert simulation.done
     return simulation
+
+
+def with_charges(what, charged):
+    def stops(route):
+        return tuple(RouteStop(n, 0.0, 0.0, 0.0, n in charged, charged.get(n)) for n in route.tasks)
+
+    return replace(what, routes=tuple(replace(one, stops=stops(one)) for one in what.routes)) if charged else what
 
 
 def happened(simulation, *kinds):
@@ -56,6 +66,43 @@ def test_robots_are_served_in_the_order_of_their_arrival_and_wait_for_slots():
     told = done.result()
     assert told.waiting_by_cause_s["slot"] == pytest.approx(sum(row.slot_wait_s for row in told.robots))
     assert told.waiting_by_cause_s["slot"] > 10
+
+
+def test_bodies_wait_where_they_are_until_a_slot_will_be_free():
+    places = {"a": (2, 0), "b": (8, 2), "c": (8, -2)}
+    robots = [robot(name, battery=battery(60, 0.5), radius_m=0.3) for name in places]
+    robots = [replace(one, position=places[one.id]) for one in robots]
+    given = mission(robots, [task(f"t{k}", 20 + k) for k in range(3)], [charger(rate=2)])
+    queue = {"b": [], "c": []}
+
+    def look(simulation):
+        for name, seen in queue.items():
+            if simulation.status.robots[name].activity == "queueing at dock":
+                seen.append(simulation._executor.crew[name].position[:2])
+
+    done = carried_out(given, each=look, a="dock t0", b="dock t1", c="dock t2")
+    assert all(seen[0] == places[name] and math.hypot(*seen[-1]) < 1 for name, seen in queue.items())
+    begins, ends = happened(done, "service_begins"), happened(done, "service_ends")
+    assert [name for _, name in begins] == ["a", "b", "c"]
+    assert all(begin - end < 0.5 for (begin, _), (end, _) in zip(begins[1:], ends, strict=False))  # no slot is idle
+    assert done.result().contacts == 0
+
+
+def test_a_fleet_that_uses_more_than_planned_charges_for_that():
+    tasks = [*(task(f"t{k}", k + 1) for k in range(6)), task("far", 40)]
+    given = mission([robot(battery=battery(60, 0.5, reserve=0.1))], tasks, [charger(x=6, rate=5)])
+    learnt = []
+
+    def use_more(simulation):
+        usage, state = simulation._executor.ledger.usage, simulation._executor.crew["r"]
+        usage |= {name: (planned, 1.3 * planned) for name, (planned, _) in usage.items()}
+        if state.activity is Activity.SERVED:
+            learnt.append(state.energy.detours)
+
+    done = carried_out(given, each=use_more, charged={"dock": 16.0}, r="t0 t1 t2 t3 t4 t5 dock far")
+    assert learnt[0] == pytest.approx(1.25, abs=0.01)  # when the sixth task was done 1.3 was known of five
+    charged = done._executor.crew["r"].energy.charged
+    assert charged == pytest.approx(1.25 * 34 + 6 + 1.2 - 24, abs=0.5)  # 24 are left, 6 stay; 2 % more than needed
 
 
 def test_a_swap_takes_its_time_and_fills_the_battery():

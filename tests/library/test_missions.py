@@ -58,7 +58,9 @@ COUNTS = {  # robots, tasks
     "market-rescue-arena": (3, 5),
     "scout-and-deliver": (5, 5),
     "six-tags": (1, 18),
+    "solar-plant": (3, 20),
     "warehouse": (20, 60),
+    "warehouse-charging": (10, 48),
     "yard": (4, 18),
 }
 THESIS = ["6T-2R", "11T-2R", "16T-3R", "24T-5R", *(name for name in COUNTS if name.startswith("31T"))]

@@ -12,7 +12,8 @@ from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.library import mission_names, mission_path
-from muster.mission.errors import MissingExtraError
+from muster.mission.errors import MissingExtraError, ParameterError
+from muster.negotiation.capabilities import AGREED
 from muster.negotiation.participation import plan_of
 
 OTHERS = tuple(product(WINNERS, PLACEMENTS))
@@ -50,6 +51,10 @@ def test_on_every_shipped_mission(number, name):
         problem = Problem.compile(cut_down(muster.load(name, **more))).ready()
     except MissingExtraError as error:
         pytest.skip(str(error))
+    if not problem.asked.keys() <= AGREED:
+        with pytest.raises(ParameterError, match="robots without a centre cannot agree on"):
+            network(problem, Parameters()).start()
+        return
     bids = [bid for bid in BIDS if bid != "average-as-printed"] if problem.core.is_timed else BIDS
     for k, bid in enumerate(bids):
         winner, placement = OTHERS[(number + k) % len(OTHERS)]  # over all missions every three meet

@@ -18,7 +18,7 @@ from muster_studies.benches.standing import fleet, most_per_hour, on_duty, order
 
 
 def test_half_a_minute_of_twenty_robots_with_a_burst_loses_nothing():
-    shift = on_duty(1, 30.0, None, burst_at_s=10.0)
+    shift = on_duty(fleet(1), 1, 30.0, burst_at_s=10.0)
     seen = shift.orders
     assert (shift.lost, seen.open, seen.refused, seen.done) == (0, 0, 0, seen.taken)
     assert seen.taken > 40

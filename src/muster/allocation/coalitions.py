@@ -52,7 +52,7 @@ class CoalitionBid:
     @property
     def tasks(self) -> list[int]:
         """The tasks that are sold: those of the unit, and what is sold with it."""
-        return list(dict.fromkeys(task for task, _, _ in self.insertion.members))
+        return sorted({task for task, _, _ in self.insertion.members})
 
     def members(self, task: int) -> list[int]:
         """The robots that would do one of the unit's tasks."""

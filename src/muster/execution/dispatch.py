@@ -98,7 +98,7 @@ class Dispatch:
         if state.activity is Activity.WAITING:
             yield from self._begin_or_wait(state, state.route[0], now)
         elif state.activity is Activity.QUEUEING and self.service is not None:
-            self.service.serve_or_wait(state, now)
+            yield from self.service.serve_or_wait(state, now)
         elif (call := self._call_to_make(state, now)) is not None and self.service is not None:
             yield from self.service.set_out(state, call, now)
         elif state.available and state.route and now >= state.robot.available_from_s:

@@ -19,6 +19,7 @@ TOLERANCE = 0.01
 _LOW = 0.05  # share of the capacity above what brings a robot to a station, with which it goes there if it is free
 _FULL = 0.99
 _ORDER = 0.2  # share of the capacity that an order takes, as long as none is done
+_TELLING, _AS_PLANNED = 5, 1.02  # tasks that tell how much more is used than planned; up to so many times is as planned
 
 
 @dataclass
@@ -33,8 +34,8 @@ class EnergyWatch:
         from where a robot is; None: there is none.
     ahead
         by robot what it uses after each task of its route, by the plan in force.
-    standing
-        whether the fleet stays on duty, so that orders may come.
+    on_duty
+        whether the fleet stays on duty now, so that orders may come.
     """
 
     stations: Stations
@@ -42,7 +43,8 @@ class EnergyWatch:
     ledger: Ledger
     way: Callable[[RobotState, Place], Sequence[Place] | None]
     ahead: Callable[[], Mapping[str, Mapping[str, float]]]
-    standing: bool = False
+    on_duty: Callable[[], bool] = lambda: False
+    _learnt_from: int = 0
 
     def empty(self) -> Iterator[RobotState]:
         """Robots whose telemetry tells that their batteries are empty."""
@@ -50,6 +52,7 @@ class EnergyWatch:
 
     def look(self, now: float) -> Iterator[Change]:
         """Robots whose energy does not last to their next charge, or the end of their route: they are planned anew."""
+        self._learn_detours()
         for state in self.crew.values():
             if state.out or state.energy is None:
                 continue
@@ -70,6 +73,17 @@ class EnergyWatch:
                 },
             )
 
+    def _learn_detours(self) -> None:
+        """Note how much more robots use than planned, be it for others in their way, or for turns."""
+        usages = self.ledger.usage.values()
+        if len(usages) == self._learnt_from or len(usages) < _TELLING:
+            return
+        self._learnt_from = len(usages)
+        planned, flown = sum(one for one, _ in usages), sum(one for _, one in usages)
+        for state in self.crew.values():
+            if state.energy is not None:
+                state.energy.detours = flown / planned if flown > _AS_PLANNED * planned > 0 else 1.0
+
     def _missing(self, state: RobotState, now: float) -> float:
         """By how much a robot would come below its reserve before it charges next; below 0: it does not."""
         energy = state.energy
@@ -80,7 +94,7 @@ class EnergyWatch:
             after = self.ahead().get(state.robot.id, {}).get(state.route[0])
             if after is None:
                 return 0.0
-            call = next((one for one in state.calls if self.stations.known[one.station].gives_energy), None)
+            call = self.stations.next_charge(state.calls)
             needed = state.used_after(now) - state.used + after - (0.0 if call is None else call.left)
         else:
             return 0.0
@@ -110,13 +124,13 @@ class EnergyWatch:
             home = self._usage(state, state.home)
             if home is not None and energy.above_reserve < energy.drain * home:
                 return True
-        if not (self.standing or has_tasks_without_robot(self.ledger, self.crew)):
+        if not (self.on_duty() or has_tasks_without_robot(self.ledger, self.crew)):
             return False
         if energy.above_reserve < energy.drain * to_station + _LOW * capacity:
             return True
         order = self._mean_usage(capacity)
         free = self.stations.free_slots(station) > 0
-        return self.standing and free and energy.above_reserve < energy.drain * (order + to_station)
+        return self.on_duty() and free and energy.above_reserve < energy.drain * (order + to_station)
 
     def gets_home(self, state: RobotState) -> bool:
         """Whether the energy of a robot brings it to where its route ends, its reserve included."""

@@ -163,7 +163,7 @@ class Executor:
             self.ledger,
             self._dispatch.way,
             lambda: self._dispatch.ahead,
-            standing=self._standing.forgets,
+            on_duty=lambda: self._on_duty,
         )
         self.outlook = Outlooks(self.ledger, self.crew, self._beginning, self._forecast)
         self.traffic = TrafficWaits(self.crew)
@@ -363,6 +363,11 @@ class Executor:
         )
 
     @property
+    def _on_duty(self) -> bool:
+        """Whether it stays though all may be done, so that orders come."""
+        return self.now_s < self._standing.stays_until_s
+
+    @property
     def _objective(self) -> str:
         return self.planned.objective or self.mission.rules.objective
 
@@ -437,7 +442,14 @@ class Executor:
 
     def _rest(self) -> RemainingMission:
         return remaining_mission_of(
-            self.mission, self.planned, self.crew, self.ledger, self.now_s, self.stations, self.goods
+            self.mission,
+            self.planned,
+            self.crew,
+            self.ledger,
+            self.now_s,
+            self.stations,
+            self.goods,
+            on_duty=self._on_duty,
         )
 
     def _plan_again(self) -> None:
@@ -486,7 +498,7 @@ class Executor:
                 self.emit("lost", {"task": task, "reason": reason})
 
     def _end_if_over(self) -> None:
-        if self.now_s < self._standing.stays_until_s:
+        if self._on_duty:
             return
         if self._alone and not self.done and self.idle and not self._may_bring_work:
             last = max((event.time_s for event in self.events), default=self.begun_s)

@@ -12,6 +12,8 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from muster.allocation.charges import Charge
 from muster.allocation.fixed import admissible_alone, with_fixed_routes
 from muster.allocation.problem import Problem
@@ -26,6 +28,7 @@ from muster.mission.plan import Plan, Route
 from muster.motion.port import Place
 
 SO_FAR = "so far"
+_MOST_RESERVE = 0.9  # share of the capacity that is left for the way to a station at most
 _ROUNDING = 1e-9  # relative; by how much a capacity is above what cannot be helped
 
 
@@ -102,6 +105,8 @@ class RemainingMission:
         by robot the tasks that deliver what it has on board; they stand among `tasks` as what the robot puts down.
     objective
         of the plan; None: the mission's.
+    on_duty
+        whether the fleet stays on duty: where its route ends a robot has energy to get to a station.
     """
 
     mission: Mission
@@ -119,6 +124,7 @@ class RemainingMission:
     stations: tuple[Station, ...] = ()
     aboard: Mapping[str, Sequence[str]] = field(default_factory=dict)
     objective: str | None = None
+    on_duty: bool = False
 
 
 def frozen(rest: RemainingMission) -> RemainingMission:
@@ -174,16 +180,30 @@ def _with_levels(rest: RemainingMission, problem: Problem) -> Problem:
     if "battery" in rest.ignored or all(snapshot.level is None for snapshot in rest.crew):
         return problem
     robots, levels = [], []
-    for robot in problem.robots:
+    for i, robot in enumerate(problem.robots):
         now = crew[robot.id]
         if robot.battery is None or now.level is None:
             robots.append(robot)
             levels.append(math.inf)
             continue
-        battery = replace(robot.battery, capacity=robot.battery.capacity / now.drain)
+        least, capacity = robot.battery.least / now.drain, robot.battery.capacity / now.drain
+        if rest.on_duty:
+            least += _usage_to_station(problem, i)
+        battery = replace(robot.battery, capacity=capacity, reserve=min(least / capacity, _MOST_RESERVE))
         robots.append(replace(robot, battery=battery))
         levels.append(max(now.level / now.drain, battery.least) + (now.used if now.has_past else 0.0))
     return replace(problem, robots=tuple(robots), levels=tuple(levels))
+
+
+def _usage_to_station(problem: Problem, i: int) -> float:
+    """What robot i uses at most from the end of a route of it to the nearest station there; 0 if there is none."""
+    first = len(problem.tasks) + 2 * len(problem.robots)
+    serving = [first + k for k, station in enumerate(problem.stations) if station.gives_energy]
+    ends = [problem.end(i)] if problem.robots[i].end_position is not None else range(len(problem.tasks))
+    if not serving or not len(ends):
+        return 0.0
+    least = problem.legs(i, ends, serving).min(axis=1)
+    return float(least[np.isfinite(least)].max(initial=0.0))
 
 
 def _aboard(rest: RemainingMission, problem: Problem) -> tuple[tuple[int, ...], ...]:

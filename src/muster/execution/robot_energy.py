@@ -25,6 +25,8 @@ class RobotEnergy:
         whether telemetry tells that; else it is counted.
     charged
         what was added at stations.
+    detours
+        how many times as much the fleet uses as was planned.
     """
 
     battery: Battery
@@ -32,6 +34,7 @@ class RobotEnergy:
     least: float = field(init=False)
     told: bool = False
     charged: float = 0.0
+    detours: float = 1.0
     _used: float | None = None  # the robot's usage when the level was last noted
     _drained: float = 0.0  # while it used so much
     _drained_over: float = 0.0
@@ -51,10 +54,10 @@ class RobotEnergy:
 
     @property
     def drain(self) -> float:
-        """How fast the battery drains: times the usage, at least 1; 1 as long as that is not known."""
+        """How fast the battery drains: times the planned usage, at least 1; 1 as long as that is not known."""
         if self._drained_over < _KNOWN_AFTER * self.battery.capacity:
-            return 1.0
-        return max(1.0, self._drained / self._drained_over)
+            return self.detours
+        return self.detours * max(1.0, self._drained / self._drained_over)
 
     @property
     def is_empty(self) -> bool:

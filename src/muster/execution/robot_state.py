@@ -28,7 +28,7 @@ class Activity(Enum):
     WORKING = "working"
     RETURNING = "returning"  # to where its route ends
     TO_STATION = "driving to station"
-    QUEUEING = "queueing"  # at a station, for a slot
+    QUEUEING = "queueing"  # for a slot at a station, there or elsewhere
     SERVED = "served"  # at a station
 
 
@@ -71,7 +71,8 @@ class RobotState:
     done: list[str] = field(default_factory=list)
     stops: list[str] = field(default_factory=list)  # tasks done, and stations between them
     station: str = ""  # where it is or goes to, on a call
-    queued_s: float = 0.0  # since when it waits there, or did
+    queued_s: float = 0.0  # since when it waits for a slot there, or did
+    away: bool = False  # whether it waits for that where it is, not at the station
     service_s: float = 0.0  # how long its service takes
     visits: int = 0  # so often it was served at a station
     slot_wait_s: float = 0.0  # for so long it waited for slots
@@ -217,7 +218,7 @@ class RobotState:
             self.charged += self._stayed_cost * min(1.0, (now - self.begun_s) / self.work_s)
         self._waypoints = ()
         self._order = self.port.cancel()
-        self.work = None
+        self.work, self.away = None, False
         self.wait_cause = self.wait_words = ""
         self.begin_activity(now, Activity.IDLE)
 

@@ -58,6 +58,8 @@ def remaining_mission_of(
     now: float,
     stations: Stations,
     goods: GoodsLedger,
+    *,
+    on_duty: bool = False,
 ) -> RemainingMission:
     """What is left of the mission."""
     present = [state for state in crew.values() if not state.out]
@@ -84,6 +86,7 @@ def remaining_mission_of(
         stations=stations.working,
         aboard=deliveries_aboard(left, carried),
         objective=plan.objective,
+        on_duty=on_duty,
     )
 
 
@@ -124,7 +127,7 @@ def _level(state: RobotState, now: float, stations: Stations) -> float | None:
     if energy is None:
         return None
     if state.activity is Activity.SERVED:
-        return level_after_service(stations.known[state.station], state)
+        return level_after_service(stations, state)
     if state.activity is Activity.WORKING:
         return energy.level - energy.drain * (state.used_after(now) - state.used)
     return energy.level

@@ -15,13 +15,12 @@ from muster.execution.station_calls import Call
 from muster.execution.stations import Stations
 from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import along, place
-from muster.mission.model import Station
 from muster.motion.port import Place, Waypoint
 
 CHARGE_MARGIN = 0.02
 """Share of the capacity that a robot charges more than planned: no way is driven exactly as it was planned."""
 AT_SLOT_M = 0.3
-"""Metres between two bodies at a station, or between a body and the station, that count as being there."""
+"""Metres between two bodies at a station, or between the middle of one and the station, that count as being there."""
 _MISSING = 1e-3  # share of the capacity by which a charge may stay behind
 
 
@@ -54,22 +53,46 @@ class StationService:
             self._end(state, now)
 
     def set_out(self, state: RobotState, call: Call, now: float) -> Iterator[Change]:
-        """Send a robot to a station."""
-        station = self.stations.known[call.station]
-        way = self.way(state, place(station.position))
-        if way is None:
-            self.stations.cut_off.add(station.id)
-            yield Change("station_unreachable", {"station": station.id, "robot": state.robot.id})
-            return
-        state.station, state.at_home, state.work = station.id, False, None
-        state.send(now, Activity.TO_STATION, along(way, station.id))
-        self.emit("goes_to_station", {"robot": state.robot.id, "station": station.id} | _level(state))
+        """Send a robot to a station; one with a body waits where it is until there will be a slot when it comes.
 
-    def serve_or_wait(self, state: RobotState, now: float) -> None:
-        """Begin the service of a robot that waits at a station, or say for what it waits."""
-        if self.stations.has_slot_for(state):
-            self._begin(state, now)
+        Bodies that wait before a slot are in the way of each other and of those that leave it.
+        """
+        state.station, state.at_home, state.work = call.station, False, None
+        if self._finds_slot(state, now):
+            yield from self._drive(state, now)
             return
+        state.send(now, Activity.QUEUEING, ())
+        state.queued_s, state.away = now, True
+        self._say_wait(state)
+
+    def serve_or_wait(self, state: RobotState, now: float) -> Iterator[Change]:
+        """Begin the service of a robot that waits for a slot, or let it go there, or say for what it waits."""
+        if state.away and self._finds_slot(state, now):
+            state.slot_wait_s += now - state.queued_s
+            yield from self._drive(state, now)
+        elif not state.away and self.stations.has_slot_for(state):
+            self._begin(state, now)
+        else:
+            self._say_wait(state)
+
+    def _finds_slot(self, state: RobotState, now: float) -> bool:
+        if state.robot.radius_m == 0:
+            return True
+        least_s = state.times.least_seconds(math.dist(state.position, self._place(state)))
+        return self.stations.finds_slot(state, now, least_s)
+
+    def _drive(self, state: RobotState, now: float) -> Iterator[Change]:
+        state.away, state.wait_words = False, ""
+        way = self.way(state, self._place(state))
+        if way is None:
+            self.stations.cut_off.add(state.station)
+            state.stop(now)
+            yield Change("station_unreachable", {"station": state.station, "robot": state.robot.id})
+            return
+        state.send(now, Activity.TO_STATION, along(way, state.station))
+        self.emit("goes_to_station", {"robot": state.robot.id, "station": state.station} | _level(state))
+
+    def _say_wait(self, state: RobotState) -> None:
         served = [other.robot.id for other in self.stations.served(state.station)]
         words = f"waits for a slot at {state.station}: {', '.join(served) or 'others come first'}"
         if not state.wait_words:
@@ -92,11 +115,12 @@ class StationService:
 
     def _is_there(self, state: RobotState) -> bool:
         """Whether a robot is as near to a station as others that are there let it."""
-        if state.robot.radius_m == 0:
+        others = [one for one in self.stations.at(state.station) if one is not state and not one.away]
+        if state.robot.radius_m == 0 or not others:
             return False
-        others = [one.robot.radius_m for one in self.stations.at(state.station) if one.activity in _STANDING]
-        near_m = max(others, default=-math.inf) + state.robot.radius_m + AT_SLOT_M
-        return math.dist(state.position, self._place(state)) <= near_m
+        stand = [one.robot.radius_m for one in others if one.activity is not Activity.TO_STATION]
+        near_m = max(stand) + state.robot.radius_m if stand else 0.0
+        return math.dist(state.position, self._place(state)) <= near_m + AT_SLOT_M
 
     def _place(self, state: RobotState) -> Place:
         return place(self.stations.known[state.station].position)
@@ -108,7 +132,7 @@ class StationService:
         others = self.stations.served(station.id)
         there = state.position if others and state.robot.radius_m > 0 else self._place(state)
         state.note_energy()
-        state.service_s = _takes_s(station, state)
+        state.service_s = _takes_s(self.stations, state)
         state.send(
             now,
             Activity.SERVED,
@@ -121,10 +145,10 @@ class StationService:
         station = self.stations.known[state.station]
         before = 0.0 if state.energy is None else state.energy.level
         state.note_energy()
-        if state.energy is not None and state.energy.told and self._goes_on(state, station, before, now):
+        if state.energy is not None and state.energy.told and self._goes_on(state, before, now):
             return
         if state.energy is not None and not state.energy.told:
-            state.energy.add(_to_add(station, state))
+            state.energy.add(_to_add(self.stations, state))
         gone = self.goods.unload(state.robot.id, tied_goods(self.ledger)) if station.unloads else {}
         call = state.call
         if call is not None:
@@ -138,50 +162,49 @@ class StationService:
         if state.charged_idle and has_tasks_without_robot(self.ledger, self.stations.crew):
             self.ask([Change("robot_charged", {"robot": state.robot.id, "station": station.id})])
 
-    def _goes_on(self, state: RobotState, station: Station, before: float, now: float) -> bool:
+    def _goes_on(self, state: RobotState, before: float, now: float) -> bool:
         """Go on where telemetry tells that less was added than was to be, as long as anything is."""
-        missing = _to_add(station, state)
+        missing = _to_add(self.stations, state)
         energy = state.energy
         if energy is None or missing <= _MISSING * energy.battery.capacity or energy.level <= before:
             return False
         begun = state.begun_s
-        again_s = _takes_s(station, state)
+        again_s = _takes_s(self.stations, state)
         state.send(
             now,
             Activity.SERVED,
-            [Waypoint(state.position, hold_s=again_s, label=station.id, uses=0.0, service=station.id)],
+            [Waypoint(state.position, hold_s=again_s, label=state.station, uses=0.0, service=state.station)],
         )
         state.service_s += again_s
         state.begun_s = begun
         return True
 
 
-_STANDING = (Activity.QUEUEING, Activity.SERVED)
-
-
-def level_after_service(station: Station, state: RobotState) -> float:
-    """What the battery of a robot holds when its service at a station is over; it must have one."""
+def level_after_service(stations: Stations, state: RobotState) -> float:
+    """What the battery of a robot holds when its service at its station is over; it must have one."""
     energy = state.energy
     assert energy is not None
-    return energy.level + _to_add(station, state)
+    return energy.level + _to_add(stations, state)
 
 
-def _to_add(station: Station, state: RobotState) -> float:
-    """What a robot is still to get at a station, in the unit of usage."""
-    energy = state.energy
+def _to_add(stations: Stations, state: RobotState) -> float:
+    """What a robot is still to get at its station, in the unit of usage: as planned, and what it has learnt to need."""
+    energy, station = state.energy, stations.known[state.station]
     if energy is None or not station.gives_energy:
         return 0.0
-    call = state.call
-    until = 1.0
+    call, capacity = state.call, energy.battery.capacity
+    until = capacity
     if call is not None and call.until is not None and station.charges and station.partial:
-        until = min(1.0, call.until + CHARGE_MARGIN)
-    return max(0.0, until * energy.battery.capacity - energy.level)
+        needed = energy.battery.least + energy.drain * stations.used_until_charge(state)
+        until = min(capacity, max(call.until * capacity, needed) + CHARGE_MARGIN * capacity)
+    return max(0.0, until - energy.level)
 
 
-def _takes_s(station: Station, state: RobotState) -> float:
+def _takes_s(stations: Stations, state: RobotState) -> float:
     """Seconds that the service of a robot takes."""
+    station = stations.known[state.station]
     if station.charge_per_s is not None:
-        return _to_add(station, state) / station.charge_per_s
+        return _to_add(stations, state) / station.charge_per_s
     return station.swap_s if station.swaps and state.energy is not None else 0.0
 
 

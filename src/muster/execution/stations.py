@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from muster.execution.robot_state import Activity, RobotState
+from muster.execution.station_calls import Call
 from muster.mission.model import Station
 
 AT_STATION = (Activity.TO_STATION, Activity.QUEUEING, Activity.SERVED)
@@ -51,7 +53,7 @@ class Stations:
 
     def queue(self, station: str) -> list[RobotState]:
         """The robots that wait there, in the order in which they are served: of arrival, ties by id."""
-        waiting = [state for state in self.at(station) if state.activity is Activity.QUEUEING]
+        waiting = [one for one in self.at(station) if one.activity is Activity.QUEUEING and not one.away]
         return sorted(waiting, key=lambda state: (state.queued_s, state.robot.id))
 
     def has_slot_for(self, state: RobotState) -> bool:
@@ -59,6 +61,33 @@ class Stations:
         station = self.known[state.station]
         free = station.slots - len(self.served(station.id))
         return state in self.queue(station.id)[: max(0, free)]
+
+    def finds_slot(self, state: RobotState, now: float, after_s: float) -> bool:
+        """Whether a slot will be free, as far as is known, for a robot that is not yet there and takes so many seconds.
+
+        Robots on the way or there come first, and those that wait elsewhere for longer.
+        """
+
+        def before(other: RobotState) -> bool:
+            if other.activity is Activity.SERVED:
+                return other.service_left_s(now) > after_s
+            since = (state.queued_s, state.robot.id) if state.away else (math.inf, "")
+            return not other.away or (other.queued_s, other.robot.id) < since
+
+        taken = sum(before(other) for other in self.at(state.station) if other is not state)
+        return taken < self.known[state.station].slots
+
+    def next_charge(self, calls: Sequence[Call]) -> Call | None:
+        """The first of some calls at which energy is to be had."""
+        return next((call for call in calls if self.known[call.station].gives_energy), None)
+
+    def used_until_charge(self, state: RobotState) -> float:
+        """What a robot uses after its next call until it charges again, or its route ends, as planned."""
+        if not state.calls:
+            return 0.0
+        call, *later = state.calls
+        after = self.next_charge(later)
+        return call.left - (0.0 if after is None else after.left)
 
     def free_slots(self, station: Station) -> int:
         """How many slots nobody is at, waits for, or is on the way to."""

@@ -10,8 +10,8 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Task
 from muster.negotiation.epoch_base import joint_among
 
-AGREED = FOR_GOOD
-"""What the auction agrees on."""
+AGREED = FOR_GOOD - {"load", "battery"}
+"""What the auction agrees on: without a centre nobody shares out the slots of stations, or knows what lies where."""
 
 
 def refuse_what_is_not_agreed(problem: Problem, can: frozenset[str]) -> None:
@@ -46,19 +46,8 @@ def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
     new = [event.new_task for event in mission.events if event.new_task is not None]
     whole = mission.at_once(robots=mission.all_robots, tasks=(*mission.tasks, *new))
     problem = Problem.compile(whole)
-    _refuse_goods_and_energy(problem)
     refuse_what_is_not_agreed(problem, can)
     refuse_once_together(problem.tasks, (problem.holds("team"), problem.holds("relation")))
-
-
-def _refuse_goods_and_energy(problem: Problem) -> None:
-    """Refuse missions in which robots carry goods or have batteries: without a centre nobody shares out the slots."""
-    found = [f"{where} ({word})" for word, where in problem.asked.items() if word in ("load", "battery")]
-    if found:
-        raise ParameterError(
-            f"robots without a centre do not carry out missions with goods or batteries: {'; '.join(found)}; "
-            "expected a plan"
-        )
 
 
 def refuse_once_together(tasks: Sequence[Task], tied: tuple[bool, bool]) -> None:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.model import Battery, Robot
-from muster.report.record import Recording
 from muster.report.styles import FAINT, LEVEL
 from muster.verification import RouteFigures, Stop
+
+if TYPE_CHECKING:
+    from muster.report.record import Recording
 
 _FULL, _EMPTY = 0.29, 0.48
 """Where a full and an empty battery are below the middle of a row, in rows: beneath the bars of work."""

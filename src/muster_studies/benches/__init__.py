@@ -30,6 +30,7 @@ BENCHES: Mapping[str, str] = MappingProxyType(
         "reallocation": "execution:reallocation",
         "standing": "standing:hour",
         "standing-live": "standing:live",
+        "standing-charging": "standing:charging",
         "auction": "auction:auction",
         "ros1": "ros1:ros1",
         "traffic": "joint_paths:traffic",

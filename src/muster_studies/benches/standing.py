@@ -2,7 +2,7 @@
 
 Twenty robots at random places of a field of 60 m x 40 m, 1 m/s fast, take orders for random places, 10 s of work each.
 They come at random (Poisson) at the rate that the fleet can carry, and for one minute in twenty at 2 a second. How much
-any fleet could do: docs/standing-fleets.md.
+any fleet could do: docs/standing-fleets.md. The same fleet with batteries charges at docks along the walls meanwhile.
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ import resource
 import time
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from random import Random
 
 from muster.execution import Standing
 from muster.execution.orders import OrdersReport
-from muster.mission.model import Event, Mission, Robot, Rules, Task
+from muster.execution.report import Report
+from muster.mission.model import Event, Mission, Robot, Rules, Station, Task
+from muster.mission.stations import Battery
 from muster.planning.solve import solve
 from muster.running.simulation import LOOK_S, Simulation
 from muster_studies.benches.measurement import Measurement
@@ -27,6 +29,10 @@ RATE, BURST_RATE = 1.2, 2.0
 """Orders a second: usually, and in a burst."""
 BURST_EVERY_S, BURST_AT_S, BURST_S = 1200.0, 300.0, 60.0
 HOUR_S, LIVE_S = 3600.0, 600.0
+BATTERY_M, RESERVE, CHARGE_PER_S = 300.0, 0.1, 3.0
+DOCKS = ((10.0, 0.0), (30.0, 0.0), (50.0, 0.0), (10.0, 40.0), (30.0, 40.0), (50.0, 40.0))
+PLANNED_S = 120.0
+"""How long it is searched for a plan of the same orders, all known in advance."""
 BETA = 0.7124
 """The length of the shortest tour through n random places of an area A is this times sqrt(n A) ([beardwood1959])."""
 
@@ -38,6 +44,21 @@ def fleet(seed: int) -> Mission:
         Robot(id=f"r_{k}", position=_place(random), speed_mps=SPEED_MPS, radius_m=0.25) for k in range(ROBOTS)
     )
     return Mission(name="standing-fleet", robots=robots, tasks=(), rules=Rules(objective="lateness"))
+
+
+def fleet_that_charges(seed: int) -> Mission:
+    """The same robots with batteries, of 45 to 100 % at first, and docks."""
+    mission = fleet(seed)
+    shares = [0.45 + 0.55 * k / (ROBOTS - 1) for k in range(ROBOTS)]
+    Random(seed).shuffle(shares)
+    batteries = [Battery(capacity=BATTERY_M, at_start=share, reserve=RESERVE) for share in shares]
+    return mission.at_once(
+        robots=tuple(replace(robot, battery=one) for robot, one in zip(mission.robots, batteries, strict=True)),
+        stations=tuple(
+            Station(id=f"dock{k}", position=at, services=("charge",), charge_per_s=CHARGE_PER_S)
+            for k, at in enumerate(DOCKS)
+        ),
+    )
 
 
 def orders(seed: int, until_s: float, burst_at_s: float = BURST_AT_S) -> Iterator[Event]:
@@ -71,6 +92,8 @@ class Shift:
         processor time of all of it.
     half_way_mb, end_mb
         the most memory that the process has had until the middle, and until the end.
+    report
+        of the simulation.
     """
 
     orders: OrdersReport
@@ -78,11 +101,14 @@ class Shift:
     cpu_s: float
     half_way_mb: float
     end_mb: float
+    report: Report
 
 
-def on_duty(seed: int, until_s: float, speed: float | None, burst_at_s: float = BURST_AT_S) -> Shift:
-    """Let the fleet take orders until a time, and do what is open then; `speed` times real time, None: at once."""
-    mission, cpu_s, half_way_mb = fleet(seed), time.process_time(), 0.0
+def on_duty(
+    mission: Mission, seed: int, until_s: float, *, speed: float | None = None, burst_at_s: float = BURST_AT_S
+) -> Shift:
+    """Let a fleet take orders until a time, and do what is open then; `speed` times real time, None: at once."""
+    cpu_s, half_way_mb = time.process_time(), 0.0
     standing = Standing(until_s=until_s, orders=orders(seed, until_s, burst_at_s))
     with closing(Simulation(mission, solve(mission, "greedy"), seed=seed, standing=standing)) as simulation:
         begin = time.monotonic()
@@ -96,12 +122,12 @@ def on_duty(seed: int, until_s: float, speed: float | None, burst_at_s: float = 
                 half_way_mb = _memory_mb()
         report = simulation.result()
     assert report.orders is not None
-    return Shift(report.orders, report.orders.lost, time.process_time() - cpu_s, half_way_mb, _memory_mb())
+    return Shift(report.orders, report.orders.lost, time.process_time() - cpu_s, half_way_mb, _memory_mb(), report)
 
 
 def hour(runs: int) -> list[Measurement]:
     """One hour, simulated as fast as it goes; once, however many runs are asked for."""
-    shift = on_duty(0, HOUR_S, None)
+    shift = on_duty(fleet(0), 0, HOUR_S)
     what = f"an hour of {ROBOTS} robots"
     growth_mb, most = shift.end_mb - shift.half_way_mb, most_per_hour(shift.orders.taken)
     return [
@@ -113,7 +139,7 @@ def hour(runs: int) -> list[Measurement]:
 
 def live(runs: int) -> list[Measurement]:
     """Ten minutes in real time; once, however many runs are asked for."""
-    shift = on_duty(0, LIVE_S, 1.0)
+    shift = on_duty(fleet(0), 0, LIVE_S, speed=1.0)
     what, lag = f"10 minutes of {ROBOTS} robots", shift.orders.clock_lag
     assert lag is not None
     note = f"median {lag.median_s:.3f} s, 95 % {lag.p95_s:.3f} s"
@@ -122,6 +148,32 @@ def live(runs: int) -> list[Measurement]:
         _once(f"{what}: clock behind at most", "s", lag.most_s, "< 0.5", note),
         _once(f"{what}: processor time", "s", shift.cpu_s, "< 600"),
     ]
+
+
+def charging(runs: int) -> list[Measurement]:
+    """One hour of the fleet that charges, beside a plan of the same orders, all known in advance; once."""
+    mission = fleet_that_charges(0)
+    shift = on_duty(mission, 0, HOUR_S)
+    robots = shift.report.robots
+    visits, least = sum(row.station_visits for row in robots), min(row.least_charge or 0.0 for row in robots)
+    what = f"an hour of {ROBOTS} robots that charge"
+    known = known_per_hour(mission, 0, HOUR_S)
+    share = 100 * shift.orders.done_per_hour / known
+    return [
+        *_orders(what, shift, most_per_hour(shift.orders.taken)),
+        _once(f"{what}: least level", "%", 100 * least, "> 0", f"reserve {100 * RESERVE:.0f} %; {visits} charges"),
+        _once(f"{what}: of all known in advance", "%", share, ">= 90", f"planned: {known:,.0f} an hour"),
+        _once(f"{what}: processor time", "s", shift.cpu_s, "< 3600"),
+    ]
+
+
+def known_per_hour(mission: Mission, seed: int, until_s: float, time_limit: float = PLANNED_S) -> float:
+    """Orders an hour by a plan of those until a time, as if all were there from the beginning, charging included."""
+    tasks = tuple(event.new_task for event in orders(seed, until_s) if event.new_task is not None)
+    rules = replace(mission.rules, objective="makespan")
+    plan = solve(mission.at_once(tasks=tasks, rules=rules), "search", time_limit)
+    assert plan.makespan_s is not None
+    return 3600 * (len(tasks) - len(plan.unassigned)) / plan.makespan_s
 
 
 def _orders(what: str, shift: Shift, most: float) -> list[Measurement]:
