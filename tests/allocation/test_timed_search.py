@@ -1,7 +1,8 @@
 """The search where nothing is late, and where the same robots must do tasks or tasks begin together."""
 
 import muster
-from muster import Mission, Robot, Rules, Task, TeamPart
+from muster import Mission, Plan, Robot, Rules, Task, TeamPart
+from muster.mission.plan import Route
 
 
 def best(mission):
@@ -68,3 +69,20 @@ def test_the_team_of_the_lighter_task_is_that_of_the_heavier_one():
     robots = tuple(Robot(id=f"r_{k}", position=(k, 0), abilities={"lift_kg": 3}) for k in range(2))
     plan = best(Mission(robots=robots, tasks=tasks))
     assert [route.tasks for route in plan.routes] == [("a", "b"), ("a", "b")]
+
+
+def test_two_robots_that_go_on_in_each_others_lanes_exchange_what_is_left():
+    """Windows keep the order; no few tasks can change robots alone at less cost."""
+
+    def lane(name, y):
+        opens = [10.0 * k for k in range(30)]
+        return [Task(id=f"{name}{x:g}", position=(x + 10, y), window_s=((x, x + 60),)) for x in opens]
+
+    tasks = (*lane("a", 0.0), *lane("b", 20.0))
+    robots = (Robot(id="r", position=(0, 0)), Robot(id="s", position=(0, 20)))
+    a, b = ([task.id for task in tasks if task.id[0] == name] for name in "ab")
+    mission = Mission(rules=Rules(objective="total"), robots=robots, tasks=tasks)
+    crossed = Plan(routes=(Route("r", (*a[:15], *b[15:])), Route("s", (*b[:15], *a[15:]))))
+    for seed in range(5):
+        plan = muster.solve(mission, "search", iterations=300, seed=seed, start=crossed)
+        assert plan.objective_value == 600

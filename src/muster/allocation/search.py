@@ -8,8 +8,9 @@ not all tasks can be done, as in team orienteering ([chao1996]), tasks are given
 Several plans are annealed at first, of which the better ones go on.
 
 Where tasks are bound to times, teams or relations, and for `makespan` with prerequisites, the search works on a
-schedule that is propagated through the part that a change affects ([pearce2006]); a team is chosen at a cut through
-the schedule, which gives each robot one place, so that no cycle of waiting can arise.
+schedule that is propagated through the part that a change affects ([pearce2006]), and some steps exchange what two
+robots do last ([potvin1995]); a team is chosen at a cut through the schedule, which gives each robot one place, so that
+no cycle of waiting can arise.
 """
 
 from __future__ import annotations

@@ -91,6 +91,19 @@ bool Roster::insert(const UnitInsertion& insertion) {
   return settle_begins();
 }
 
+bool Roster::append(int unit, int robot) {
+  const int last = timeline_.tasks_in(robot);
+  const Labels allowed = timeline_.labels_for(unit);
+  const double low = std::max(allowed.low, timeline_.stop(robot, last).label);
+  if (low >= std::min(allowed.high, timeline_.stop(robot, last + 1).label)) return false;
+  touch(robot);
+  const Member member{problem_.tasks_of_unit(unit).front(), robot, last};
+  timeline_.insert(unit, {&member, 1});
+  appear(unit);
+  moves_.emplace_back(unit, true);
+  return true;
+}
+
 void Roster::remove(int unit) {
   take_out(unit);
   if (const int other = partner(unit); other >= 0 && present(other)) take_out(other);

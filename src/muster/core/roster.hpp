@@ -77,6 +77,9 @@ class Roster {
   const UnitInsertion* best_insertion(int unit, const Trial& trial = {});
   // False: no schedule exists; then only `rollback` helps. Begins are propagated at once.
   bool insert(const UnitInsertion& insertion);
+  // Puts a unit that is one task of one robot behind all others of its route, of a transport that alone. False: it must
+  // come before what is there. Begins are propagated later.
+  bool append(int unit, int robot);
   // Takes out a unit, and its partner.
   void remove(int unit);
   // Takes out what a plan cannot hold when nothing more comes to it: what stands without its prerequisites, with

@@ -12,6 +12,8 @@ namespace {
 constexpr double kTie = 1e-2;   // weight of the robots' own routes where the objective does not see them
 constexpr int kAdjacent = 100;  // tasks that a ruin may spread to
 constexpr int kNearRobots = 4;
+// Of steps that exchange two tails of routes, where there are such: where ways are summed up, and else.
+constexpr double kTailShare = 0.2, kTailShareElse = 0.05;
 constexpr int kRetried = 20;     // units left out that a step tries again
 constexpr int kMostPlaces = 64;  // beyond twice as many a unit is tried beside near tasks alone
 
@@ -43,6 +45,7 @@ ScheduleSearch::ScheduleSearch(const Problem& problem, const Routes& start, std:
       neighbours_(problem, kAdjacent, kNearRobots),
       roster_(problem),
       sees_end_(problem.objective() == Objective::makespan),
+      sums_ways_(problem.objective() == Objective::total && !problem.usage_is_time()),
       penalty_(penalty_of(problem)),
       times_absent_(problem.units(), 1.0),
       ruined_(problem.robots(), 0) {
@@ -107,8 +110,13 @@ void ScheduleSearch::anneal(int steps, double hot, double cold) {
 void ScheduleSearch::step(double temperature) {
   const double most = current_ - temperature * std::log(random_.uniform() + 1e-300);
   const double absent_weight = roster_.absent_weight(), difficulty = absent_difficulty();
-  ruin();
-  const bool complete = roster_.settle() && recreate(most);
+  bool complete = false;
+  if (random_.uniform() < (sums_ways_ ? kTailShare : kTailShareElse) && find_tails(most)) {
+    complete = exchange_tails();
+  } else {
+    ruin();
+    complete = roster_.settle() && recreate(most);
+  }
   trial_.latest_end = kNever;
   if (complete) {
     const bool possible = roster_.finish(trial_) && roster_.admissible();

@@ -35,6 +35,13 @@ class ScheduleSearch {
   void limit_end(double most);
   void order_pending();
 
+  bool find_tails(double most);
+  bool joins(int robot, int at, int other, int other_at) const;
+  double growth_of_tails() const;
+  bool is_tail(int robot, int at, int other) const;
+  bool exchange_tails();
+  void take_tail(int robot, int at, std::vector<int>& units);
+
   void ruin();
   int seed_unit();
   void ruin_near(int seed);
@@ -58,6 +65,7 @@ class ScheduleSearch {
   Roster roster_;
   Trial trial_;
   bool sees_end_;               // whether the objective is when the mission ends
+  bool sums_ways_;              // or how far robots go in all, work that lasts aside
   double at_once_share_ = 0.3;  // of ruins that take out what begins at about the same time
   double penalty_;              // of a unit of weight left out
   double scale_ = 1.0;          // of costs
@@ -65,6 +73,8 @@ class ScheduleSearch {
   Routes best_;
   Value best_value_;
   std::vector<int> pending_, removed_, critical_;
+  int tail_robot_ = 0, tail_at_ = 0, other_robot_ = 0, other_at_ = 0;  // after so many tasks tails are exchanged
+  std::vector<int> tail_, other_tail_;
   std::vector<double> times_absent_;  // by unit: in how many plans it was left out, and 1
   std::vector<char> ruined_;
   std::vector<std::pair<double, int>> nearest_;
