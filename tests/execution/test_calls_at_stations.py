@@ -5,13 +5,16 @@ from dataclasses import replace
 
 import pytest
 from tests.carry_charge import battery, charger, depot, mission, plan, robot, swapper, task
+from tests.running.test_live import WorldAsFleet
 
 from muster.execution import status_of
 from muster.execution.robot_state import Activity
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.mission.plan import RouteStop
+from muster.running.live import Live
 from muster.running.simulation import Simulation
+from muster.server.runs.crash_recovery import recovered_from
 
 
 def carried_out(given, ignore=(), each=None, charged=None, **routes):
@@ -197,3 +200,43 @@ def test_an_unknown_station_is_refused():
     simulation = Simulation(mission([robot()], [task("a", 5)], [charger()]), plan(r="a"))
     with pytest.raises(ParameterError, match="station"):
         simulation.report(Event(at_s=0, station_fails="quay"))
+
+
+def test_goods_and_levels_are_known_after_a_crash():
+    tasks = [
+        *(task(name, x, load=1) for name, x in (("a", 2), ("b", 4), ("c", 6), ("d", 8))),
+        task("e", 9, delivers="d"),
+    ]
+    robots = [robot("r", battery=battery(50), load_capacity=3), robot("s", 20, load_capacity=2)]
+    given = mission(robots, tasks, [depot(x=3)])
+
+    def did(at_s, name, of="r"):
+        return {"time_s": at_s, "kind": "ends", "data": {"task": name, "robot": of, "used": at_s, "usage": [1.0, 1.0],
+                "arrival_usage": at_s}}  # fmt: skip
+
+    log = [
+        did(2, "a"),
+        {
+            "time_s": 3,
+            "kind": "service_ends",
+            "data": {"robot": "r", "unloaded": {"": 1.0}, "used": 3.0, "charge": 0.5},
+        },
+        did(5, "b"),
+        did(6, "c", "s"),
+        {"time_s": 7, "kind": "robot_fails", "data": {"robot": "s"}},
+        {"time_s": 7, "kind": "load_lies", "data": {"task": "c", "robot": "s", "position": [11, 0], "load": {"": 1.0}}},
+        did(9, "d"),
+    ]
+    found = recovered_from(given, plan(r="a depot b d e c"), log)
+    assert next(one for one in found.mission.tasks if one.id == "c").position == (11, 0)
+    live = Live(found.mission, found.plan, WorldAsFleet(found.mission), past=found.past)
+    executor = live.executor
+    assert executor.goods.load("r") == {"": 2}  # of b and d
+    assert (executor.goods.unloaded, executor.goods.lying, executor.goods.load("s")) == ({"": 1}, {"c": {"": 1}}, {})
+    assert executor.crew["r"].energy.level == pytest.approx(0.5 * 50 - 6)
+    assert executor.crew["r"].calls == []
+    while not live.done:
+        live.look()
+        live.hear(live.time_s + 0.2)
+    assert set(live.result().tasks_done) == {"a", "b", "c", "d", "e"}
+    assert (executor.goods.taken, executor.goods.delivered) == ({"": 4}, {"": 1})

@@ -47,7 +47,7 @@ _PLANS, _MANY = 4, 5_000  # plans that a run begins with; one where it has so ma
 # Tasks and robots times steps, between two looks at the clock: some milliseconds.
 _BATCH = 400_000
 _BATCH_ON_SCHEDULE = 40_000
-_BATCH_OF_TEAMS = 4_000
+_BATCH_OF_SLOW_STEPS = 4_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,9 +204,17 @@ class Variations:
 
 def _steps_at_once(problem: Problem) -> int:
     batch = _BATCH_ON_SCHEDULE if _on_schedule(problem) else _BATCH
-    if problem.holds("team") and any(task.is_for_team for task in problem.tasks):
-        batch = _BATCH_OF_TEAMS
+    if _chooses_teams(problem) or _calls_at_stations(problem):
+        batch = _BATCH_OF_SLOW_STEPS
     return max(20, min(1000, batch // (len(problem.tasks) + len(problem.robots))))
+
+
+def _chooses_teams(problem: Problem) -> bool:
+    return problem.holds("team") and any(task.is_for_team for task in problem.tasks)
+
+
+def _calls_at_stations(problem: Problem) -> bool:
+    return problem.holds("battery") and any(robot.battery is not None for robot in problem.robots)
 
 
 def _on_schedule(problem: Problem) -> bool:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from muster.execution.changes import FAILED
+from muster.execution.goods_ledger import GoodsLedger
 from muster.execution.robot_state import RobotState
 from muster.execution.task_ledger import Ledger
 
@@ -40,6 +41,12 @@ class CompletedWork:
         by robot what it had used, in the mission's unit; since when it takes no part.
     closed
         ids of the doors that are closed; None: as before any event.
+    unloaded_s
+        when robots unloaded at stations: (seconds, robot), in order of time.
+    levels
+        by robot what its battery last held, a share of its capacity, and its usage then.
+    lying
+        by task the goods that it had taken on and that lie elsewhere, by commodity; it is open again.
     """
 
     done: Mapping[str, CompletedTask] = field(default_factory=dict)
@@ -49,9 +56,27 @@ class CompletedWork:
     used: Mapping[str, float] = field(default_factory=dict)
     failed_s: Mapping[str, float] = field(default_factory=dict)
     closed: frozenset[str] | None = None
+    unloaded_s: Sequence[tuple[float, str]] = ()
+    levels: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    lying: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
-    def recall(self, ledger: Ledger, crew: Mapping[str, RobotState]) -> None:
-        """Write it into a ledger and a crew that are new."""
+    def recall(self, ledger: Ledger, crew: Mapping[str, RobotState], goods: GoodsLedger) -> None:
+        """Write it into ledgers and a crew that are new."""
+        self._recall_tasks(ledger, crew)
+        self._recall_goods(ledger, goods)
+        for robot, used in self.used.items():
+            if robot in crew:
+                crew[robot].recall(used)
+                crew[robot].used_before = used
+        for robot, (share, then) in self.levels.items():
+            energy = crew[robot].energy if robot in crew else None
+            if energy is not None:
+                energy.recall(share, self.used.get(robot, then) - then)
+        for robot, since_s in self.failed_s.items():
+            if robot in crew:
+                crew[robot].out, crew[robot].out_s = FAILED, since_s
+
+    def _recall_tasks(self, ledger: Ledger, crew: Mapping[str, RobotState]) -> None:
         for task, deed in self.done.items():
             ledger.arrivals_s[task], ledger.starts_s[task] = deed.arrives_s, deed.starts_s
             ledger.arrival_usage[task], ledger.usage[task] = deed.arrival_usage, deed.usage
@@ -69,10 +94,18 @@ class CompletedWork:
         for task, why in self.barred.items():
             for robot in crew:
                 ledger.refuse(task, robot, why)
-        for robot, used in self.used.items():
-            if robot in crew:
-                crew[robot].recall(used)
-                crew[robot].used_before = used
-        for robot, since_s in self.failed_s.items():
-            if robot in crew:
-                crew[robot].out, crew[robot].out_s = FAILED, since_s
+
+    def _recall_goods(self, ledger: Ledger, goods: GoodsLedger) -> None:
+        for task, amounts in self.lying.items():
+            goods.lies(task, amounts)
+        ends = [(deed.ends_s, robot, task) for task, deed in self.done.items() for robot in deed.team or (deed.robot,)]
+        for at_s, robot, name in sorted([*ends, *((at_s, robot, "") for at_s, robot in self.unloaded_s)]):
+            if name:
+                goods.end(ledger.tasks[name], robot)
+            else:
+                goods.unload(robot, self._tied(ledger, at_s))
+
+    def _tied(self, ledger: Ledger, at_s: float) -> set[str]:
+        """The tasks whose goods a task delivers that was not done at a time."""
+        left = (task for task in ledger.tasks.values() if task.id not in self.done or self.done[task.id].ends_s > at_s)
+        return {task.delivers for task in left if task.delivers is not None}

@@ -376,7 +376,7 @@ class Executor:
 
     def _recall(self, past: CompletedWork) -> None:
         """Robots keep the open tasks of their routes; all of them are planned again from the robots' positions."""
-        past.recall(self.ledger, self.crew)
+        past.recall(self.ledger, self.crew, self.goods)
         if past.closed is not None:
             self._changes.set_doors(past.closed)
         left = {task.id for task in self.ledger.open} - past.barred.keys()

@@ -121,6 +121,11 @@ class GoodsLedger:
                 self.lying[item.task] = dict(item.amounts)
         return [item for item in items if item.task is not None]
 
+    def lies(self, task: str, amounts: Mapping[str, float]) -> None:
+        """What a task took on before a restart lies elsewhere, and the task is open again."""
+        self.lying[task] = dict(amounts)
+        _add(self.taken, amounts)
+
     def refusal(self, task: Task, robot: Robot) -> str:
         """Why a robot cannot do a task with what it has on board; empty if it can."""
         if task.delivers is not None and self.carrier(task.delivers) != robot.id:

@@ -249,10 +249,11 @@ def usage_ahead(rest: RemainingMission, travel: Travel) -> dict[str, dict[str, f
 
 
 def _with_stations(problem: Problem, route: Sequence[int], planned: Sequence[RouteStop]) -> list[RouteStop]:
-    """The stops of a route, with the stations that a plan has between those of its tasks that are left."""
+    """The stops of a route, with the stations that a plan has after those of its tasks that are done."""
     left = {problem.tasks[j].id for j in route}
     there = {station.id for station in problem.stations}
-    ahead = [stop for stop in planned if stop.name in (there if stop.is_station else left)]
+    over = max((k for k, stop in enumerate(planned, 1) if not (stop.is_station or stop.name in left)), default=0)
+    ahead = [stop for stop in planned[over:] if stop.name in (there if stop.is_station else left)]
     met = {stop.name for stop in ahead}
     before = [RouteStop(problem.tasks[j].id, 0.0, 0.0, 0.0) for j in route if problem.tasks[j].id not in met]
     return [*before, *ahead]

@@ -82,6 +82,11 @@ class RobotEnergy:
             self._drained_over += more
         self.least = min(self.least, self.level)
 
+    def recall(self, share: float, used: float) -> None:
+        """What it held before a restart, a share of its capacity, and how much the robot used after that."""
+        self.level = max(0.0, share * self.battery.capacity - used)
+        self.least = min(self.least, self.level)
+
     def add(self, amount: float) -> None:
         """Energy was added at a station, which telemetry does not tell."""
         if not self.told:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from muster.execution import CompletedTask, CompletedWork
+from muster.execution.changes import lying as lying_elsewhere
 from muster.mission.doors import Doors
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
@@ -74,6 +75,7 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
             failed[data["robot"]] = now
         elif kind == "robot_returns":
             failed.pop(data["robot"], None)
+    lying = _goods_that_lie(mission_state, done, log)
     once = {name for name, task in mission_state.tasks.items() if task.across_partition == "at-most-once"}
     barred = dict.fromkeys((once & starts.keys()) - done.keys() - cancelled.keys(), BARRED)
     past = CompletedWork(
@@ -84,6 +86,9 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
         used=used,
         failed_s=failed,
         closed=_closed_after(mission, log),
+        unloaded_s=_unloaded(log),
+        levels=_levels(log),
+        lying=lying,
     )
     names = tuple(robot.id for robot in mission.robots)
     tasks = tuple(
@@ -91,6 +96,32 @@ def recovered_from(mission: Mission, plan: Plan, log: Sequence[Mapping[str, Any]
     )
     current = plan if routes is None else _of_those(routes, names)
     return _with_locks_of_barred(Recovered(mission.at_once(tasks=tasks), replace(current, ignored=plan.ignored), past))
+
+
+def _goods_that_lie(
+    mission_state: MissionState, done: dict[str, CompletedTask], log: Sequence[Mapping[str, Any]]
+) -> dict[str, Mapping[str, float]]:
+    """By task the goods that lie where their robot failed: it is not done any more, and elsewhere."""
+    found: dict[str, Mapping[str, float]] = {}
+    for entry in log:
+        task = entry["data"]["task"] if entry["kind"] == "load_lies" else None
+        if task in done and done[task].ends_s <= entry["time_s"]:
+            found[task], at = entry["data"]["load"], tuple(entry["data"]["position"])
+            mission_state.tasks[task] = lying_elsewhere(mission_state.tasks[task], at, found[task])
+            del done[task]
+    return found
+
+
+def _unloaded(log: Sequence[Mapping[str, Any]]) -> list[tuple[float, str]]:
+    """When robots unloaded at stations, in order."""
+    ends = [entry for entry in log if entry["kind"] == "service_ends" and entry["data"].get("unloaded")]
+    return [(float(entry["time_s"]), entry["data"]["robot"]) for entry in ends]
+
+
+def _levels(log: Sequence[Mapping[str, Any]]) -> dict[str, tuple[float, float]]:
+    """By robot the share that its battery last held, as far as the log tells, and its usage then."""
+    told = [entry["data"] for entry in log if {"robot", "charge", "used"} <= entry["data"].keys()]
+    return {data["robot"]: (data["charge"], data["used"]) for data in told}
 
 
 def _closed_after(mission: Mission, log: Sequence[Mapping[str, Any]]) -> frozenset[str] | None:

@@ -16,7 +16,7 @@ from muster.running.live import Live, elsewhere, with_reported_starts
 from muster.server.runs.crash_recovery import recovered_from
 from muster.traffic.names import DEFAULT
 
-_OF_WORK = ("sets_out", "arrives", "starts", "ends")
+_OF_WORK = ("sets_out", "arrives", "starts", "ends", "goes_to_station", "service_begins", "service_ends")
 LOOK_S = 0.1
 """Seconds between two looks at the robots, where nothing is heard before."""
 
