@@ -48,6 +48,7 @@ _PLANS, _MANY = 4, 5_000  # plans that a run begins with; one where it has so ma
 _BATCH = 400_000
 _BATCH_ON_SCHEDULE = 40_000
 _BATCH_OF_SLOW_STEPS = 4_000
+_SLOW = frozenset({"team", "battery"})  # what makes steps slow: teams are chosen, calls at stations placed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,17 +205,9 @@ class Variations:
 
 def _steps_at_once(problem: Problem) -> int:
     batch = _BATCH_ON_SCHEDULE if _on_schedule(problem) else _BATCH
-    if _chooses_teams(problem) or _calls_at_stations(problem):
+    if not _SLOW.isdisjoint(problem.asked):
         batch = _BATCH_OF_SLOW_STEPS
     return max(20, min(1000, batch // (len(problem.tasks) + len(problem.robots))))
-
-
-def _chooses_teams(problem: Problem) -> bool:
-    return problem.holds("team") and any(task.is_for_team for task in problem.tasks)
-
-
-def _calls_at_stations(problem: Problem) -> bool:
-    return problem.holds("battery") and any(robot.battery is not None for robot in problem.robots)
 
 
 def _on_schedule(problem: Problem) -> bool:

@@ -79,15 +79,8 @@ const UnitInsertion* Roster::best_insertion(int unit, const Trial& trial) {
 }
 
 bool Roster::insert(const UnitInsertion& insertion) {
-  for (const Member& member : insertion.members) touch(member.robot);
-  timeline_.insert(insertion.unit, insertion.members);
-  appear(insertion.unit);
-  moves_.emplace_back(insertion.unit, true);
-  if (insertion.second_unit >= 0) {
-    timeline_.insert(insertion.second_unit, {&insertion.second, 1});
-    appear(insertion.second_unit);
-    moves_.emplace_back(insertion.second_unit, true);
-  }
+  put_in(insertion.unit, insertion.members);
+  if (insertion.second_unit >= 0) put_in(insertion.second_unit, {&insertion.second, 1});
   return settle_begins();
 }
 
@@ -96,12 +89,16 @@ bool Roster::append(int unit, int robot) {
   const Labels allowed = timeline_.labels_for(unit);
   const double low = std::max(allowed.low, timeline_.stop(robot, last).label);
   if (low >= std::min(allowed.high, timeline_.stop(robot, last + 1).label)) return false;
-  touch(robot);
   const Member member{problem_.tasks_of_unit(unit).front(), robot, last};
-  timeline_.insert(unit, {&member, 1});
+  put_in(unit, {&member, 1});
+  return true;
+}
+
+void Roster::put_in(int unit, std::span<const Member> members) {
+  for (const Member& member : members) touch(member.robot);
+  timeline_.insert(unit, members);
   appear(unit);
   moves_.emplace_back(unit, true);
-  return true;
 }
 
 void Roster::remove(int unit) {

@@ -133,6 +133,7 @@ class Roster {
   bool serve();
   bool crowded() const;
   double arrival(int robot, std::size_t number) const;
+  void put_in(int unit, std::span<const Member> members);
   void take_out(int unit);
   bool comes_after(int task, int other) const;
   const std::vector<int>& tasks_of(int robot);

@@ -15,23 +15,23 @@ constexpr int kNear = 30;  // tasks that may follow a task instead of the one th
 // where that was. False: no such pair is in time at its new ways, or costs less than `most`.
 bool ScheduleSearch::find_tails(double most) {
   const Timeline& timeline = roster_.timeline();
-  const auto single = [&](int task) {
-    const int unit = problem_.unit(task);
-    return roster_.present(unit) && timeline.visits_of(unit).size() == 1;
+  const auto only_visit = [&](int task) -> const Visit* {
+    const auto visits = timeline.visits_of(problem_.unit(task));
+    return visits.size() == 1 ? &timeline.visit(visits.front()) : nullptr;
   };
   const int task = random_.below(problem_.tasks());
-  if (!single(task)) return false;
-  const Visit& visit = timeline.visit(timeline.visits_of(problem_.unit(task)).front());
-  tail_robot_ = visit.robot;
-  tail_at_ = visit.at;
+  const Visit* visit = only_visit(task);
+  if (!visit) return false;
+  tail_robot_ = visit->robot;
+  tail_at_ = visit->at;
   if (tail_at_ < problem_.fixed(tail_robot_)) return false;
   const auto near = neighbours_.of(task);
   const int count = std::min<int>(kNear, static_cast<int>(near.size()));
   for (int k = 0; k < count; ++k) {
-    if (!single(near[k])) continue;
-    const Visit& next = timeline.visit(timeline.visits_of(problem_.unit(near[k])).front());
-    other_robot_ = next.robot;
-    other_at_ = next.at - 1;
+    const Visit* next = only_visit(near[k]);
+    if (!next) continue;
+    other_robot_ = next->robot;
+    other_at_ = next->at - 1;
     if (other_robot_ == tail_robot_ || other_at_ < problem_.fixed(other_robot_)) continue;
     if (!joins(tail_robot_, tail_at_, other_robot_, other_at_) ||
         !joins(other_robot_, other_at_, tail_robot_, tail_at_))
