@@ -19,9 +19,10 @@ from muster.execution.station_calls import Call, next_call
 from muster.execution.station_service import StationService
 from muster.execution.stations import AT_STATION
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
-from muster.execution.task_motion import MotionPlanner, Way, Work, along, path_length, travel_s, work_of
+from muster.execution.task_motion import MotionPlanner, Way, Work, along, work_of
 from muster.execution.team_work import break_off
 from muster.execution.way_round import way_aside, way_round
+from muster.execution.work_orders import delayed, least_s, least_usage, usage_home, work_for
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 
@@ -274,8 +275,8 @@ class Dispatch:
         there = along(way, task)
         delay = self._ledger.delays_s.get(task, 0.0)
         lasts = work.lasts_s + delay
-        home_usage, home_s = _usage_home(state, work, home)
-        least = _least_usage(state, work, there, lasts) + home_usage
+        home_usage, home_s = usage_home(state, work, home)
+        least = least_usage(state, work, there, lasts) + home_usage
         if exceeds(least, self._capacity(state)):
             yield from self.refuse(
                 state, task, f"capacity: {least:.2f} used with it, of {self._capacity(state):.2f}", now
@@ -283,7 +284,7 @@ class Dispatch:
             return
         state.work, state.work_s, state.delay_s = work, lasts, delay
         state.home_usage, state.home_s = home_usage, home_s
-        late = self._too_late(state, task, now + _least_s(state, state.position, there))
+        late = self._too_late(state, task, now + least_s(state, state.position, there))
         if late:
             state.work = None
             yield from self.refuse(state, task, late, now)
@@ -293,7 +294,7 @@ class Dispatch:
         state.to_task, state.works = len(there), self._peers is None and may_begin
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)
-        state.send(now, Activity.DRIVING, [*there, *(_delayed(work, delay) if state.works else ())])
+        state.send(now, Activity.DRIVING, [*there, *(delayed(work, delay) if state.works else ())])
         self._emit("sets_out", {"robot": state.robot.id, "task": task})
 
     def _arrive(self, state: RobotState, now: float) -> None:
@@ -373,14 +374,14 @@ class Dispatch:
         self._begin(task, team, tuple(state.robot.id for state in team), now)
         slowest = max(state.work_s for state in team)
         for state in team:
-            _work_for(state, slowest, now, stands=len(team) > 1)
+            work_for(state, slowest, now, stands=len(team) > 1)
 
     def _work_with_peers(self, state: RobotState, task: str, agreed: Gathering, now: float) -> None:
         """The robot's part of what several have agreed to begin."""
         self._begin(task, [state], agreed.team, now)
         self._ledger.begin(task, agreed.begin_s)
         lasts_s = max(state.work_s, agreed.begin_s + agreed.lasts_s - now)
-        _work_for(state, lasts_s, now, stands=len(agreed.team) > 1)
+        work_for(state, lasts_s, now, stands=len(agreed.team) > 1)
 
     def _count_delay(self, state: RobotState, task: str) -> None:
         """The work takes longer by what the task was delayed since the robot set out."""
@@ -463,45 +464,3 @@ def _words_for_absent(task: str, absent: Sequence[tuple[str, str]]) -> tuple[str
         return "team", f"waits for team: {', '.join(own)}"
     first = absent[0][1]
     return "start", f"waits for start with {first}: {', '.join(robot for robot, name in absent if name == first)}"
-
-
-def _least_s(state: RobotState, start: Place, way: Sequence[Waypoint]) -> float:
-    """Seconds that a robot drives at least."""
-    rise_m = abs(way[-1].position[2] - start[2]) if way else 0.0
-    return state.times.least_seconds(path_length(start, way), rise_m)
-
-
-def _usage_home(state: RobotState, work: Work, way: Sequence[Waypoint]) -> tuple[float, float]:
-    """What the way from the exit of a task to the end of the route uses, and the seconds that it takes at least."""
-    usage = travel_s(state.times, work.exit, way) if state.in_time else path_length(work.exit, way)
-    return usage, _least_s(state, work.exit, way)
-
-
-def _work_for(state: RobotState, lasts_s: float, now: float, *, stands: bool) -> None:
-    """Let a robot work, and stay where the work ends until so much time is over; `stands`: it works where it is."""
-    state.works = True
-    if state.work is not None:
-        work = _where_it_stands(state, state.work) if stands else state.work
-        state.send(now, Activity.WORKING, _delayed(work, state.delay_s + lasts_s - state.work_s))
-        state.work_s = lasts_s
-
-
-def _where_it_stands(state: RobotState, work: Work) -> Work:
-    """Work at one place, done where the robot is: a team stands around the place, which has room for one body."""
-    if len(work.waypoints) > 1:
-        return work
-    return replace(work, waypoints=(replace(work.waypoints[0], position=state.position),))
-
-
-def _delayed(work: Work, by_s: float) -> list[Waypoint]:
-    """The way points of work that takes so much longer: the robot stays in the last, and uses there what is not way."""
-    *before, last = work.waypoints
-    stays = [replace(point, uses=0.0) for point in before]
-    return [*stays, replace(last, hold_s=last.hold_s + by_s, uses=work.stayed_cost_m)]
-
-
-def _least_usage(state: RobotState, work: Work, there: Sequence[Waypoint], lasts_s: float) -> float:
-    """Usage when a task is done, if nothing comes in the way, in the mission's unit."""
-    if state.in_time:
-        return state.used + _least_s(state, state.position, there) + lasts_s
-    return state.used + path_length(state.position, there) + max(work.cost_m, work.way_m)

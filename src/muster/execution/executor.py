@@ -16,6 +16,7 @@ from typing import Any
 from muster.execution.beginning import Beginning
 from muster.execution.changes import FAILED, OUT, SILENT, STUCK, Change, Changes, new_robot_state
 from muster.execution.completed_work import CompletedWork
+from muster.execution.deadlocks import Deadlocks
 from muster.execution.dispatch import Dispatch
 from muster.execution.energy_watch import EnergyWatch
 from muster.execution.forecast import Forecast
@@ -29,7 +30,7 @@ from muster.execution.punctuality import Punctuality
 from muster.execution.reallocation import Reallocation, Revision, first_ahead, reasons_in_one_line
 from muster.execution.record import ExecutionEvent, NoObserver, Observer
 from muster.execution.remaining_problem import RemainingMission
-from muster.execution.report import Account, StationAccount
+from muster.execution.report import Account
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.script import Script
 from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
@@ -37,31 +38,18 @@ from muster.execution.standing import KEPT_EVENTS, KEPT_REVISIONS, UNTIL_DONE, E
 from muster.execution.station_service import StationService
 from muster.execution.stations import Stations
 from muster.execution.supervision import Leader, NoLeader, Supervisor
-from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
+from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
 from muster.execution.team_work import break_off
 from muster.execution.traffic_waits import TrafficWaits
 from muster.execution.travel import Travel, travel_of
+from muster.execution.work_figures import at_stations, back_s, shifts_exceeded_s
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
-
-
-def _at_stations(state: RobotState) -> StationAccount | None:
-    """What a robot did at stations; None of one that has no battery and was at none."""
-    energy = state.energy
-    if energy is None and not state.visits:
-        return None
-    least, charged = (None, 0.0) if energy is None else (energy.least / energy.battery.capacity, energy.charged)
-    return StationAccount(least, charged, state.visits, state.slot_wait_s)
-
-
-def _is_free(state: RobotState, now: float) -> bool:
-    """Whether a robot does not stand aside for others."""
-    return state.aside_until_s <= now
 
 
 class Executor:
@@ -179,14 +167,13 @@ class Executor:
             now,
             NoLeader() if leader is None else leader,
         )
+        self._deadlocks = Deadlocks(self.ledger, self.crew, self._beginning, self._punctuality)
         self._forgetting = Forgetting(self.ledger, self.crew, self._forecast, self._standing.keep_s)
         self._script = self._script_after(-math.inf if past is None else now)
         self._asked: list[Change] = []
         self._left_out = {item.task: reasons_in_one_line(item.reasons) for item in plan.unassigned if item.reasons}
         self.now_s = now
         self.begun_s = now if past is None else 0.0
-        self._stood_still_at = -1  # when so many tasks had ended
-        self._tried_left_out_at = 0
         planned = required_routes(mission, plan)
         for robot, stops in planned.items():
             if robot in self.crew:
@@ -312,8 +299,7 @@ class Executor:
         self._look_at_energy()
         self._ask(self._punctuality.look(now))
         self._go_on()
-        self._notice_standstill()
-        self._plan_what_was_left_out()
+        self._get_on()
         self._improve()
         self._forget()
         self._end_if_over()
@@ -383,43 +369,14 @@ class Executor:
         for state in self.crew.values():
             state.route = [] if state.out else [task for task in state.route if task in left]
 
-    def _notice_standstill(self) -> None:
-        """Robots that wait for each other for ever, which a plan from elsewhere can make them do, get a new plan."""
-        if not self._alone or self._punctuality.waits_for_clock(self.now_s):
+    def _get_on(self) -> None:
+        """When no robot gets on, or has a task any more, see what another plan can do."""
+        if not self._alone:
             return
-        waiting = [state.route[0] for state in self._present if state.activity is Activity.WAITING]
-        still = all(
-            state.activity is Activity.WAITING
-            or (state.activity is Activity.IDLE and not state.route and not state.calls and _is_free(state, self.now_s))
-            for state in self._present
-        )
-        if not waiting or not still:
-            return
-        if self._stood_still_at == len(self.ledger.ends_s):
-            self._give_up_waiting(waiting)
-        else:
-            self._stood_still_at = len(self.ledger.ends_s)
-            wait = self._beginning.wait(waiting[0], self.now_s)
-            missing, words = self.ledger.missing(waiting[0]), "" if wait is None else wait.words
-            self._ask([Change("standstill", {"task": waiting[0], "waits_for": missing, "words": words})])
-        self._go_on()
-
-    def _give_up_waiting(self, tasks: Iterable[str]) -> None:
-        """The new plan stands still too: the tasks at which robots wait are given up, with what they waited for."""
-        for task in dict.fromkeys(tasks):
-            wait = self._beginning.wait(task, self.now_s)
-            if wait is not None and task not in self.ledger.expired:
-                rule = {"start": "relation"}.get(wait.cause, wait.cause)
-                self.ledger.expire(task, f"{rule}: {wait.words}; no new plan brings that about")
-                self._ask([Change("standstill", {"task": task, "words": wait.words})])
-
-    def _plan_what_was_left_out(self) -> None:
-        """When no robot has a task any more, tasks for which others left no room are planned once more."""
-        ended = len(self.ledger.ends_s)
-        if not self._alone or self._tried_left_out_at == ended or any(state.route for state in self._present):
-            return
-        self._tried_left_out_at = ended
-        left = [task.id for task in self.ledger.open if task.id in self._left_out.keys() - self.ledger.expired.keys()]
+        if changes := self._deadlocks.look(self.now_s):
+            self._ask(changes)
+            self._go_on()
+        left = self._deadlocks.left_out_to_try(self._left_out)
         if left and any(self._replan(self._rest()).routes.values()):
             self._ask([Change("robots_free", {"left_out": left})])
             self._go_on()
@@ -513,6 +470,11 @@ class Executor:
         return self._script.may_bring_work(open_tasks=bool(self.ledger.open), cut_off=cut_off)
 
     @property
+    def _worked(self) -> list[RobotState]:
+        """Robots that take part and have done something, or are at it."""
+        return [state for state in self._present if state.done or state.activity is not Activity.IDLE]
+
+    @property
     def account(self) -> Account:
         """What it took, so far or in all."""
         return Account(
@@ -526,28 +488,11 @@ class Executor:
             reallocations=self._plans,
             orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s),
             charges={name: share for name, state in self.crew.items() if (share := state.share_left) is not None},
-            stations={name: one for name, state in self.crew.items() if (one := _at_stations(state)) is not None},
-            shifts_exceeded_s=self._shifts_exceeded(),
+            stations={name: one for name, state in self.crew.items() if (one := at_stations(state)) is not None},
+            shifts_exceeded_s=shifts_exceeded_s(self._worked, self.now_s),
             traffic=self.traffic.account.with_waits(self.traffic.waits),
-            back_s=tuple(self._back_s()) if self.mission.rules.makespan_includes_return else (),
+            back_s=back_s(self._worked) if self.mission.rules.makespan_includes_return else (),
         )
-
-    def _shifts_exceeded(self) -> dict[str, float]:
-        """By how much robots were under way after their shifts."""
-        back = {
-            state.robot.id: state.begun_s if state.activity is Activity.IDLE else self.now_s for state in self._worked
-        }
-        until = {state.robot.id: state.robot.available_until_s for state in self._worked}
-        over = {name: back[name] - limit for name, limit in until.items() if limit is not None}
-        return {name: seconds for name, seconds in over.items() if seconds > TIME_ROUNDING_S}
-
-    def _back_s(self) -> Iterable[float]:
-        return (state.begun_s for state in self._worked if state.activity is Activity.IDLE)
-
-    @property
-    def _worked(self) -> list[RobotState]:
-        """Robots that take part and have done something, or are at it."""
-        return [state for state in self._present if state.done or state.activity is not Activity.IDLE]
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""

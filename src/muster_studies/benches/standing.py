@@ -173,7 +173,7 @@ def charging_per_hour(mission: Mission, came: Sequence[Event]) -> float:
     at_first_m = sum(battery.level_at_start - battery.least for battery in batteries)
     times_s = 3600 * ROBOTS + at_first_m / CHARGE_PER_S
     most = times_s / (WORK_S + way_m * (1 / SPEED_MPS + 1 / CHARGE_PER_S))
-    return min(most, 3600 * len(came) / (came[-1].at_s + WORK_S))
+    return min(most, most_per_hour(len(came)), 3600 * len(came) / (came[-1].at_s + WORK_S))
 
 
 def _orders(what: str, shift: Shift, most: float) -> list[Measurement]:

@@ -1,0 +1,52 @@
+"""Orders for work: how far and how long a robot goes for it at least, and the way points with the time it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from muster.execution.robot_state import Activity, RobotState
+from muster.execution.task_motion import Work, path_length, travel_s
+from muster.motion.port import Place, Waypoint
+
+
+def least_s(state: RobotState, start: Place, way: Sequence[Waypoint]) -> float:
+    """Seconds that a robot drives at least."""
+    rise_m = abs(way[-1].position[2] - start[2]) if way else 0.0
+    return state.times.least_seconds(path_length(start, way), rise_m)
+
+
+def usage_home(state: RobotState, work: Work, way: Sequence[Waypoint]) -> tuple[float, float]:
+    """What the way from the exit of a task to the end of the route uses, and the seconds that it takes at least."""
+    usage = travel_s(state.times, work.exit, way) if state.in_time else path_length(work.exit, way)
+    return usage, least_s(state, work.exit, way)
+
+
+def work_for(state: RobotState, lasts_s: float, now: float, *, stands: bool) -> None:
+    """Let a robot work, and stay where the work ends until so much time is over; `stands`: it works where it is."""
+    state.works = True
+    if state.work is not None:
+        work = _where_it_stands(state, state.work) if stands else state.work
+        state.send(now, Activity.WORKING, delayed(work, state.delay_s + lasts_s - state.work_s))
+        state.work_s = lasts_s
+
+
+def _where_it_stands(state: RobotState, work: Work) -> Work:
+    """Work at one place, done where the robot is: a team stands around the place, which has room for one body."""
+    if len(work.waypoints) > 1:
+        return work
+    return replace(work, waypoints=(replace(work.waypoints[0], position=state.position),))
+
+
+def delayed(work: Work, by_s: float) -> list[Waypoint]:
+    """The way points of work that takes so much longer: the robot stays in the last, and uses there what is not way."""
+    *before, last = work.waypoints
+    stays = [replace(point, uses=0.0) for point in before]
+    return [*stays, replace(last, hold_s=last.hold_s + by_s, uses=work.stayed_cost_m)]
+
+
+def least_usage(state: RobotState, work: Work, there: Sequence[Waypoint], lasts_s: float) -> float:
+    """Usage when a task is done, if nothing comes in the way, in the mission's unit."""
+    if state.in_time:
+        return state.used + least_s(state, state.position, there) + lasts_s
+    return state.used + path_length(state.position, there) + max(work.cost_m, work.way_m)
