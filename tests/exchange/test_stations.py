@@ -8,7 +8,7 @@ import pytest
 
 from muster import load, verify
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import QgcOptions
+from muster.exchange.export_request import ExportOptions
 from muster.exchange.files import exported
 from muster.exchange.geographic_features import survey
 from muster.exchange.geojson import geojson_text
@@ -89,7 +89,7 @@ def test_gpx_and_kml_have_stations_as_places(seen):
 
 
 def test_csv_has_a_line_for_each_stop_with_charge_level_and_load(bay):
-    rows = list(csv.DictReader(exported(*bay, "csv", QgcOptions()).texts["plan.csv"].splitlines()))
+    rows = list(csv.DictReader(exported(*bay, "csv", ExportOptions()).texts["plan.csv"].splitlines()))
     assert [(row["robot"], row["order"], row["task"], row["station"]) for row in rows] == [
         ("r", "1", "pier", ""),
         ("r", "2", "", "pad"),
@@ -105,11 +105,13 @@ def test_csv_has_a_line_for_each_stop_with_charge_level_and_load(bay):
 
 
 def test_qgroundcontrol_holds_at_a_station_for_its_service(bay):
-    files = exported(*bay, "qgc", QgcOptions())
+    files = exported(*bay, "qgc", ExportOptions())
     items = json.loads(files.texts["r.plan"])["mission"]["items"]
     assert [item["params"][0] for item in items if item["command"] == NAV_WAYPOINT] == [0, 30, 5]
     assert "r: holds at pad for its service; whether it lands there is up to you" in files.messages
 
 
 def test_a_solution_names_stations_in_their_places(bay):
-    assert exported(*bay, "sol", QgcOptions()).texts["plan.sol"].startswith("Route #1: pier pad buoy\nRoute #2: pad\n")
+    assert (
+        exported(*bay, "sol", ExportOptions()).texts["plan.sol"].startswith("Route #1: pier pad buoy\nRoute #2: pad\n")
+    )

@@ -19,7 +19,7 @@ from muster.mission.plan import Plan
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
     from muster.cli.local_backend import OnLine
-    from muster.exchange.export_request import Files, QgcOptions
+    from muster.exchange.export_request import ExportOptions, Files
     from muster.exchange.mission_control import MissionEntry, World
     from muster.execution import Report
     from muster.library import MissionSummary
@@ -64,7 +64,7 @@ class Backend(Protocol):
         """Why tasks are left out, or why one task is done by this robot."""
 
     def export(
-        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str
+        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: ExportOptions, file: str
     ) -> Files:
         """An admissible plan as files of other tools."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Collection
 from dataclasses import fields
 from pathlib import Path
@@ -14,7 +15,15 @@ from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, MissionFile, ignore_option, load_plan, mission_argument, quiet_option
 from muster.cli.outputs import require_folder, require_writable
-from muster.exchange.export_request import FORMATS, Files, QgcOptions
+from muster.exchange.export_request import (
+    FIRMWARES,
+    FORMATS,
+    OPTIONS_OF,
+    ExportOptions,
+    Files,
+    altitudes_in,
+    makes_folder,
+)
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 
@@ -37,12 +46,31 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
     metavar="FORMAT",
     help=f"One of {', '.join(FORMATS.shipped)}, or a format of an installed package.",
 )
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="For qgc a folder.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="For qgc, and with --per-robot, a folder.",
+)
 @click.option(
     "--altitude",
     type=Finite(0, 1e5),
     metavar="M",
-    help="qgc: fly no lower than so many metres above the start; needed for drones of a mission in the plane.",
+    help="Drones fly no lower than so many metres above their starts; qgc needs it for drones in the plane.",
+)
+@click.option(
+    "--altitude-step",
+    type=Finite(0, 1e4),
+    default=0.0,
+    metavar="M",
+    help="Each drone, in mission order, flies so many metres higher than the one before it.",
+)
+@click.option(
+    "--altitudes",
+    multiple=True,
+    metavar="ROBOT=M,...",
+    help="The heights of single drones, as --altitude: r_0=30,r_1=40.",
 )
 @click.option(
     "--clearance",
@@ -50,7 +78,7 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
     default=0.0,
     show_default=True,
     metavar="M",
-    help="qgc: warn where bodies come nearer to each other.",
+    help="Warn where bodies come nearer to each other.",
 )
 @click.option(
     "--tolerance",
@@ -62,11 +90,12 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
 )
 @click.option(
     "--firmware",
-    type=click.Choice(["px4", "ardupilot"]),
+    type=click.Choice(FIRMWARES),
     default="px4",
     show_default=True,
     help="qgc: the autopilot of the robots.",
 )
+@click.option("--per-robot", is_flag=True, help="sheets, ics: a file for each robot, into a folder.")
 @ignore_option
 @quiet_option
 @server_option()
@@ -77,63 +106,82 @@ def command(
     ignore: tuple[str, ...],
     form: str,
     output: Path | None,
+    altitudes: tuple[str, ...],
     quiet: bool,
     verbose: bool,
     **options: Any,
 ) -> int:
-    """Write a PLAN of a MISSION for other tools: ground stations, maps, spreadsheets.
+    """Write a PLAN of a MISSION for other tools, and to print: ground stations, maps, spreadsheets, sheets, calendars.
 
-    All but csv and sol need the mission's origin_wgs84. Without -o the file goes to standard output; qgc writes a file
-    for each robot into a folder.
+    The files of ground stations and maps need the mission's origin_wgs84, calendars its starts_at. Without -o the file
+    goes to standard output; qgc writes a file for each robot into a folder.
     """
-    if form == "qgc":
+    _require_own_options(form)
+    chosen = ExportOptions(altitudes=altitudes_in(altitudes), **options)
+    is_folder = makes_folder(form, chosen)
+    if is_folder:
         if output is None:
-            raise ParameterError("-o missing; expected a folder for the .plan files")
+            raise ParameterError(f"-o missing; expected a folder for the {_SUFFIXES.get(form, form)} files")
         require_folder(output, "-o")
     else:
-        _require_none_of_qgc(form)
         require_writable(None, (output,), mission.files, (plan,))
     loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)
-    files = backend.export(loaded, given, form, ignore, QgcOptions(**options), str(plan))
-    if form == "qgc":
+    files = backend.export(loaded, given, form, ignore, chosen, str(plan))
+    if is_folder:
         assert output is not None
-        _write_plan_files(files, output, (mission.name, plan))
-        for message in () if quiet else files.messages:
-            click.echo(message, err=True)
-        return DONE
-    if len(files.texts) != 1:
-        raise ParameterError(f"--to: {form} made {len(files.texts)} files; expected one")
-    (text,) = files.texts.values()
-    if output is None:
-        click.echo(text, nl=False)
+        _write_files(files, output, (mission.name, plan))
     else:
-        output.write_text(text, encoding="utf-8", newline="")
+        _write_file(files, output, form)
+    for message in () if quiet else files.messages:
+        click.echo(message, err=True)
     return DONE
 
 
-def _require_none_of_qgc(form: str) -> None:
-    """Refuse options of plan files for another format."""
+_SUFFIXES = {"qgc": ".plan", "sheets": ".pdf", "ics": ".ics"}
+
+
+def _require_own_options(form: str) -> None:
+    """Refuse options of other formats."""
     context = click.get_current_context()
-    for field in fields(QgcOptions):
+    for field in fields(ExportOptions):
         if context.get_parameter_source(field.name) is ParameterSource.COMMANDLINE:
-            raise ParameterError(f"--{field.name} given; expected it with --to qgc, not {form}")
+            owners = [name for name, own in OPTIONS_OF.items() if field.name in own]
+            if form not in owners:
+                option = f"--{field.name.replace('_', '-')}"
+                raise ParameterError(f"{option} given; expected it with --to {' or '.join(owners)}, not {form}")
 
 
-def _write_plan_files(files: Files, folder: Path, inputs: tuple[str | Path, ...]) -> None:
-    """Write a file for each robot that has tasks."""
-    _require_free(folder, files.texts, inputs)
+def _write_file(files: Files, output: Path | None, form: str) -> None:
+    """Write the only file to its path, or to standard output."""
+    if len(files.contents) != 1:
+        raise ParameterError(f"--to: {form} made {len(files.contents)} files; expected one")
+    (content,) = files.contents.values()
+    if output is None and isinstance(content, bytes) and sys.stdout.isatty():
+        raise ParameterError(f"-o missing; expected a file: {form} is no text for a terminal")
+    if output is None:
+        click.echo(content, nl=False)
+    else:
+        (data,) = files.encoded.values()
+        output.write_bytes(data)
+
+
+def _write_files(files: Files, folder: Path, inputs: tuple[str | Path, ...]) -> None:
+    """Write a file for each robot that has stops."""
+    _require_free(folder, files.contents, inputs)
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in files.texts.items():
-        (folder / name).write_text(text, encoding="utf-8")
+    for name, content in files.encoded.items():
+        (folder / name).write_bytes(content)
 
 
 def _require_free(folder: Path, files: Collection[str], inputs: tuple[str | Path, ...]) -> None:
-    """Refuse a folder whose files were read, or that holds plan files of other robots."""
+    """Refuse a folder whose files were read, or that holds such files of other robots."""
     read = {Path(name).resolve() for name in inputs}
     for name in files:
         if (folder / name).resolve() in read or folder.resolve() in read:
             raise ParameterError(f"{folder / name}: given twice; expected a folder whose files are not read")
-    others = sorted(file.name for file in folder.glob("*.plan") if file.name not in files)
-    if others:
-        raise ParameterError(f"-o: {folder} holds {others[0]}; expected a folder without .plan files of other robots")
+    for suffix in sorted({Path(name).suffix for name in files}):
+        others = sorted(file.name for file in folder.glob(f"*{suffix}") if file.name not in files)
+        if others:
+            told = f"expected a folder without {suffix} files of other robots"
+            raise ParameterError(f"-o: {folder} holds {others[0]}; {told}")

@@ -13,7 +13,7 @@ from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
-    from muster.exchange.export_request import Files, QgcOptions
+    from muster.exchange.export_request import ExportOptions, Files
     from muster.execution import ExecutionEvent, Report
     from muster.library import MissionSummary
     from muster.planning.explaining import Possible
@@ -66,12 +66,12 @@ class LocalBackend:
         return explained(mission, plan, task, ignore, file, time_left_s(time_limit))
 
     def export(
-        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str
+        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: ExportOptions, file: str
     ) -> Files:
         from muster.exchange.files import exported
         from muster.verification.required import require_admissible
 
-        return exported(mission, require_admissible(mission, plan, file, ignore), form, options)
+        return exported(mission, require_admissible(mission, plan, file, ignore), form, options, plan)
 
     def simulate(
         self,

@@ -16,7 +16,7 @@ from muster.client.handles import RunningJob, RunningRun, report_from
 from muster.client.resources import MissionText
 from muster.client.server_plan import ServerPlan
 from muster.client.uploads import packed_mission
-from muster.exchange.export_request import Files, QgcOptions
+from muster.exchange.export_request import ExportOptions, Files
 from muster.exchange.mission_control import ConflictError, MissionEntry, World
 from muster.mission.errors import Finding, MissionError, MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import ctrl_c_halts
@@ -95,9 +95,11 @@ class ServerBackend:
         return Explanation(found, parts)
 
     def export(
-        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: QgcOptions, file: str
+        self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: ExportOptions, file: str
     ) -> Files:
-        asked = asdict(options) if form == "qgc" else {}
+        asked = options.given()
+        if options.altitudes:
+            asked["altitudes"] = [f"{robot}={metres!r}" for robot, metres in options.altitudes.items()]
         return unpacked(*self._client.plans.export(self._kept_plan(mission, plan), form, ignore, **asked))
 
     def simulate(
@@ -250,4 +252,12 @@ def unpacked(name: str, data: bytes) -> Files:
     for each in files:
         if Path(each).name != each:
             raise NetworkError(f"the server sends a file {each!r}; expected a name without folders")
-    return Files({each: content.decode("utf-8") for each, content in files.items()}, tuple(notes.splitlines()))
+    return Files({each: _text_or_bytes(content) for each, content in files.items()}, tuple(notes.splitlines()))
+
+
+def _text_or_bytes(content: bytes) -> str | bytes:
+    """The text that a file holds in UTF-8; the bytes of one that is no text."""
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content

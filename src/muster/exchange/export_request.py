@@ -2,59 +2,161 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypedDict
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, TypedDict
 
 from muster.mission.errors import ParameterError
 from muster.mission.plugins import Registry
+from muster.mission.value_types import shown
 
-if TYPE_CHECKING:
-    from muster.mission.model import Mission
-    from muster.verification import Verdict
+FIRMWARES = ("px4", "ardupilot")
+RANGES = {"altitude": (0.0, 1e5), "altitude_step": (0.0, 1e4), "clearance": (0.0, 1e5), "tolerance": (0.0, 1e3)}
+"""Least and greatest metres of the options that are lengths; `altitudes` are as `altitude`."""
 
 
 @dataclass(frozen=True)
 class Files:
-    """Texts by the names of their files, and messages for the user."""
+    """Contents by the names of their files, texts or bytes, and messages for the user."""
 
-    texts: Mapping[str, str]
+    contents: Mapping[str, str | bytes]
     messages: tuple[str, ...] = ()
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """Those files that are texts."""
+        return {name: content for name, content in self.contents.items() if isinstance(content, str)}
+
+    @property
+    def encoded(self) -> dict[str, bytes]:
+        """All files as they are written: texts in UTF-8."""
+        return {
+            name: content.encode("utf-8") if isinstance(content, str) else content
+            for name, content in self.contents.items()
+        }
 
 
 @dataclass(frozen=True)
-class QgcOptions:
-    """The options of QGroundControl's plan files.
+class ExportOptions:
+    """The options of formats; OPTIONS_OF says which format has which.
 
     Parameters
     ----------
     altitude
-        least height above the start, metres; needed for drones of a mission in the plane.
+        least height above the start, metres, at which drones fly; `qgc` needs one for drones of a mission in the plane.
+    altitude_step
+        metres; each drone, in mission order, flies so much higher than the one before it, the first at `altitude`, or
+        without that at this height.
+    altitudes
+        metres by robot, for drones that do not fly at the height that the two above give them.
     clearance
         metres; a warning where bodies come nearer to each other.
     tolerance
         metres; around corners of a map way points are joined, no farther than this from the way; 0 keeps all.
     firmware
         `px4` or `ardupilot`.
+    per_robot
+        a file for each robot that has stops, not one for all.
+
+    Raises
+    ------
+    ParameterError
+        for a value that is none.
     """
 
     altitude: float | None = None
+    altitude_step: float = 0.0
+    altitudes: Mapping[str, float] = field(default_factory=dict)
     clearance: float = 0.0
     tolerance: float = 0.1
     firmware: str = "px4"
+    per_robot: bool = False
+
+    def __post_init__(self) -> None:
+        for name, limits in RANGES.items():
+            if name != "altitude" or self.altitude is not None:
+                _require_metres(name, getattr(self, name), limits)
+        if not isinstance(self.altitudes, Mapping):
+            raise ParameterError(f"altitudes: {shown(self.altitudes)}; expected metres by robot")
+        for robot, metres in self.altitudes.items():
+            _require_metres(f"altitudes: {robot}", metres, RANGES["altitude"])
+        if self.firmware not in FIRMWARES:
+            raise ParameterError(f"firmware: {shown(self.firmware)}; expected {' or '.join(FIRMWARES)}")
+        if not isinstance(self.per_robot, bool):
+            raise ParameterError(f"per_robot: {shown(self.per_robot)}; expected true or false")
+
+    @property
+    def separates(self) -> bool:
+        """Whether it is asked at which heights drones fly, or how near robots come to each other."""
+        return self.altitude is not None or bool(self.altitude_step or self.altitudes or self.clearance)
+
+    def given(self) -> dict[str, Any]:
+        """Those that are not the default, by name."""
+        default = ExportOptions()
+        return {f.name: value for f in fields(self) if (value := getattr(self, f.name)) != getattr(default, f.name)}
 
 
-class QgcKeywords(TypedDict, total=False):
-    """The options of `QgcOptions`, for type checkers."""
+def _require_metres(name: str, value: object, limits: tuple[float, float]) -> None:
+    low, high = limits
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+        raise ParameterError(f"{name}: {shown(value)}; expected metres, from {low:g} to {high:g}")
+
+
+def altitudes_in(texts: Iterable[str]) -> dict[str, float]:
+    """Altitudes by robot, from texts such as `r_0=30,r_1=40`.
+
+    Raises
+    ------
+    ParameterError
+        for a text that is none.
+    """
+    found: dict[str, float] = {}
+    for text in texts:
+        name = ""
+        for piece in text.split(","):
+            before, equals, metres = piece.rpartition("=")
+            name += before if equals else f"{piece},"  # an id may hold a comma
+            if equals:
+                found[name], name = _metres_in(metres, text), ""
+        if name:
+            raise ParameterError(f"altitudes: {shown(text)}; expected ROBOT=METRES, as r_0=30,r_1=40")
+    return found
+
+
+def _metres_in(metres: str, text: str) -> float:
+    try:
+        return float(metres)
+    except ValueError:
+        raise ParameterError(f"altitudes: {shown(text)}; expected metres after =, not {shown(metres)}") from None
+
+
+class ExportKeywords(TypedDict, total=False):
+    """The options of `ExportOptions`, for type checkers."""
 
     altitude: float | None
+    altitude_step: float
+    altitudes: Mapping[str, float]
     clearance: float
     tolerance: float
     firmware: str
+    per_robot: bool
 
 
-Exporter = Callable[["Mission", "Verdict"], "str | Files"]
-"""Writes an admissible plan as the text of one file, or as several files."""
+_HEIGHTS = ("altitude", "altitude_step", "altitudes", "clearance")
+OPTIONS_OF: Mapping[str, tuple[str, ...]] = {
+    "qgc": (*_HEIGHTS, "tolerance", "firmware"),
+    "geojson": _HEIGHTS,
+    "gpx": _HEIGHTS,
+    "kml": _HEIGHTS,
+    "sheets": (*_HEIGHTS, "per_robot"),
+    "overview": _HEIGHTS,
+    "xlsx": _HEIGHTS,
+    "ics": (*_HEIGHTS, "per_robot"),
+}
+"""The options of each format that has any. Its exporter gets them, and the plan, beside mission and verdict."""
+
+Exporter = Callable[..., "str | bytes | Files"]
+"""Writes an admissible plan, from mission and verdict, as the text or the bytes of one file, or as several files."""
 
 
 def _checked(name: str, found: object) -> Exporter:
@@ -73,7 +175,16 @@ FORMATS: Registry[Exporter] = Registry(
         "kml": "muster.exchange.files:kml_file",
         "csv": "muster.exchange.files:csv_file",
         "sol": "muster.exchange.files:sol_file",
+        "sheets": "muster.exchange.sheets.robot_sheets:sheets_files",
+        "overview": "muster.exchange.sheets.overview:overview_file",
+        "xlsx": "muster.exchange.sheets.workbook:workbook_file",
+        "ics": "muster.exchange.sheets.appointments:calendar_files",
     },
     _checked,
 )
 """By name, those of installed packages included."""
+
+
+def makes_folder(form: str, options: ExportOptions) -> bool:
+    """Whether a format that ships makes a file for each robot."""
+    return form == "qgc" or options.per_robot

@@ -3,48 +3,51 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
+from muster.exchange.altitudes import altitudes_of, height_notes, raised, raised_team
 from muster.exchange.antimeridian import crosses
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import FORMATS, Files, QgcOptions
+from muster.exchange.export_request import FORMATS, OPTIONS_OF, ExportOptions, Files
 from muster.exchange.fence import Fence
+from muster.exchange.file_names import file_names
 from muster.exchange.geographic_features import Survey, survey
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import Itinerary, Passage, itineraries
 from muster.exchange.kml import kml_text
 from muster.exchange.qgc_writer import PlanFiles
-from muster.exchange.separation import meetings
 from muster.exchange.spreadsheet import csv_text
 from muster.exchange.thinning import thinned
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
+from muster.mission.plan import Plan
 from muster.mission.sol_files import sol_text
 from muster.motion.map_world import body_of
 from muster.motion.robot_paths import RobotPaths
 from muster.verification import Verdict
 
 
-def exported(mission: Mission, verdict: Verdict, form: str, options: QgcOptions) -> Files:
-    """An admissible plan as files of a format: of qgc a file for each robot, of the others that ship one file.
+def exported(mission: Mission, verdict: Verdict, form: str, options: ExportOptions, plan: Plan | None = None) -> Files:
+    """An admissible plan as files of a format: of qgc a file for each robot, of the others one, unless asked for more.
 
     Parameters
     ----------
     options
-        for qgc alone.
+        for the formats in OPTIONS_OF.
+    plan
+        what is judged: who made it, and why tasks are left out; without it that stands nowhere.
 
     Raises
     ------
     MissionError
-        if the format needs a place on Earth and the mission has none.
+        if the format needs a place on Earth, or times of day, and the mission has none.
     ParameterError
-        if there is no such format, or drones have no height to fly at.
+        if there is no such format, drones have no height to fly at, or an altitude is for no drone.
     """
-    if form == "qgc":
-        return plan_files(mission, verdict, options)
-    made = FORMATS.named(form)(mission, verdict)
+    write = FORMATS.named(form)
+    made = write(mission, verdict, options, plan) if form in OPTIONS_OF else write(mission, verdict)
     return made if isinstance(made, Files) else Files({f"plan.{form}": made})
 
 
@@ -58,27 +61,44 @@ def sol_file(mission: Mission, verdict: Verdict) -> str:
     return sol_text(mission, (tuple(stop.name for stop in route.stops) for route in verdict.routes), verdict.total_cost)
 
 
-def geojson_file(mission: Mission, verdict: Verdict) -> str:
+def geojson_file(
+    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
+) -> Files:
     """Ways and stops as GeoJSON."""
-    return geojson_text(_surveyed(mission, verdict, "geojson"))
+    seen, notes = _surveyed(mission, verdict, "geojson", options)
+    return Files({"plan.geojson": geojson_text(seen)}, notes)
 
 
-def gpx_file(mission: Mission, verdict: Verdict) -> str:
+def gpx_file(
+    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
+) -> Files:
     """Ways and stops as GPX."""
-    return gpx_text(_surveyed(mission, verdict, "gpx"))
+    seen, notes = _surveyed(mission, verdict, "gpx", options)
+    return Files({"plan.gpx": gpx_text(seen)}, notes)
 
 
-def kml_file(mission: Mission, verdict: Verdict) -> str:
+def kml_file(
+    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
+) -> Files:
     """Ways and stops as KML."""
-    return kml_text(_surveyed(mission, verdict, "kml"))
+    seen, notes = _surveyed(mission, verdict, "kml", options)
+    return Files({"plan.kml": kml_text(seen)}, notes)
 
 
-def _surveyed(mission: Mission, verdict: Verdict, form: str) -> Survey:
+def _surveyed(
+    mission: Mission, verdict: Verdict, form: str, options: ExportOptions | None
+) -> tuple[Survey, tuple[str, ...]]:
+    """The features of a plan, drones at their heights, and messages on these."""
     earth = Earth.of(mission, f"--to {form}")
-    return survey(mission, verdict, itineraries(mission, verdict), earth)
+    options = options or ExportOptions()
+    altitudes = altitudes_of(mission, options)
+    team, notes = raised_team(mission, verdict, altitudes, options)
+    return survey(mission, verdict, team, earth, layered=altitudes), notes
 
 
-def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions | None = None) -> Files:
+def plan_files(
+    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
+) -> Files:
     """An admissible plan as QGroundControl's files, one for each robot that has tasks.
 
     Raises
@@ -86,34 +106,32 @@ def plan_files(mission: Mission, verdict: Verdict, options: QgcOptions | None = 
     MissionError
         if the mission has no place on Earth.
     ParameterError
-        if drones have no height to fly at.
+        if drones have no height to fly at, or an altitude is for no drone.
     """
-    options = options or QgcOptions()
+    options = options or ExportOptions()
     earth = Earth.of(mission, "--to qgc")
     robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
-    whole = itineraries(mission, verdict, robot_paths)
-    _require_heights(mission, whole, options.altitude)
-    team = [_adapted(itinerary, robot_paths, options) for itinerary in whole]
+    altitudes = altitudes_of(mission, options)
+    whole = [_thinned(i, robot_paths, options.tolerance) for i in itineraries(mission, verdict, robot_paths)]
+    _require_heights(mission, whole, altitudes)
+    team = [raised(itinerary, altitudes) for itinerary in whole]
     busy = [itinerary for itinerary in team if len(itinerary.passages) > 1]
-    files = dict(zip(_file_names([i.robot.id for i in busy]), busy, strict=True))
+    files = dict(zip(file_names([i.robot.id for i in busy], ".plan"), busy, strict=True))
     plans = PlanFiles(mission, earth, team, options.firmware)
     texts = {name: json.dumps(plans.plan(i), indent=4, sort_keys=True) + "\n" for name, i in files.items()}
     messages = [f"{i.robot.id}: no tasks, no file" for i in team if i not in busy]
     messages += [message for i in busy for message in _notes(plans, i)]
     if mission.map is not None and mission.map.boundary is None:
         messages.append("warning: the map is an image; expected a boundary for a fence, the files have none")
-    messages += [f"warning: {meeting}" for meeting in meetings(team, options.clearance)]
+    messages += height_notes(mission, whole, team, options)
     return Files(texts, tuple(messages))
 
 
-def _adapted(itinerary: Itinerary, robot_paths: RobotPaths | None, options: QgcOptions) -> Itinerary:
-    """An itinerary with fewer bends around corners, and with the least height of drones."""
-    if robot_paths is not None and options.tolerance:
-        clear = partial(robot_paths.clear, body_of(itinerary.robot))
-        itinerary = thinned(itinerary, options.tolerance, clear)
-    if options.altitude is None or itinerary.robot.kind == "ground":
+def _thinned(itinerary: Itinerary, robot_paths: RobotPaths | None, tolerance: float) -> Itinerary:
+    """An itinerary with fewer bends around corners."""
+    if robot_paths is None or not tolerance:
         return itinerary
-    return itinerary.at_least(options.altitude)
+    return thinned(itinerary, tolerance, partial(robot_paths.clear, body_of(itinerary.robot)))
 
 
 def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
@@ -140,19 +158,9 @@ def _named(passage: Passage) -> str:
     return f"station {passage.station}" if passage.station else "a way point"
 
 
-def _require_heights(mission: Mission, team: tuple[Itinerary, ...], altitude: float | None) -> None:
-    drones = [i.robot.id for i in team if i.robot.kind == "air" and len(i.passages) > 1]
-    if drones and mission.dimensions == 2 and not altitude:
+def _require_heights(mission: Mission, team: Sequence[Itinerary], altitudes: Mapping[str, float]) -> None:
+    drones = [
+        i.robot.id for i in team if i.robot.kind == "air" and len(i.passages) > 1 and not altitudes.get(i.robot.id)
+    ]
+    if drones and mission.dimensions == 2:
         raise ParameterError(f"--altitude missing; expected metres above the start for {drones[0]} in the plane")
-
-
-def _file_names(ids: list[str]) -> list[str]:
-    """A name for each robot's file: its id without characters that files cannot have. No two differ by case alone."""
-    names: list[str] = []
-    for robot in ids:
-        stem = "".join(c if c.isalnum() or c in "_-." else "_" for c in robot).lstrip(".") or "robot"
-        taken, name, k = {known.casefold() for known in names}, f"{stem}.plan", 2
-        while name.casefold() in taken:
-            name, k = f"{stem}-{k}.plan", k + 1
-        names.append(name)
-    return names

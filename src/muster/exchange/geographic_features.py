@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
@@ -52,14 +52,22 @@ class Survey:
         return (*self.areas, *self.routes, *self.stations, *self.tasks, *self.robots)
 
 
-def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth: Earth) -> Survey:
-    """The features of a plan."""
-    spatial = mission.dimensions == 3
+def survey(
+    mission: Mission,
+    verdict: Verdict,
+    team: Sequence[Itinerary],
+    earth: Earth,
+    *,
+    layered: Mapping[str, float] | None = None,
+) -> Survey:
+    """The features of a plan; routes of drones that are `layered`, by robot, have heights in a plane mission, too."""
+    spatial, layered = mission.dimensions == 3, layered or {}
 
     def feature(
         kind: str, name: str, points: Sequence[tuple[float, ...]], own: Properties, times_s: Sequence[float] = ()
     ) -> Feature:
-        heights = tuple((*point, 0.0)[2] for point in points) if spatial else None
+        has_heights = spatial or (kind == "route" and name in layered)
+        heights = tuple((*point, 0.0)[2] for point in points) if has_heights else None
         times = tuple(moment for seconds in times_s if (moment := utc(mission, seconds)) is not None)
         return Feature(kind, name, tuple(earth.spots(points)), heights, {"kind": kind, "name": name} | own, times)
 
@@ -89,7 +97,8 @@ def survey(mission: Mission, verdict: Verdict, team: Sequence[Itinerary], earth:
                 "route",
                 i.robot.id,
                 [passage.place for passage in i.passages],
-                _route_properties(mission, i, figures[i.robot.id], verdict.usage_unit),
+                _route_properties(mission, i, figures[i.robot.id], verdict.usage_unit)
+                | ({"altitude_m": layered[i.robot.id]} if i.robot.id in layered else {}),
                 _times_s(i),
             )
             for i in team

@@ -1,4 +1,4 @@
-"""Reads and writes text files, with errors of one line."""
+"""Reads and writes files, with errors of one line."""
 
 from __future__ import annotations
 
@@ -24,8 +24,13 @@ def read_text(path: Path) -> str:
 
 
 def write_text(path: Path, text: str) -> None:
+    """Write a file in UTF-8; an error names it."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: Path, content: bytes) -> None:
     """Write a file; an error names it."""
     try:
-        path.write_text(text, encoding="utf-8")
+        path.write_bytes(content)
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(path)) from None

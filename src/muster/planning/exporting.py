@@ -10,11 +10,11 @@ from muster.mission.keywords import require_known
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_of
-from muster.mission.text_files import write_text
+from muster.mission.text_files import write_bytes
 from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
-    from muster.exchange.export_request import Files, QgcKeywords
+    from muster.exchange.export_request import ExportKeywords, Files
 
 
 def export(
@@ -24,7 +24,7 @@ def export(
     path: str | Path | None = None,
     *,
     ignore: str | Collection[str] = (),
-    **options: Unpack[QgcKeywords],
+    **options: Unpack[ExportKeywords],
 ) -> Files:
     """Write an admissible plan for another program.
 
@@ -33,42 +33,43 @@ def export(
     plan
         a plan; or a mapping, as for `verify`.
     to
-        qgc, geojson, gpx, kml, csv, sol, or a format of an installed package.
+        qgc, geojson, gpx, kml, csv, sol, sheets, overview, xlsx, ics, or a format of an installed package.
     path
-        where it is written: a file, or a folder for a format that makes several files, such as qgc; None: nowhere.
+        where it is written: a file, or a folder for qgc, with `per_robot` and for several files; None: nowhere.
     ignore
         rules that do not hold.
     options
-        for qgc: `altitude`, `clearance`, `tolerance`, `firmware`, as in `QgcOptions`.
+        those of the format, as in `ExportOptions`: altitudes, clearance, per_robot, and more of qgc.
 
     Returns
     -------
-    The texts by the names of their files, and messages to read before anything flies.
+    The texts and bytes by the names of their files, and messages to read before anything flies.
 
     Raises
     ------
     PlanError
         if the plan is not admissible, or a mapping is no plan.
     MissionError
-        if the format needs a place on Earth and the mission has none.
+        if the format needs a place on Earth, or times of day, and the mission has none.
     ParameterError
         if the plan is none, there is no such format, or an option is wrong.
     """
-    from muster.exchange.export_request import QgcOptions
+    from muster.exchange.export_request import OPTIONS_OF, ExportOptions, makes_folder
     from muster.exchange.files import exported
     from muster.verification.required import require_admissible
 
     require_mission(mission)
-    require_known(options, tuple(QgcOptions.__dataclass_fields__) if to == "qgc" else (), f"to {to}")
-    verdict = require_admissible(mission, plan_of(plan), "<plan>", ignore)
-    files = exported(mission, verdict, to, QgcOptions(**options))
+    require_known(options, OPTIONS_OF.get(to, ()), f"to {to}")
+    chosen, given = ExportOptions(**options), plan_of(plan)
+    verdict = require_admissible(mission, given, "<plan>", ignore)
+    files = exported(mission, verdict, to, chosen, given)
     if path is not None:
-        _write(files, Path(path), is_folder=to == "qgc" or len(files.texts) > 1)
+        _write(files, Path(path), is_folder=makes_folder(to, chosen) or len(files.contents) > 1)
     return files
 
 
 def _write(files: Files, path: Path, *, is_folder: bool) -> None:
     if is_folder:
         path.mkdir(parents=True, exist_ok=True)
-    for name, text in files.texts.items():
-        write_text(path / name if is_folder else path, text)
+    for name, content in files.encoded.items():
+        write_bytes(path / name if is_folder else path, content)

@@ -25,7 +25,7 @@ class Names:
     def __init__(self, mission: Mission) -> None:
         robots, tasks = [robot.id for robot in mission.robots], [task.id for task in mission.tasks]
         stations = [station.id for station in mission.stations]
-        self._families, self._lacking = _fonts_for({*mission.name}.union(*robots, *tasks, *stations))
+        self._families, self._lacking = fonts_for({*mission.name}.union(*robots, *tasks, *stations))
         self._robots = {name: f"robot #{k}" for k, name in enumerate(robots, start=1) if not self._drawable(name)}
         self._tasks = {name: f"task #{k}" for k, name in enumerate(tasks, start=1) if not self._drawable(name)}
         self._stations = {name: f"station #{k}" for k, name in enumerate(stations, start=1) if not self._drawable(name)}
@@ -60,7 +60,7 @@ class Names:
         return self._lacking.isdisjoint(name)
 
 
-def _fonts_for(characters: Iterable[str]) -> tuple[list[str], set[str]]:
+def fonts_for(characters: Iterable[str]) -> tuple[list[str], set[str]]:
     """The installed fallbacks that the characters need, and the characters that none of them has."""
     foreign = {c for c in characters if not c.isascii()}
     if not foreign:

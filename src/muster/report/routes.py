@@ -39,17 +39,14 @@ from muster.report.route_ground import (
     drawn_transports,
 )
 from muster.report.route_lines import Places, RobotLines, left_out, places, robot_lines
+from muster.report.route_strokes import Detail, detail_for, draw_lines, draw_tasks, stroke_of
 from muster.report.station_marks import draw_stations, station_names
-from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, Style, robot_style
+from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
 from muster.verification import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_IDS = 60
-"""Tasks up to which each is named."""
-MOST_NUMBERS = 200
-"""Tasks up to which each bears its place in the route."""
 MOST_STARTS = 30
 """Robots up to which starts are named."""
 MOST_IDLE = 4
@@ -96,9 +93,9 @@ def _draw(ax: Any, scene: _Scene, plan: Plan, verdict: Verdict) -> None:
     frame_of_map(ax, *_limits(scene, scene.dimensions))
     entries = _draw_ground(ax, scene)
     for lines in scene.lines:
-        _draw_lines(ax, lines, scene.detail)
+        draw_lines(ax, lines, scene.detail)
     for lines in scene.lines:
-        _draw_tasks(ax, lines, scene.detail)
+        draw_tasks(ax, lines, scene.detail)
     _draw_left_out(ax, scene)
     entries += draw_stations(ax, scene.places([station.position for station in scene.mission.stations]))
     _draw_starts(ax, scene)
@@ -110,22 +107,12 @@ def _draw(ax: Any, scene: _Scene, plan: Plan, verdict: Verdict) -> None:
 
 
 @dataclass(frozen=True)
-class _Detail:
-    """How much is drawn of each task: size of marks and width of lines in points, and which texts."""
-
-    mark: float
-    line: float
-    numbers: bool
-    ids: bool
-
-
-@dataclass(frozen=True)
 class _Scene:
     mission: Mission
     lines: list[RobotLines]
     left_out: list[Task]
     dimensions: int
-    detail: _Detail
+    detail: Detail
     names: Names
     idle: frozenset[str]
     """Robots that are not named, as many have nothing to do."""
@@ -145,7 +132,7 @@ def _scene(mission: Mission, verdict: Verdict, spatial: bool, image: Grid | None
         lines=drawn,
         left_out=left_out(mission, verdict),
         dimensions=dimensions,
-        detail=_detail(len(mission.tasks)),
+        detail=detail_for(len(mission.tasks)),
         names=Names(mission),
         idle=frozenset(idle if len(idle) > MOST_IDLE else ()),
         image=image,
@@ -157,17 +144,6 @@ def _image(mission: Mission) -> Grid | None:
     from muster.motion.map_world import World
 
     return None if mission.map is None or mission.map.boundary is not None else World.of(mission).image
-
-
-def _detail(tasks: int) -> _Detail:
-    crowd = max(1.0, tasks / MOST_IDS)
-    smallest, greatest = (8.0, 11.0) if tasks <= MOST_NUMBERS else (1.5, 5.5)
-    return _Detail(
-        mark=float(np.clip(11.0 / crowd**0.5, smallest, greatest)),
-        line=float(np.clip(1.8 / crowd**0.25, 0.6, 1.8)),
-        numbers=tasks <= MOST_NUMBERS,
-        ids=tasks <= MOST_IDS,
-    )
 
 
 def _all_points(scene: _Scene) -> list[Point]:
@@ -210,50 +186,6 @@ def _draw_ground(ax: Any, scene: _Scene) -> list[tuple[Any, str]]:
     return [*arrows, *(draw_map(ax, mission.map, scene.image, spatial=spatial) if mission.map is not None else ())]
 
 
-def _stroke(style: Style, width: float) -> dict[str, Any]:
-    """Return the keywords of a line in a robot's style."""
-    from matplotlib.patheffects import Normal, Stroke
-
-    if style.stroke != "hollow":
-        return {"color": style.color, "linewidth": width, "linestyle": style.stroke}
-    core = [Normal(), Stroke(linewidth=0.5 * width, foreground="white")]
-    return {"color": style.color, "linewidth": 1.25 * width, "linestyle": "-", "path_effects": core}
-
-
-def _draw_lines(ax: Any, lines: RobotLines, detail: _Detail) -> None:
-    """Draw travel in the robot's stroke, the leg to the end dashed, work from entry to exit dotted."""
-    style, name = robot_style(lines.index), lines.robot.id
-    thin = {"color": style.color, "linewidth": 0.75 * detail.line, "zorder": 2}
-    if len(lines.travel):
-        stroke = _stroke(style, detail.line)
-        ax.plot(*lines.travel.T, gid=f"travel-{name}", zorder=2, solid_joinstyle="round", **stroke)
-    if len(lines.work):
-        ax.plot(*lines.work.T, gid=f"work-{name}", linestyle=(0, (1, 1)), **thin)
-    if len(lines.end):
-        ax.plot(*lines.end.T, gid=f"end-{name}", linestyle=DASHED, **thin)
-        if lines.robot.end_position is not None:
-            mark = {"marker": "v", "markersize": 0.7 * detail.mark, "markerfacecolor": "white", **thin, "zorder": 3}
-            ax.plot(*lines.end[-1:].T, gid=f"end-place-{name}", linestyle="none", **mark)
-
-
-def _draw_tasks(ax: Any, lines: RobotLines, detail: _Detail) -> None:
-    """Draw the tasks of a route, numbered from 1. Marks of a later robot lie wholly above those of an earlier one."""
-    style, zorder = robot_style(lines.index), 3 + lines.index * 1e-5
-    if not lines.tasks:
-        return
-    size = detail.mark * (0.88 if style.marker in "sD" else 1.0)
-    edge = 0.8 if detail.numbers else 0.0
-    mark = {"marker": style.marker, "markersize": size, "color": style.color, "markeredgecolor": "white"}
-    ax.plot(
-        *lines.positions.T, gid=f"tasks-{lines.robot.id}", linestyle="none", markeredgewidth=edge, zorder=zorder, **mark
-    )
-    if detail.numbers:
-        look: dict[str, Any] = {"color": style.ink, "fontweight": "bold", "zorder": zorder + 0.5e-5}
-        for order, (task, place) in enumerate(zip(lines.tasks, lines.positions, strict=True), 1):
-            font = detail.mark * (0.6 if order < 10 else 0.53 if order < 100 else 0.43)
-            write(ax, place, str(order), gid=f"order-{task.id}", fontsize=font, **look)
-
-
 def _draw_left_out(ax: Any, scene: _Scene) -> None:
     if scene.left_out:
         where = scene.places([task.position for task in scene.left_out])
@@ -293,7 +225,7 @@ def _robot_entries(scene: _Scene, unit: str) -> list[tuple[Any, str]]:
     for lines in named[:shown]:
         style = robot_style(lines.index)
         mark = Line2D([], [], color=style.color, marker=style.marker, markersize=5.5, linestyle="none")
-        line = Line2D([], [], **_stroke(style, 1.6))
+        line = Line2D([], [], **stroke_of(style, 1.6))
         entries.append(((line, mark), f"{shortened(scene.names.robot(lines.robot.id))}  {_usage_text(lines, unit)}"))
     if shown < len(named):
         entries.append((Line2D([], [], linestyle="none"), f"... and {len(named) - shown} more"))

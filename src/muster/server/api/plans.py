@@ -37,7 +37,11 @@ Objective = Annotated[str, WithJsonSchema({"enum": [*OBJECTIVES]})]
 Bound = Annotated[str, WithJsonSchema({"enum": [*BOUNDS]})]
 Traffic = Annotated[str, WithJsonSchema({"enum": [*TRAFFIC]})]
 ExportTo = Annotated[
-    str, Query(max_length=50, description="qgc, geojson, gpx, kml, csv, plan, or a format of an installed package.")
+    str,
+    Query(
+        max_length=50,
+        description="qgc, geojson, gpx, kml, csv, sol, sheets, overview, xlsx, ics, json, or one of a package.",
+    ),
 ]
 PlanNumber = Annotated[int, Field(ge=1, le=LARGEST)]
 _PLAN = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["gate"]}]}
@@ -145,7 +149,7 @@ async def explain(
     summary="Write a plan for other tools",
     response_class=Response,
     responses=file_described(
-        "application/octet-stream", "application/zip", what="The file; of qgc a ZIP with a file for each robot."
+        "application/octet-stream", "application/zip", what="The file; a ZIP of several, as of qgc."
     ),
 )
 async def export(
@@ -153,13 +157,27 @@ async def export(
     plan: PlanId,
     to: ExportTo,
     ignore: IgnoredQuery = None,
-    altitude: Annotated[float | None, Query(ge=0, le=1e5, description="qgc: at least so many metres up.")] = None,
-    clearance: Annotated[float | None, Query(ge=0, le=1e5, description="qgc: warn of bodies that near, in m.")] = None,
+    altitude: Annotated[float | None, Query(ge=0, le=1e5, description="Drones fly at least so many m up.")] = None,
+    altitude_step: Annotated[
+        float | None, Query(ge=0, le=1e4, description="Each drone flies so many m higher than the one before.")
+    ] = None,
+    altitudes: Annotated[
+        list[Annotated[str, Query(max_length=10_000)]] | None,
+        Query(max_length=1000, description="Of single drones, in m: r_0=30,r_1=40."),
+    ] = None,
+    clearance: Annotated[float | None, Query(ge=0, le=1e5, description="Warn of bodies that near, in m.")] = None,
     tolerance: Annotated[float | None, Query(ge=0, le=1e3, description="qgc: bends thinned out, in m.")] = None,
     firmware: Annotated[Literal["px4", "ardupilot"] | None, Query(description="qgc.")] = None,
+    per_robot: Annotated[bool | None, Query(description="sheets, ics: a file for each robot.")] = None,
 ) -> Response:
     """As `muster export` writes it."""
-    options = {"altitude": altitude, "clearance": clearance, "tolerance": tolerance, "firmware": firmware}
+    options: dict[str, Any] = {
+        "altitude": altitude,
+        "altitude_step": altitude_step,
+        "altitudes": altitudes,
+        "clearance": clearance,
+    }
+    options |= {"tolerance": tolerance, "firmware": firmware, "per_robot": per_robot}
     files = await services.plans.export(
         plan, to, {name: value for name, value in options.items() if value is not None}, ignore
     )

@@ -1,0 +1,97 @@
+"""The heights at which drones fly that share the air, and what comes too close.
+
+Drones of a plan may be given a least height above their starts, each its own: separated layers. What lies higher stays
+there. The schedule is the judge's: climbing to a height takes no time in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+
+from muster.exchange.export_request import ExportOptions
+from muster.exchange.itinerary import Itinerary, itineraries
+from muster.exchange.separation import meetings
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission
+from muster.mission.near_matches import did_you_mean
+from muster.verification import Verdict
+
+
+def altitudes_of(mission: Mission, options: ExportOptions) -> dict[str, float]:
+    """The least height above its start, metres, of each drone that the options give one; in mission order.
+
+    A drone has the same height whatever the plan, as its number among the drones of the mission says.
+
+    Raises
+    ------
+    ParameterError
+        for a robot that is none of the mission, or none in the air.
+    """
+    drones = [robot.id for robot in mission.robots if robot.kind == "air"]
+    for name in options.altitudes:
+        if name not in drones:
+            hint = did_you_mean(name, drones)
+            raise ParameterError(f"altitudes: {name}; expected robots of kind air: {', '.join(drones) or 'none'}{hint}")
+    if options.altitude is None and not options.altitude_step:
+        return {name: options.altitudes[name] for name in drones if name in options.altitudes}
+    first = options.altitude_step if options.altitude is None else options.altitude
+    layers = {name: first + k * options.altitude_step for k, name in enumerate(drones)}
+    return {name: float(options.altitudes.get(name, height)) for name, height in layers.items()}
+
+
+def raised(itinerary: Itinerary, altitudes: Mapping[str, float]) -> Itinerary:
+    """The itinerary of a drone at its height; of other robots as it is."""
+    height = altitudes.get(itinerary.robot.id)
+    return itinerary if height is None else itinerary.at_least(height)
+
+
+def raised_team(
+    mission: Mission, verdict: Verdict, altitudes: Mapping[str, float], options: ExportOptions
+) -> tuple[tuple[Itinerary, ...], tuple[str, ...]]:
+    """The itineraries of all robots, drones at their heights, and what is to be said of that."""
+    whole = itineraries(mission, verdict)
+    team = tuple(raised(itinerary, altitudes) for itinerary in whole)
+    return team, tuple(height_notes(mission, whole, team, options)) if options.separates else ()
+
+
+def height_notes(
+    mission: Mission, whole: Sequence[Itinerary], team: Sequence[Itinerary], options: ExportOptions
+) -> Iterator[str]:
+    """Messages on drones whose tasks were raised, whose layers touch, and on robots that come too close in time.
+
+    Parameters
+    ----------
+    whole, team
+        the itineraries before and after drones were given their heights.
+    """
+    if mission.dimensions == 3:
+        for before, after in zip(whole, team, strict=True):
+            yield from _raised_tasks(before, after)
+    if options.altitude_step or options.altitudes:
+        yield from _shared_heights(team, options.clearance)
+    yield from (f"warning: {meeting}" for meeting in meetings(team, options.clearance))
+
+
+def _raised_tasks(before: Itinerary, after: Itinerary) -> Iterator[str]:
+    pairs = zip(before.under_way, after.under_way, strict=True)
+    tasks = dict.fromkeys(was.task for was, now in pairs if was.task is not None and was.place[2] < now.place[2])
+    if tasks:
+        told = f"{', '.join(list(tasks)[:3])}{', ...' if len(tasks) > 3 else ''}"
+        yield f"{before.robot.id}: does {told} at its height of flight, not lower as the mission says"
+
+
+def _shared_heights(team: Sequence[Itinerary], clearance_m: float) -> Iterator[str]:
+    """Pairs of drones between whose heights under way there is less than bodies and clearance need."""
+    flying = [(i, *_heights(i)) for i in team if i.robot.kind == "air" and i.under_way]
+    for (a, low, high), (b, other_low, other_high) in combinations(flying, 2):
+        gap = max(low, other_low) - min(high, other_high)
+        least = a.robot.radius_m + b.robot.radius_m + clearance_m
+        if gap <= 0 or gap < least - 1e-9:
+            spans = f"from {low:g} to {high:g} m, and from {other_low:g} to {other_high:g} m"
+            yield f"warning: {a.robot.id} and {b.robot.id} do not fly in layers of their own: {spans}"
+
+
+def _heights(itinerary: Itinerary) -> tuple[float, float]:
+    heights = [passage.place[2] for passage in itinerary.under_way]
+    return min(heights), max(heights)
