@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from functools import cached_property
 
 from muster.mission.model import Mission
 
@@ -30,6 +31,12 @@ class Names:
         self._tasks = {name: f"task #{k}" for k, name in enumerate(tasks, start=1) if not self._drawable(name)}
         self._stations = {name: f"station #{k}" for k, name in enumerate(stations, start=1) if not self._drawable(name)}
 
+    @cached_property
+    def _numbers(self) -> list[tuple[str, str]]:
+        """What stands for ids that no font can write; longer ids first, as they may hold shorter ones."""
+        found = {**self._robots, **self._tasks, **self._stations}
+        return sorted(found.items(), key=lambda pair: -len(pair[0]))
+
     @property
     def notes(self) -> tuple[str, ...]:
         """The legend's remarks on the names."""
@@ -43,6 +50,12 @@ class Names:
 
     def station(self, name: str) -> str:
         return self._stations.get(name, name)
+
+    def words(self, text: str) -> str:
+        """A text that may hold ids: those that no font can write are replaced by their numbers."""
+        for name, number in self._numbers:
+            text = text.replace(name, number)
+        return text
 
     def title(self, name: str) -> str:
         """The mission's own name, with question marks for what no font has."""

@@ -62,7 +62,7 @@ class _Printer:
         title = self.names.title(self.sheets.mission.name)
         facts = " · ".join(f"{name} {what}" for name, what in mission_facts(self.sheets) if name != "mission")
         robots, left_out = list(self._robots()), list(self._left_out())
-        paper = Paper(title, [facts, *(cell for row in (*robots, *left_out) for cell in row)])
+        paper = Paper(title, self.names, [facts, *(cell for row in (*robots, *left_out) for cell in row)])
         paper.begin(title)
         paper.write_title(title, facts)
         self._draw(paper)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from muster.mission.errors import MissingExtraError
 from muster.report.canvas import require_matplotlib
-from muster.report.fonts import fonts_for
+from muster.report.fonts import Names, fonts_for
 
 try:
     from fpdf import FPDF
@@ -54,6 +54,8 @@ class Paper(FPDF):
     ----------
     title
         of the document.
+    names
+        of the mission's robots, tasks and stations.
     texts
         all that will be written in it: fonts for their characters are looked for.
 
@@ -63,10 +65,11 @@ class Paper(FPDF):
         if matplotlib is not installed.
     """
 
-    def __init__(self, title: str, texts: Iterable[str]) -> None:
+    def __init__(self, title: str, names: Names, texts: Iterable[str]) -> None:
         super().__init__(orientation="landscape", unit="mm", format="A4")
         require_matplotlib()
-        families, self._lacking = fonts_for({*title}.union(*texts))
+        self._names, characters = names, {*title}.union(*texts)
+        families, self._lacking = fonts_for(characters)
         self._add_fonts(families)
         self.heading, self.page_of_heading = "", 0
         self.set_creation_date(_EPOCH)
@@ -74,6 +77,7 @@ class Paper(FPDF):
         self.set_creator("Muster")
         self.set_margin(MARGIN_MM)
         self.set_auto_page_break(auto=True, margin=MARGIN_MM + 4)
+        self.set_text_shaping(any(map(_is_shaped, characters)))
         self.set_font(_FONT, size=8)
 
     def _add_fonts(self, families: Sequence[str]) -> None:
@@ -86,9 +90,12 @@ class Paper(FPDF):
         self.set_fallback_fonts([f"{_FONT}{k}" for k in range(len(families))], exact_match=False)
 
     def drawable(self, text: str) -> str:
-        """A text in one line, with question marks for what no font has; a long one is cut."""
-        line = " ".join("".join("?" if c in self._lacking else c for c in text).split())
-        width = 0
+        """A text in one line, with numbers for ids and question marks for characters that no font has."""
+        return "".join("?" if c in self._lacking else c for c in " ".join(self._names.words(text).split()))
+
+    def _in_cell(self, text: str) -> str:
+        """A text for a cell; a long one is cut."""
+        line, width = self.drawable(text), 0
         for k, c in enumerate(line):
             width += 2 if unicodedata.east_asian_width(c) in "WF" else 1
             if width > _MOST_COLUMNS_OF_TEXT:
@@ -146,7 +153,7 @@ class Paper(FPDF):
             for name, what in facts:
                 row = table.row()
                 row.cell(self.drawable(name), style=FontFace(color=_GREY))
-                row.cell(self.drawable(what))
+                row.cell(self._in_cell(what))
 
     def write_table(self, columns: Sequence[Column], rows: Iterable[Sequence[str]]) -> None:
         """A table over the whole width, its headings on every page."""
@@ -164,7 +171,7 @@ class Paper(FPDF):
         ) as table:
             table.row([column.heading for column in columns])
             for row in rows:
-                table.row([self.drawable(cell) for cell in row])
+                table.row([self._in_cell(cell) for cell in row])
         self.set_draw_color(0)
 
     def put_picture(self, figure: Figure, x: float, y: float, width: float) -> None:
@@ -183,3 +190,8 @@ class Paper(FPDF):
             return bytes(self.output())
         finally:
             subsetting.setLevel(level)
+
+
+def _is_shaped(c: str) -> bool:
+    """Whether the letters of a script are joined, stacked or written from the right, which takes a shaping engine."""
+    return unicodedata.bidirectional(c) in ("R", "AL") or unicodedata.category(c) in ("Mn", "Mc")

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from muster.exchange.sheets.paper import Paper
 
 _MAP_MM = (105.0, 76.0)
+_CLOCK = len("08:00:00")
 
 
 def sheets_files(
@@ -87,7 +88,7 @@ class _Printer:
         from muster.exchange.sheets.paper import Paper
 
         title = self.names.title(self.sheets.mission.name)
-        paper = Paper(title, self._texts(chosen))
+        paper = Paper(title, self.names, self._texts(chosen))
         for sheet in chosen:
             paper.begin(f"{self.names.robot(sheet.robot.id)} · {title}")
             self._write_head(paper, sheet)
@@ -130,14 +131,15 @@ class _Printer:
     def _fields(self, sheet: Sheet) -> list[_Field]:
         """The columns that have something in them."""
         told, unit, names = self.sheets.times.text, self.sheets.verdict.usage_unit, self.names
+        wide = 14 if all(len(told(line.visit.ends_s)) <= _CLOCK for line in sheet.lines) else 19
         fields = [
             _Field("#", 6, lambda line: str(line.order), right=True),
             _Field("stop", 22, lambda line: stop_name(line, names)),
             _Field("place [m]", 20, lambda line: metres(line.place)),
             _Field("latitude, longitude", 30, lambda line: "" if line.spot is None else degrees(line.spot)),
-            _Field("arrive", 14, lambda line: told(line.visit.arrives_s), right=True),
-            _Field("begin", 14, lambda line: told(line.visit.starts_s), right=True),
-            _Field("end", 14, lambda line: told(line.visit.ends_s), right=True),
+            _Field("arrive", wide, lambda line: told(line.visit.arrives_s), right=True),
+            _Field("begin", wide, lambda line: told(line.visit.starts_s), right=True),
+            _Field("end", wide, lambda line: told(line.visit.ends_s), right=True),
             _Field("what to do", 42, lambda line: line.doing),
             _Field("with", 20, lambda line: ", ".join(map(names.robot, line.others))),
             _Field("wait", 13, lambda line: _wait(line), right=True),
