@@ -246,3 +246,14 @@ def test_plan_files_for_drones_are_written_into_a_folder(tmp_path):
     assert [path.name for path in (tmp_path / "plans").iterdir()] == ["d.plan"] == list(files.texts)
     with pytest.raises(muster.ParameterError, match="to qgc: altitud: unknown; did you mean 'altitude'"):
         muster.export(mission, plan, "qgc", altitud=10.0)
+
+
+def test_sheets_are_bytes_and_have_options(tmp_path, mission, plan):
+    files = muster.export(mission, plan, "sheets", tmp_path / "sheets.pdf")
+    assert (tmp_path / "sheets.pdf").read_bytes() == files.contents["sheets.pdf"] == files.encoded["sheets.pdf"]
+    assert files.texts == {}
+    muster.export(mission, plan, "sheets", tmp_path / "all", per_robot=True)
+    busy = {f"{route.robot}.pdf" for route in plan.routes if route.tasks}
+    assert {path.name for path in (tmp_path / "all").iterdir()} == busy
+    with pytest.raises(muster.ParameterError, match="altitude_step: -1; expected metres, from 0 to 10000"):
+        muster.export(mission, plan, "sheets", altitude_step=-1)

@@ -80,6 +80,33 @@ def test_one_file_goes_to_standard_output_or_where_it_is_told(form, export):
     assert export("--to", form, "-o", "x")[0] == 0  # what it wrote it may write again
 
 
+@pytest.mark.parametrize(("form", "magic"), [("sheets", b"%PDF-"), ("overview", b"%PDF-"), ("xlsx", b"PK")])
+def test_files_that_are_no_texts_are_written_as_they_are(form, magic, export):
+    assert export("--to", form, "-o", "x") == (0, "", "")
+    assert Path("x").read_bytes().startswith(magic)
+
+
+def test_a_file_that_is_no_text_is_not_written_to_a_terminal(export, monkeypatch):
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    code, out, err = export("--to", "xlsx")
+    assert (code, out, err) == (2, "", "-o missing; expected a file: xlsx is no text for a terminal\n")
+
+
+def test_calendars_of_each_robot(export):
+    text = BAY.replace("name: bay\n", "name: bay\nstarts_at: 2027-03-01T08:00:00Z\n")
+    Path("bay.yaml").write_text(text, encoding="utf-8")
+    code, out, err = export("--to", "ics", "--per-robot", "-o", "calendars")
+    assert (code, out, err) == (0, "", "idle: no stops, no file\n")
+    assert sorted(file.name for file in Path("calendars").iterdir()) == ["d1.ics", "d2.ics", "d3.ics", "rover.ics"]
+    assert export("--to", "ics")[1].startswith("BEGIN:VCALENDAR\r\n")
+
+
+def test_drones_in_layers(export):
+    _, _, err = export("--to", "kml", "--altitude", "30", "--altitudes", "d2=60,d3=90", "-o", "x")
+    assert "d1: does b, c at its height of flight, not lower as the mission says" in err.splitlines()
+    assert Path("x").read_text(encoding="utf-8").count(",60 ") >= 1
+
+
 @pytest.mark.parametrize("form", ["qgc", "geojson", "gpx", "kml"])
 def test_a_mission_without_an_origin(form, export):
     Path("bay.yaml").write_text(re.sub("origin_wgs84.*\n", "", BAY), encoding="utf-8")
@@ -100,7 +127,10 @@ def test_a_plan_of_another_mission(export, muster, plan):
 def test_an_unknown_format(export):
     code, out, err = export("--to", "geojsn")
     assert (code, out) == (2, "")
-    assert "'geojsn' is not one of qgc, geojson, gpx, kml, csv, sol; did you mean 'geojson'?" in err
+    assert (
+        "'geojsn' is not one of qgc, geojson, gpx, kml, csv, sol, sheets, overview, xlsx, ics; did you mean 'geojson'?"
+        in err
+    )
 
 
 @pytest.mark.parametrize(
@@ -108,7 +138,12 @@ def test_an_unknown_format(export):
     [
         (["--to", "qgc"], "-o missing; expected a folder for the .plan files"),
         (["--to", "qgc", "-o", "bay.yaml"], "-o: bay.yaml is a file; expected a folder, or a name for a new one"),
-        (["--to", "kml", "--altitude", "9"], "--altitude given; expected it with --to qgc, not kml"),
+        (["--to", "csv", "--altitude", "9"], "--altitude given; expected it with --to qgc or geojson or gpx or kml or"),
+        (["--to", "gpx", "--per-robot"], "--per-robot given; expected it with --to sheets or ics, not gpx"),
+        (["--to", "sheets", "--per-robot"], "-o missing; expected a folder for the .pdf files"),
+        (["--to", "kml", "--altitudes", "d1"], 'altitudes: "d1"; expected ROBOT=METRES, as r_0=30,r_1=40'),
+        (["--to", "kml", "--altitudes", "d9=4"], "altitudes: d9; expected robots of kind air: d1, d2, d3"),
+        (["--to", "ics"], "bay.yaml: starts_at: missing; expected starts_at: 2027-03-01T08:00:00+01:00 in the mission"),
         (["--to", "csv", "--firmware", "px4"], "--firmware given; expected it with --to qgc, not csv"),
         (["--to", "csv", "-o", "bay.yaml"], "bay.yaml: given twice; expected a file that is neither read nor written"),
         (["--to", "csv", "-o", "bay.json"], "bay.json: given twice; expected a file that is neither read nor written"),

@@ -37,7 +37,7 @@ def mission():
 def test_what_ships_is_there_in_order():
     assert list(WORLDS) == ["kinematic", "physics"]
     assert list(FLEETS) == ["ros1", "ros2", "mavlink"]
-    assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv", "sol"]
+    assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv", "sol", "sheets", "overview", "xlsx", "ics"]
     assert world_named("kinematic") is KinematicWorld
     assert all(callable(FLEETS[name]) for name in FLEETS)
     assert all(callable(FORMATS[name]) for name in FORMATS)

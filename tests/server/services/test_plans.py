@@ -176,6 +176,7 @@ def test_exports_are_those_of_the_command(with_services, tmp_path, capsys):
         forms = ("csv", "geojson", "gpx", "kml", "json")
         answers = {form: await services.plans.export(1, form) for form in forms}
         answers["qgc"] = await services.plans.export(1, "qgc", {"firmware": "ardupilot", "altitude": 5})
+        answers["sheets"] = await services.plans.export(1, "sheets", {"altitudes": ["d1=40", "d2=50,d3=60"]})
         return answers
 
     answers = with_services(story)
@@ -189,6 +190,11 @@ def test_exports_are_those_of_the_command(with_services, tmp_path, capsys):
     assert command(["export", *map(str, inputs), "--to", "qgc", *wishes]) == 0
     written = {file.name: file.read_bytes() for file in folder.iterdir()}
     notes = capsys.readouterr().err.encode("utf-8")
+    printed = tmp_path / "sheets.pdf"
+    heights = ("--altitudes", "d1=40,d2=50", "--altitudes", "d3=60", "-o", str(printed))
+    assert command(["export", *map(str, inputs), "--to", "sheets", *heights]) == 0
+    assert base64.b64decode(answers["sheets"]["bay-sheets.pdf"]) == printed.read_bytes()
+    assert base64.b64decode(answers["sheets"]["NOTES.txt"]).decode("utf-8") == capsys.readouterr().err
     assert {name: base64.b64decode(data) for name, data in answers["qgc"].items()} == {**written, "NOTES.txt": notes}
 
 
@@ -197,6 +203,8 @@ def test_exports_are_those_of_the_command(with_services, tmp_path, capsys):
     [
         ("pdf", {}, 'to: "pdf"; expected qgc, geojson'),
         ("csv", {"altitude": 5}, "options: .*; expected none with csv"),
+        ("xlsx", {"per_robot": True}, 'options: "per_robot"; expected altitude'),
+        ("ics", {}, ".*starts_at"),
         ("qgc", {"height": 5}, 'options: "height"; expected altitude'),
         ("qgc", {"altitude": -5}, "altitude: -5; expected metres"),
         ("qgc", {"firmware": "own"}, 'firmware: "own"; expected px4 or ardupilot'),

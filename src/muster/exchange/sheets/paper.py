@@ -117,7 +117,8 @@ class Paper(FPDF):
         self.set_y(-MARGIN_MM - 1)
         self.set_font(_FONT, size=7)
         self.set_text_color(*_GREY)
-        self.cell(0, 4, f"{self.drawable(str(self.title))} · {self.page_no()} / {{nb}}", align="R")
+        self.cell(self.epw - 30, 4, self.drawable(str(self.title)))
+        self.cell(30, 4, f"{self.page_no()} / {{nb}}", align="R")
         self.set_text_color(0)
 
     def begin(self, heading: str) -> None:

@@ -17,6 +17,10 @@ from muster.server.services.archives import archive_of
 
 _FORMATS = {
     "": "Plan file (JSON)",
+    "sheets": "Sheets of the robots, to print (PDF)",
+    "overview": "The plan on a page, to print (PDF)",
+    "xlsx": "Workbook (XLSX)",
+    "ics": "Calendar (ICS)",
     "csv": "Table of visits (CSV)",
     "sol": "Solution of vehicle routing (SOL)",
     "geojson": "GeoJSON",
@@ -26,6 +30,7 @@ _FORMATS = {
 }
 _ON_EARTH = ("geojson", "kml", "gpx", "qgc")
 _NOT_ON_EARTH = "needs origin_wgs84 in the mission: where on Earth it is"
+_WITHOUT_START = "needs starts_at in the mission: when it begins"
 _PICTURES = {"routes": "Picture of the routes (SVG)", "gantt": "Picture of the schedule (SVG)"}
 _MOST_BYTES = 16 * 2**20
 
@@ -39,15 +44,21 @@ class PlanActions:
         self._bar = ui.element("div").classes("bar control")
         self.show()
 
-    def show(self, *, on_earth: bool = True) -> None:
-        """Show the actions on the present plan; `on_earth`: its mission has a place on the earth."""
+    def show(self, *, on_earth: bool = True, has_start: bool = True) -> None:
+        """Show the actions on the present plan.
+
+        Parameters
+        ----------
+        on_earth, has_start
+            whether its mission has a place on the earth, and a time at which it begins.
+        """
         self._bar.clear()
         entry = self._answer.entry
         with self._bar:
             if entry is not None and self._commands:
                 ui.button("Carry out", icon="play_arrow", on_click=self._start).props('unelevated id="carry-out"')
             if entry is not None:
-                self._exports(entry.id, on_earth)
+                self._exports(entry.id, on_earth=on_earth, has_start=has_start)
             others = [other for other in self._answer.entries if entry is not None and other.id != entry.id]
             if others and entry is not None:
                 target = f"/plan/{self._answer.mission}/compare?a={others[0].id}&b={entry.id}"
@@ -55,13 +66,15 @@ class PlanActions:
             if self._commands:
                 ui.button("Upload a plan", on_click=self._open_upload).props("flat")
 
-    def _exports(self, plan: int, on_earth: bool) -> None:
+    def _exports(self, plan: int, *, on_earth: bool, has_start: bool) -> None:
+        lacking = {} if on_earth else dict.fromkeys(_ON_EARTH, _NOT_ON_EARTH)
+        lacking |= {} if has_start else {"ics": _WITHOUT_START}
         with ui.dropdown_button("Export", icon="download", auto_close=True).props('outline id="export"'), ui.list():
             for name, words in (_FORMATS | {name: name for name in FORMATS if name not in _FORMATS}).items():
-                if name in _ON_EARTH and not on_earth:
+                if name in lacking:
                     with ui.item().props("disable"), ui.item_section():
                         ui.item_label(words)
-                        ui.item_label(_NOT_ON_EARTH).props("caption")
+                        ui.item_label(lacking[name]).props("caption")
                 else:
                     ui.item(words, on_click=lambda name=name: self._export(plan, name))
             for what, words in _PICTURES.items():

@@ -99,9 +99,9 @@ class PlanPanel:
             self._show_judging(entry)
             verdict = await the_services().plans.verdict(entry.id)
             version = await the_services().missions.get(entry.mission, entry.mission_version)
-            on_earth = bool((await the_services().missions.read_keys(version.text, "origin_wgs84")).get("origin_wgs84"))
+            known = await the_services().missions.read_keys(version.text, "origin_wgs84", "starts_at")
             if self._entry is entry:
-                self._show(entry, verdict, on_earth=on_earth)
+                self._show(entry, verdict, known)
 
     def _show_no_plan(self) -> None:
         """Disable all actions until the chosen plan is loaded."""
@@ -121,7 +121,8 @@ class PlanPanel:
                 ui.spinner(size="1.2em")
                 ui.label("The judge goes through the plan: ways, times, rules.").classes("quiet")
 
-    def _show(self, entry: PlanEntry, verdict: Mapping[str, Any], *, on_earth: bool) -> None:
+    def _show(self, entry: PlanEntry, verdict: Mapping[str, Any], known: Mapping[str, Any]) -> None:
+        """Show a plan; `known` is what its mission says of where and when it is."""
         self._map.show_plan(lines_of(entry.plan, verdict))
         self._gantt.show(verdict)
         self._chart.props(remove="hidden")
@@ -131,7 +132,7 @@ class PlanPanel:
             left_out(entry.plan, self._choose_named)
             _how_found(entry.plan)
             robots_table(verdict["routes"], str(entry.plan.get("usage_unit", "")), self._choose_named)
-        self.taking.show(on_earth=on_earth)
+        self.taking.show(on_earth=bool(known.get("origin_wgs84")), has_start=bool(known.get("starts_at")))
         self.why.clear()
         self.choose(self._chosen)
 
