@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import PurePath
 from typing import Any
 
-from muster.exchange.export_request import FORMATS, OPTIONS_OF, ExportOptions, altitudes_in
+from muster.exchange.export_request import FORMATS, OPTIONS_OF, ExportOptions, altitudes_in, makes_folder
 from muster.exchange.files import exported
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
@@ -33,6 +33,8 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
         return _answer({f"{_stem(mission.name)}.json": plan.text().encode("utf-8")})
     verdict = require_admissible(mission, plan, "plan", arguments.get("ignore", ()))
     files = exported(mission, verdict, form, chosen, plan)
+    if makes_folder(form, chosen):
+        return _answer(files.encoded, files.messages)
     stem = _stem(mission.name)
     alone = {f"plan.{form}": f"{stem}.{form}", f"{form}.pdf": f"{stem}-{form}.pdf"}  # they bear the mission's name
     return _answer({alone.get(name, name): data for name, data in files.encoded.items()}, files.messages)
