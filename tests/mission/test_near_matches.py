@@ -43,3 +43,7 @@ def test_many_known_words_cost_no_more_comparisons_than_a_few(monkeypatch):
     for count in (10, 100, 20_000):
         did_you_mean("tsak_7", IDS[:count])
     assert max(compared) <= 100
+
+
+def test_swapped_letters_are_nearer_than_others():
+    assert did_you_mean("cvs", ["csv", "ics"]) == did_you_mean("cvs", ["ics", "csv"]) == "; did you mean 'csv'?"

@@ -12,7 +12,7 @@ _NEIGHBOURS = 20
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """`"; did you mean 'x'?"` for the known word that is nearest, or nothing.
+    """`"; did you mean 'x'?"` for the known word that is nearest, or nothing; swapped letters count as nearest.
 
     Among many known words only those are compared that begin or end most like this one: thousands of ids cost no more
     than a few.
@@ -23,7 +23,8 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     if len(names) > _MANY_NAMES:
         ending = [name[::-1] for name in _neighbours(folded[::-1], backwards)]
         candidates = [*_neighbours(folded, forwards), *ending]
-    near = difflib.get_close_matches(folded, candidates, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(folded, candidates, n=3, cutoff=0.6)
+    near.sort(key=lambda name: sorted(name) != sorted(folded))
     return f"; did you mean '{names[near[0]]}'?" if near else ""
 
 

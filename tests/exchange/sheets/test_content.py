@@ -85,7 +85,7 @@ tasks:
     assert [line.waits_for for line in lines_of(sheets, "a")] == [("its time window",)]
     assert [line.waits_for for line in lines_of(sheets, "b")] == [
         ("its time window of lit",),
-        ("fill, which begins within 7 s",),
+        ("fill, which must begin within 7 s",),
     ]
 
 

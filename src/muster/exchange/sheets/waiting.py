@@ -49,7 +49,7 @@ class Waiting:
             within_s = dependant.lag(task.id).within_s
             begins = [there.starts_s for there in self._at[dependant.id].values()]
             if within_s is not None and any(_same(begin - within_s, stop.ends_s) for begin in begins):
-                yield f"{dependant.id}, which begins within {within_s:g} s"
+                yield f"{dependant.id}, which must begin within {within_s:g} s"
 
     def _together(self, name: str) -> list[Task]:
         """The task, and those that begin at the same moment."""
