@@ -72,3 +72,9 @@ def test_a_name_of_a_mission_alone_needs_no_note():
 
 def test_wide_characters_take_the_room_of_two():
     assert text_size("北一", 10) == text_size("abcd", 10)
+
+
+def test_ids_that_no_font_has_are_numbers_in_any_words():
+    robots = [Robot(id=name, position=(0.0, 0.0)) for name in ("r", "\U00013000", "\U00013000\U00013001")]
+    names = Names(Mission(robots=tuple(robots), tasks=(Task(id="a", position=(1.0, 1.0)),)))
+    assert names.words("r waits for \U00013000\U00013001, \U00013000") == "r waits for robot #3, robot #2"

@@ -44,7 +44,7 @@ def test_every_robot_has_a_sheet_with_its_stops_in_order(sheets):
 
 def test_what_is_done_is_said_in_words(sheets):
     assert [line.doing for line in lines_of(sheets, "r")] == [
-        *("take on board 2", "charge 60.00 m", "put down what pier took on board")
+        *("take on board 2", "charge 60 m", "put down what pier took on board")
     ]
 
 

@@ -31,7 +31,7 @@ def test_a_page_for_each_robot(tmp_path):
     files = printed(crew(tmp_path), "sheets")
     assert (list(files.contents), files.messages) == (["sheets.pdf"], ())
     r, s, t, u, idle = pages(files.contents["sheets.pdf"])
-    for word in ("take on board 2", "[pad]", "23:59:40", "a free slot", "charge 60.00 m", "35.530000, 24.060441"):
+    for word in ("take on board 2", "[pad]", "23:59:40", "a free slot", "charge 60 m", "35.530000, 24.060441"):
         assert word in r
     assert "100 of 100 m, never below 10" in r
     assert "planned by by hand" in s

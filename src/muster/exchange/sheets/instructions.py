@@ -32,7 +32,7 @@ def at_station(station: Station, stop: Stop, unit: str, *, unloads: bool) -> str
     """What is done at a station; `unloads` says whether anything is put down there."""
     parts = []
     if station.charges:
-        parts.append("charge" if stop.charged is None else f"charge {stop.charged:.2f} {unit}")
+        parts.append("charge" if stop.charged is None else f"charge {plain(stop.charged)} {unit}")
     if station.swaps:
         parts.append("swap the battery")
     if unloads:
