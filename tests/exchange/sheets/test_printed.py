@@ -1,5 +1,7 @@
 """Sheets and overview as PDF: what stands on which page, in all scripts, always in the same bytes."""
 
+import sys
+
 import pypdfium2
 import pytest
 from tests.exchange.sheets.crew import CREW, crew
@@ -7,6 +9,7 @@ from tests.exchange.sheets.crew import CREW, crew
 from muster import load, verify
 from muster.exchange.export_request import ExportOptions
 from muster.exchange.files import exported
+from muster.mission.errors import MissingExtraError
 from muster.mission.plan_reader import plan_of
 
 
@@ -128,3 +131,12 @@ def test_a_mission_in_space_without_a_type_or_start(form, tmp_path):
     files = printed(written(tmp_path, text, {"d": ["a"]}), form)
     (content,) = files.contents.values()
     assert form == "xlsx" or "(3, 4, 5)" in "".join(pages(content)) or "1 task" in "".join(pages(content))
+
+
+@pytest.mark.parametrize(("form", "library"), [("sheets", "fpdf"), ("overview", "fpdf"), ("xlsx", "xlsxwriter")])
+def test_without_the_extra_it_is_named(form, library, tmp_path, monkeypatch):
+    given = crew(tmp_path)
+    monkeypatch.setitem(sys.modules, library, None)
+    monkeypatch.delitem(sys.modules, "muster.exchange.sheets.paper", raising=False)
+    with pytest.raises(MissingExtraError, match=r"needs an optional part: pip install 'muster-robotics\[sheets\]'"):
+        printed(given, form)
