@@ -1,0 +1,51 @@
+"""The settings of Sphinx. Its sources are the repository's own pages, so that their links lead where they lead there."""
+
+from __future__ import annotations
+
+import sys
+from importlib.metadata import version as installed_version
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))  # where `tools` is
+
+project = "Muster"
+release = version = installed_version("muster-robotics")
+copyright = "Muster contributors"
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "tools.docs_site.navigation",
+    "tools.docs_site.reference",
+
+]
+include_patterns = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/tutorials/*.md"]
+exclude_patterns = [".venv", "build", "src", "tests", ".git"]  # not even looked through
+root_doc = "docs/index"
+nitpicky = True
+
+myst_heading_anchors = 6  # a link to a heading is checked, as a forge makes its anchor
+myst_links_external_new_tab = False
+
+nb_execution_mode = "cache"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 60
+nb_execution_in_temp = True
+nb_merge_streams = True
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_preserve_defaults = True
+napoleon_google_docstring = False
+python_use_unqualified_type_names = True
+python_maximum_signature_line_length = 100
+
+html_theme = "furo"
+html_title = f"Muster {release}"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = False
+html_copy_source = False
+html_show_sphinx = False
+html_theme_options = {"navigation_with_keys": True}
