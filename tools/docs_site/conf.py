@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import logging
+import os
 import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
+
+from pygments.lexers.special import TextLexer
+from sphinx.highlighting import lexers
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))  # where `tools` is
 
@@ -18,21 +23,26 @@ extensions = [
     "sphinx.ext.napoleon",
     "tools.docs_site.navigation",
     "tools.docs_site.reference",
-
+    "tools.docs_site.remarks",
+    "tools.docs_site.tutorials",
+    "tools.docs_site.finish",
 ]
 include_patterns = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/tutorials/*.md"]
 exclude_patterns = [".venv", "build", "src", "tests", ".git"]  # not even looked through
 root_doc = "docs/index"
 nitpicky = True
+lexers["csv"] = TextLexer()
 
 myst_heading_anchors = 6  # a link to a heading is checked, as a forge makes its anchor
 myst_links_external_new_tab = False
 
-nb_execution_mode = "cache"
+nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 60
 nb_execution_in_temp = True
 nb_merge_streams = True
+os.environ["JUPYTER_PATH"] = str(Path(__file__).with_name("jupyter"))  # a kernel that says nothing but errors
+logging.getLogger("traitlets").setLevel(logging.WARNING)  # nor does what starts it
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"

@@ -10,6 +10,9 @@ from __future__ import annotations
 import importlib
 import inspect
 import re
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from docutils.nodes import Element, Node
@@ -53,35 +56,34 @@ def _directive(name: str) -> str:
     return f"\n```{{eval-rst}}\n.. {kind}:: {name}{members}\n```\n"
 
 
-def _write(app: Sphinx, name: str, source: list[str]) -> None:
+def _write(_: Sphinx, name: str, source: list[str]) -> None:
     if name == PAGE:
-        app.env.muster_names = {_true_name(listed): listed for listed in listed_names(source[0])}  # type: ignore[attr-defined]
         source[0] = with_directives(source[0])
 
 
-def _true_name(name: str) -> str:
-    """Where an object is defined: annotations name it so."""
-    found = find(name)
-    return f"{found.__module__}.{found.__qualname__}"
+@cache
+def names_in(root: Path) -> Mapping[str, str]:
+    """The names that the page lists, by where their objects are defined, and by their last words: annotations say either."""
+    found: dict[str, str] = {}
+    for name in listed_names((root / f"{PAGE}.md").read_text(encoding="utf-8")):
+        defined = find(name)
+        found[f"{defined.__module__}.{defined.__qualname__}"] = name
+        found.setdefault(defined.__qualname__, name)
+    return found
 
 
 def _resolve(app: Sphinx, env: BuildEnvironment, node: Element, words: Node) -> Node | None:
     """A link to the name by which the reference has an object; else the words alone, where nothing is promised."""
-    target = str(node.get("reftarget", ""))
     if node.get("refdomain") != "py":
         return None
-    names: dict[str, str] = getattr(env, "muster_names", {})
-    last = target.rpartition(".")[2]
-    known = names.get(target) or next((name for name in names.values() if name.rpartition(".")[2] == last), None)
-    if known is None or "." in target.removeprefix("muster.") and target not in names:
+    known = names_in(Path(app.srcdir)).get(node.get("reftarget", ""))
+    if known is None:
         return words
-    domain = env.get_domain("py")
-    found = domain.resolve_xref(env, node["refdoc"], app.builder, "obj", known, node, words)
-    return found or words
+    return env.get_domain("py").resolve_xref(env, node["refdoc"], app.builder, "obj", known, node, words) or words
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """What Sphinx calls."""
     app.connect("source-read", _write)
     app.connect("missing-reference", _resolve)
-    return {"parallel_read_safe": False}
+    return {"parallel_read_safe": True}

@@ -1,7 +1,7 @@
 """The documents: pages of Markdown that ship with the package, by kind, as docs/index.md lists them; and their site.
 
 An installed package has the pages, and the site if it was built before the package was, in its folder `documents`. In a
-clone they are in `docs` and `build/site`.
+clone they are in `docs` and `build/docs/site`.
 """
 
 from __future__ import annotations
@@ -91,4 +91,4 @@ def site_page(entry: Entry | None = None) -> Path | None:
     if root is None:
         return None
     name = "index.html" if entry is None else str(PurePosixPath(entry.path).with_suffix(".html"))
-    return next((site / name for site in (root / "site", root / "build" / "site") if (site / name).is_file()), None)
+    return next((site / name for site in (root / "site", root / "build" / "docs" / "site") if (site / name).is_file()), None)
