@@ -38,7 +38,7 @@ myst_links_external_new_tab = False
 
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 60
+nb_execution_timeout = 300  # of a cell; tutorials take seconds, a machine that is busy takes longer
 nb_execution_in_temp = True
 nb_merge_streams = True
 os.environ["JUPYTER_PATH"] = str(Path(__file__).with_name("jupyter"))  # a kernel that says nothing but errors

@@ -15,6 +15,8 @@ from pathlib import Path, PurePosixPath
 INDEX = "docs/index.md"
 _SECTION = re.compile(r"^## (.+)$", re.MULTILINE)
 _ROW = re.compile(r"^\| *(?P<purpose>.+?) *\| *\[(?P<words>[^]]+)\]\((?P<target>[^)#]+\.md)\) *\|$", re.MULTILINE)
+_REMARK = re.compile(r"^<!--.*?-->\n?", re.DOTALL | re.MULTILINE)
+_FRONT_MATTER = re.compile(r"\A---\n.*?\n---\n", re.DOTALL)
 _HEAD = "| when you want to | read |"
 
 
@@ -92,3 +94,29 @@ def site_page(entry: Entry | None = None) -> Path | None:
         return None
     name = "index.html" if entry is None else str(PurePosixPath(entry.path).with_suffix(".html"))
     return next((site / name for site in (root / "site", root / "build" / "docs" / "site") if (site / name).is_file()), None)
+
+
+@dataclass(frozen=True)
+class Found:
+    """A line of a page that holds what was looked for, and the heading that it stands under."""
+
+    entry: Entry
+    section: str
+    line: str
+
+
+def find_in_documents(words: str) -> Iterator[Found]:
+    """The lines of all pages that hold all of some words, whatever their case."""
+    wanted = words.casefold().split()
+    for entry in documents():
+        section = ""
+        for line in readable_text(document_text(entry)).splitlines():
+            section = line.lstrip("# ") if line.startswith("#") else section
+            if all(word in line.casefold() for word in wanted):
+                yield Found(entry, section, line.strip())
+
+
+def readable_text(text: str) -> str:
+    """A page for a reader: without the markers of the check of documents, and without what only a notebook's program reads."""
+    text = _FRONT_MATTER.sub("", _REMARK.sub("", text))
+    return text.replace("```{code-cell} python", "```python").lstrip("\n")
