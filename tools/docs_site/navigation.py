@@ -5,6 +5,7 @@ A page that no section lists is a warning of Sphinx, so an error of the build; o
 
 from __future__ import annotations
 
+import re
 from itertools import groupby
 from pathlib import PurePosixPath
 from typing import Any
@@ -12,6 +13,13 @@ from typing import Any
 from muster.library.documents import Entry, read_index
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
+
+_BY_FILE_NAME = re.compile(r"\[[\w-]+\.md\](?=\([^)]+\.md\) \|$)", re.MULTILINE)
+
+
+def with_titles(index: str) -> str:
+    """An index whose links to pages say their titles where they said the names of their files, which nobody needs in a browser."""
+    return _BY_FILE_NAME.sub("[]", index)
 
 
 def tables_of_contents(index: str) -> str:
@@ -43,7 +51,7 @@ def _line(entry: Entry) -> str:
 
 def _add(app: Sphinx, name: str, source: list[str]) -> None:
     if name == app.config.root_doc:
-        source[0] += tables_of_contents(source[0])
+        source[0] = with_titles(source[0]) + tables_of_contents(source[0])
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
