@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -107,7 +108,7 @@ def _show(entry: Entry, form: str) -> None:
     if form == "json":
         _print_json({**_as_dict(entry), "text": text})
     elif sys.stdout.isatty():
-        click.echo_via_pager(laid_out(text, min(click.get_terminal_size()[0], _WIDEST)), color=True)
+        click.echo_via_pager(laid_out(text, min(shutil.get_terminal_size().columns, _WIDEST)), color=True)
     else:
         click.echo(text, nl=False)
 
