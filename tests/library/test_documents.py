@@ -59,7 +59,9 @@ def test_pages_have_names_of_their_own():
 
 
 def test_readers_see_no_markers():
-    text = "---\nfile_format: mystnb\n---\n\n# A\n\n<!-- docs-check: skip: a\nreason -->\n```{code-cell} python\n1\n```\n"
+    text = (
+        "---\nfile_format: mystnb\n---\n\n# A\n\n<!-- docs-check: skip: a\nreason -->\n```{code-cell} python\n1\n```\n"
+    )
     assert readable_text(text) == "# A\n\n```python\n1\n```\n"
     for entry in documents.documents():
         assert "<!--" not in readable_text(document_text(entry)), entry.path

@@ -1,4 +1,4 @@
-"""The builder of the documentation site: its navigation, reference and notebooks. `make docs` builds the site itself."""
+"""The builder of the site of documents: navigation, reference, notebooks. `make docs` builds the site itself."""
 
 import re
 from pathlib import Path

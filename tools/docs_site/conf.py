@@ -1,4 +1,4 @@
-"""The settings of Sphinx. Its sources are the repository's own pages, so that their links lead where they lead there."""
+"""The settings of Sphinx. Its sources are the repository's own pages, so their links lead where they lead there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))  # where `tools` is
 
 project = "Muster"
 release = version = installed_version("muster-robotics")
-copyright = "Muster contributors"
+project_copyright = "Muster contributors"
 
 extensions = [
     "myst_nb",

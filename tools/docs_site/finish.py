@@ -46,7 +46,9 @@ def loaded_from_elsewhere(site: Path) -> list[str]:
     """What pages and styles of a site would load from other addresses, each with its file."""
     files = [*site.rglob("*.html"), *site.rglob("*.css")]
     return sorted(
-        f"{file.relative_to(site)}: {found}" for file in files for found in _LOADED.findall(file.read_text(encoding="utf-8"))
+        f"{file.relative_to(site)}: {found}"
+        for file in files
+        for found in _LOADED.findall(file.read_text(encoding="utf-8"))
     )
 
 

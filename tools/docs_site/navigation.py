@@ -10,15 +10,16 @@ from itertools import groupby
 from pathlib import PurePosixPath
 from typing import Any
 
-from muster.library.documents import Entry, read_index
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
+
+from muster.library.documents import Entry, read_index
 
 _BY_FILE_NAME = re.compile(r"\[[\w-]+\.md\](?=\([^)]+\.md\) \|$)", re.MULTILINE)
 
 
 def with_titles(index: str) -> str:
-    """An index whose links to pages say their titles where they said the names of their files, which nobody needs in a browser."""
+    """An index whose links say the titles of pages, where they said the names of files, which a browser does not need."""
     return _BY_FILE_NAME.sub("[]", index)
 
 

@@ -1,4 +1,4 @@
-"""Takes the markers of the check of documents out of pages: they are for the check, and a browser would get them, too."""
+"""Takes the markers of the check of documents out of pages, which browsers would get else."""
 
 from __future__ import annotations
 

@@ -61,7 +61,9 @@ def _entries() -> Sequence[Entry]:
 
     entries = documents()
     if not entries:
-        raise MusterError("documents: not in this installation; expected a package that was built with them, or a clone")
+        raise MusterError(
+            "documents: not in this installation; expected a package that was built with them, or a clone"
+        )
     return entries
 
 
@@ -150,7 +152,9 @@ def _open(entry: Entry | None) -> None:
     path = site_page(entry)
     if path is None:
         name = "PAGE" if entry is None else entry.name
-        raise MusterError(f"--open: no site in this installation (`make docs` builds it in a clone); read `muster docs {name}`")
+        raise MusterError(
+            f"--open: no site in this installation (`make docs` builds it in a clone); read `muster docs {name}`"
+        )
     click.echo(path.as_uri())
     webbrowser.open(path.as_uri())
 

@@ -93,7 +93,9 @@ def site_page(entry: Entry | None = None) -> Path | None:
     if root is None:
         return None
     name = "index.html" if entry is None else str(PurePosixPath(entry.path).with_suffix(".html"))
-    return next((site / name for site in (root / "site", root / "build" / "docs" / "site") if (site / name).is_file()), None)
+    return next(
+        (site / name for site in (root / "site", root / "build" / "docs" / "site") if (site / name).is_file()), None
+    )
 
 
 @dataclass(frozen=True)
@@ -117,6 +119,6 @@ def find_in_documents(words: str) -> Iterator[Found]:
 
 
 def readable_text(text: str) -> str:
-    """A page for a reader: without the markers of the check of documents, and without what only a notebook's program reads."""
+    """A page for a reader: without the markers of the check of documents, and what only a program of notebooks reads."""
     text = _FRONT_MATTER.sub("", _REMARK.sub("", text))
     return text.replace("```{code-cell} python", "```python").lstrip("\n")
