@@ -19,7 +19,7 @@ _BY_FILE_NAME = re.compile(r"\[[\w-]+\.md\](?=\([^)]+\.md\) \|$)", re.MULTILINE)
 
 
 def with_titles(index: str) -> str:
-    """An index whose links say the titles of pages, where they said the names of files, which a browser does not need."""
+    """An index whose links say the titles of pages, where they said names of files, which browsers do not need."""
     return _BY_FILE_NAME.sub("[]", index)
 
 

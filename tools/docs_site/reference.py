@@ -63,7 +63,7 @@ def _write(_: Sphinx, name: str, source: list[str]) -> None:
 
 @cache
 def names_in(root: Path) -> Mapping[str, str]:
-    """The names that the page lists, by the places of their definitions and by their last words, as annotations have."""
+    """The names that the page lists, by the places of their definitions and their last words, as in annotations."""
     found: dict[str, str] = {}
     for name in listed_names((root / f"{PAGE}.md").read_text(encoding="utf-8")):
         defined = find(name)

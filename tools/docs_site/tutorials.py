@@ -1,7 +1,7 @@
 """Tutorials are stored as text, without outputs, so that a change can be read; the site offers them as notebooks, too.
 
-While the site is built MyST-NB runs each, and an error in a cell ends the build. What the site offers to download is made of the same
-text by jupytext, without outputs: whoever opens it makes them.
+While the site is built MyST-NB runs each, and an error in a cell ends the build. What the site offers to download is
+made of the same text by jupytext, without outputs: whoever opens it makes them.
 """
 
 from __future__ import annotations

@@ -119,6 +119,6 @@ def find_in_documents(words: str) -> Iterator[Found]:
 
 
 def readable_text(text: str) -> str:
-    """A page for a reader: without the markers of the check of documents, and what only a program of notebooks reads."""
+    """A page for a reader: without the markers of the check of documents, and without what notebooks alone need."""
     text = _FRONT_MATTER.sub("", _REMARK.sub("", text))
     return text.replace("```{code-cell} python", "```python").lstrip("\n")
