@@ -49,7 +49,7 @@ def test_a_page_in_json(muster):
 def test_a_terminal_gets_the_page_laid_out_by_the_pager(muster, monkeypatch):
     shown = []
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    monkeypatch.setattr("click.echo_via_pager", lambda text, color: shown.append(text))
+    monkeypatch.setattr("click.echo_via_pager", shown.append)
     assert muster("docs", "maps") == (0, "", "")
     assert "Maps" in ESCAPE.sub("", shown[0]).splitlines()[0]
 

@@ -44,6 +44,7 @@ nb_merge_streams = True
 os.environ["JUPYTER_PATH"] = str(Path(__file__).with_name("jupyter"))  # a kernel that says nothing but errors
 logging.getLogger("traitlets").setLevel(logging.WARNING)  # nor does what starts it
 
+default_role = "code"  # of words between single backticks in docstrings
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True

@@ -19,7 +19,11 @@ from docutils.nodes import Element, Node
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
+from muster.mission.records import Checked
+
 PAGE = "docs/python-reference"
+_OF_RECORDS = sorted({"cross_check", "tied", *(name for name in vars(Checked) if not name.startswith("_"))})
+"""What classes of data have for those who read and write files, which no caller needs."""
 _NAME = re.compile(r"^- `(muster[\w.]*)`$", re.MULTILINE)
 
 
@@ -52,7 +56,7 @@ def _directive(name: str) -> str:
     elif issubclass(found, BaseException):
         kind, members = "autoexception", ""
     else:
-        kind, members = "autoclass", "\n   :members:"
+        kind, members = "autoclass", f"\n   :members:\n   :exclude-members: {', '.join(_OF_RECORDS)}"
     return f"\n```{{eval-rst}}\n.. {kind}:: {name}{members}\n```\n"
 
 

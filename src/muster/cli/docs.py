@@ -110,7 +110,7 @@ def _show(entry: Entry, form: str) -> None:
     if form == "json":
         _print_json({**_as_dict(entry), "text": text})
     elif sys.stdout.isatty():
-        click.echo_via_pager(laid_out(text, min(shutil.get_terminal_size().columns, _WIDEST)), color=True)
+        click.echo_via_pager(laid_out(text, min(shutil.get_terminal_size().columns, _WIDEST)))
     else:
         click.echo(text, nl=False)
 
