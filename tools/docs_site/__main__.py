@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -14,8 +15,9 @@ PROCESSES = "2"
 
 def build() -> int:
     """Build all of it anew: pages may be as they were while the code that their notebooks run is not."""
+    shutil.rmtree(BUILD, ignore_errors=True)
     settings = ["-c", str(Path(__file__).parent), "-d", str(BUILD / "doctrees")]
-    strict = ["--fail-on-warning", "--keep-going", "--quiet", "--fresh-env", "--write-all", "--jobs", PROCESSES]
+    strict = ["--fail-on-warning", "--keep-going", "--quiet", "--jobs", PROCESSES]
     code = sphinx(["--builder", "html", *strict, *settings, *sys.argv[1:], str(ROOT), str(BUILD / "site")])
     if code == 0:
         print(f"the site: {BUILD / 'site' / 'index.html'}")
