@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-auction campaign-goods campaign-server campaign-api network-figures disturbances disturbances-timed disturbances-traffic help check format stub sanitize study bench clean prerequisites test-packages
+.PHONY: standing demo test docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-auction campaign-goods campaign-server campaign-api network-figures disturbances disturbances-timed disturbances-traffic help check format stub sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -25,6 +25,9 @@ demo: $(VENV)/installed
 
 test: $(VENV)/developed test-packages
 	$(BIN)/python -m pytest -n 3 --dist loadgroup $(PYTEST_FLAGS)
+
+docs: $(VENV)/documented
+	$(BIN)/python -m tools.docs_site
 
 docs-check: $(VENV)/developed
 	$(BIN)/python -m tools.docs_check
@@ -74,6 +77,7 @@ standing: $(VENV)/developed
 help:
 	@echo "make demo       plan, draw and simulate a mission (DEMO_MISSION=$(DEMO_MISSION))"
 	@echo "make test       run all tests"
+	@echo "make docs       build the documentation site in build/docs/site, and run its notebooks; reads no network"
 	@echo "make docs-check  run what the documents show: blocks, pictures, numbers"
 	@echo "make docs-check-long  make what takes minutes, and store it in docs/measured (DOCS='NAME...')"
 	@echo "make figures    draw every figure of every study, and docs/figures.md (STUDIES='rvo ...'); minutes"
@@ -123,7 +127,8 @@ study: $(VENV)/developed
 bench: $(VENV)/developed
 	$(BIN)/muster bench
 
-# Two states of one environment: what the demo needs (the core, pictures, pages); and everything, with the developers' tools.
+# Three states of one environment: what the demo needs (the core, pictures, pages); everything, with the developers' tools; and
+# with what builds the documentation site besides.
 
 $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
 	@echo "Building Muster; this takes less than a minute ..."
@@ -135,6 +140,10 @@ $(VENV)/developed: $(BUILT_FROM) | $(VENV)/made
 	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'  # knows dependency groups
 	$(BIN)/pip install --quiet --group dev --editable '.[all]' -C cmake.define.MUSTER_WERROR=ON
 	@touch $(VENV)/installed $@
+
+$(VENV)/documented: $(VENV)/developed
+	$(BIN)/pip install --quiet --group docs
+	@touch $@
 
 $(VENV)/made: | prerequisites
 	$(PYTHON) -m venv $(VENV)

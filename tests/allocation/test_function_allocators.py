@@ -98,3 +98,12 @@ def test_what_cannot_be_called_as_an_allocator_is_refused(function, message):
     with pytest.raises(muster.ParameterError) as refusal:
         allocator_of(function)
     assert message in str(refusal.value)
+
+
+def test_routes_that_deadlock_are_refused_in_one_line():
+    def waiting_for_each_other(problem):
+        j = next(j for j, before in enumerate(problem.prerequisites) if before)
+        return [[j, *problem.prerequisites[j]], *([] for _ in problem.robots[1:])]
+
+    with pytest.raises(muster.ParameterError, match=r"^routes: tasks wait for each other for ever; expected"):
+        solved(waiting_for_each_other)

@@ -454,10 +454,17 @@ class Problem:
         return core.usage_with_calls(replace(self, ignored=others, fixed=()).core, pickups(self))
 
     def value(self, routes: Sequence[Sequence[int]]) -> tuple[float, float]:
-        """Weight completed and objective of routes."""
+        """Weight completed and objective of routes, which need not be admissible.
+
+        Raises
+        ------
+        ParameterError
+            if they deadlock, so that an objective of time has no value.
+        """
         weight = sum(self.tasks[j].priority for j in sorted({j for route in routes for j in route}))
         objective = core.Inspection(self.core, [list(route) for route in routes]).objective
-        assert objective is not None, "the routes of an allocator do not deadlock"
+        if objective is None:  # routes of a function from elsewhere
+            raise ParameterError("routes: tasks wait for each other for ever; expected orders in which all can begin")
         return weight, objective
 
     @property

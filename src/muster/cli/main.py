@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 VERB_GROUP = "muster.verbs"
 VERBS: Mapping[str, str] = MappingProxyType(
     {
+        "docs": "Read the documents: list them, or show a page.",
         "missions": "List the missions that come with Muster.",
         "init": "Write a mission file to start from.",
         "check": "Find what is wrong with a mission, and the tasks that can never be done.",

@@ -7,6 +7,7 @@ unknown keys, the help of the class and the published JSON Schema, so that these
 from __future__ import annotations
 
 import functools
+import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields
 from functools import partial
@@ -76,8 +77,14 @@ def record(cls: type[C]) -> type[C]:
     """Make a class of fields made by `spec` a frozen, keyword-only dataclass whose help tells of each field."""
     made: Any = dataclass(frozen=True, kw_only=True)(cls)
     made.__init__ = _naming_unknown_fields(made.__init__, made)
-    made.__doc__ = f"{cls.__doc__}\n\n{fields_text(specified(made))}"
+    made.__doc__ = _with_parameters(inspect.cleandoc(cls.__doc__ or ""), fields_text(specified(made)))
     return cls
+
+
+def _with_parameters(words: str, parameters: str) -> str:
+    """A docstring with the section of its parameters, which comes before that of its errors."""
+    summary, errors, raised = words.partition("\n\nRaises\n")
+    return f"{summary}\n\n{parameters.strip()}{errors}{raised}"
 
 
 def _naming_unknown_fields(init: Callable[..., None], cls: type[Any]) -> Callable[..., None]:
