@@ -29,9 +29,11 @@ VERBS: Mapping[str, str] = MappingProxyType(
     {
         "missions": "List the missions that come with Muster.",
         "init": "Write a mission file to start from.",
+        "generate": "Write random missions of a family.",
         "check": "Find what is wrong with a mission, and the tasks that can never be done.",
         "solve": "Plan a mission.",
         "auction": "Let the robots of a team agree who does what, each in a process of its own.",
+        "compare": "Compare allocators on many missions, by statistics.",
         "verify": "Judge a plan from scratch.",
         "explain": "Explain why a task is done by this robot, not by another, or left out.",
         "path": "Find a path on the map of a mission, from one point to another.",
