@@ -10,33 +10,28 @@ STANDING_COLUMNS = (
     "failed",
     "n/a",
     "as much done",
-    "mean gap [%]",
-    "95 % interval",
-    "median gap [%]",
-    "wins",
-    "ties",
-    "losses",
+    "mean gap [%] (95 %)",
+    "median",
+    "win tie loss",
     "time [s]",
 )
-PAIR_COLUMNS = ("allocator", "other", "wins", "ties", "losses", "difference [%]", "p", "p (Holm)", "better")
+PAIR_COLUMNS = ("allocator", "other", "win tie loss", "difference [%]", "p", "p (Holm)", "better")
 SIGNIFICANT = 0.05
 
 
 def standing_cells(one: Standing) -> tuple[str, ...]:
     """A row of the table of allocators."""
-    interval = "-" if one.gap_low is None or one.gap_high is None else f"{one.gap_low:.2f} to {one.gap_high:.2f}"
+    has_interval = one.gap_low is not None and one.gap_high is not None
+    interval = f" ({one.gap_low:.2f} to {one.gap_high:.2f})" if has_interval else ""
     return (
         one.allocator,
         str(one.runs),
         str(one.failed),
         str(one.not_applicable),
         "-" if one.as_much is None else f"{100 * one.as_much:.0f} %",
-        _figure(one.gap_mean),
-        interval,
+        _figure(one.gap_mean) + interval,
         _figure(one.gap_median),
-        str(one.wins),
-        str(one.ties),
-        str(one.losses),
+        _record(one),
         "-" if one.time_s is None else f"{one.time_s:.3f}",
     )
 
@@ -46,14 +41,16 @@ def pair_cells(one: Pair) -> tuple[str, ...]:
     return (
         one.allocator,
         one.other,
-        str(one.wins),
-        str(one.ties),
-        str(one.losses),
+        _record(one),
         "-" if one.difference is None else f"{one.difference:+.2f}",
         p_text(one.p_value),
         p_text(one.p_holm),
         better(one),
     )
+
+
+def _record(one: Standing | Pair) -> str:
+    return f"{one.wins} {one.ties} {one.losses}"
 
 
 def better(one: Pair) -> str:

@@ -61,8 +61,9 @@ class Comparison:
         """How much was compared, in words."""
         missions, seeds = len(self.missions), len({run.seed for run in self.runs})
         made, whole = len(self.runs), self.expected or len(self.runs)
-        runs = f"{made} runs" if made == whole else f"{made} of {whole} runs"
-        return f"{len(self.allocators)} allocators, {missions} missions, {seeds} seeds, {runs}"
+        runs = _counted(made, "run") if made == whole else f"{made} of {_counted(whole, 'run')}"
+        counted = ((len(self.allocators), "allocator"), (missions, "mission"), (seeds, "seed"))
+        return ", ".join([*(_counted(count, word) for count, word in counted), runs])
 
     @property
     def is_whole(self) -> bool:
@@ -165,3 +166,7 @@ class Comparison:
             command=command,
         )
         write_text(Path(path), page(contents))
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"

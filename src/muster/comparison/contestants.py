@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
@@ -120,8 +120,3 @@ def _imported(path: str) -> Any:
         reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
         raise ParameterError(f"allocator {path}: {reason}; expected MODULE:NAME, from here or installed") from None
     return found
-
-
-def names(contestants: Iterable[Contestant]) -> Iterator[str]:
-    """What results call them."""
-    return (contestant.name for contestant in contestants)

@@ -115,8 +115,8 @@ def _missions(runs: Sequence[Run], allocators: Sequence[str]) -> str:
     more = len(grouped) - len(rows)
     said = (
         "The objective of the best run, and of the run in the middle of each allocator's seeds; in brackets the weight "
+        "completed, where that is less than all of it, or than that of the best."
     )
-    said += "completed, where that is less than all."
     table = _table(("mission", "best", *allocators), rows)
     return f"<p>{said}</p>{table}" + (f"<p>and {more} more</p>" if more > 0 else "")
 

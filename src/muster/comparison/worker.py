@@ -20,6 +20,7 @@ def main(link_fd: int, lifeline_fd: int) -> None:
         do = pickle.loads(link.recv_bytes())  # noqa: S301  (of the process that began this one)
     except Exception as error:
         do = _raising(error)
+    link.send_bytes(b"ready")
     while True:
         try:
             job = link.recv()

@@ -8,6 +8,7 @@ cloudpickle.
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import subprocess
 import sys
@@ -70,40 +71,43 @@ def in_processes(
     """
     payload, left = packed(do), list(reversed(jobs))
     with contextlib.ExitStack() as stack:
-        idle = [stack.enter_context(_Worker[Job](payload)) for _ in range(min(workers, len(jobs)))]
+        idle = [stack.enter_context(_Worker[Job](payload, give_up_s)) for _ in range(min(workers, len(jobs)))]
         busy: dict[Connection[Any, Any], _Worker[Job]] = {}
         while left or busy:
             while left and idle:
                 worker = idle.pop()
-                busy[worker.begin(left.pop(), give_up_s)] = worker
-            for worker in _settled(busy):
-                job, found = worker.end(give_up_s)
+                busy[worker.begin(left.pop())] = worker
+            for link in _settled(busy):
+                if busy[link].has_begun():
+                    continue
+                worker = busy.pop(link)
+                job, found = worker.end()
                 if isinstance(found, Raised):
                     raise found.error
                 yield job, found
                 idle.append(worker)
 
 
-def _settled(busy: dict[Connection[Any, Any], _Worker[Job]]) -> list[_Worker[Job]]:
-    """The workers that have an answer, are lost or over their time, taken out of `busy`; one at least."""
+def _settled(busy: dict[Connection[Any, Any], _Worker[Job]]) -> list[Connection[Any, Any]]:
+    """The links of workers that say something, are lost or over their time; one at least."""
     while True:
-        until = min((worker.until for worker in busy.values()), default=float("inf"))
-        left_s = None if until == float("inf") else max(0.0, until - time.monotonic())
-        ready = {id(one) for one in wait(list(busy), left_s)}
+        until = min(worker.until for worker in busy.values())
+        ready = wait(list(busy), None if until == math.inf else max(0.0, until - time.monotonic()))
         now = time.monotonic()
-        done = [link for link, worker in busy.items() if id(link) in ready or worker.until <= now]
-        if done:
-            return [busy.pop(link) for link in done]
+        settled = [link for link, worker in busy.items() if link in ready or worker.until <= now]
+        if settled:
+            return settled
 
 
 class _Worker(Generic[Job]):
     """A process for one job after the other; a new one after it is lost."""
 
-    def __init__(self, payload: bytes) -> None:
-        self._payload = payload
+    def __init__(self, payload: bytes, give_up_s: float | None) -> None:
+        self._payload, self._give_up_s = payload, math.inf if give_up_s is None else give_up_s
         self._process: subprocess.Popen[bytes] | None = None
         self._job: Job | None = None
-        self.until = float("inf")
+        self._ready = False
+        self.until = math.inf
 
     def __enter__(self) -> _Worker[Job]:
         self._start()
@@ -112,23 +116,34 @@ class _Worker(Generic[Job]):
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self._stop()
 
-    def begin(self, job: Job, give_up_s: float | None) -> Connection[Any, Any]:
-        """Give it a job; returns what is ready when it is done."""
+    def begin(self, job: Job) -> Connection[Any, Any]:
+        """Give it a job; returns the link on which it answers."""
         if self._process is None:
             self._start()
         self._job = job
-        self.until = float("inf") if give_up_s is None else time.monotonic() + give_up_s
+        self.until = time.monotonic() + self._give_up_s if self._ready else math.inf
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):  # then its end says so
             self._link.send(job)
         return self._link
 
-    def end(self, give_up_s: float | None) -> tuple[Job, Any]:
+    def has_begun(self) -> bool:
+        """Whether all that it says is that it has started, and begins with its job now."""
+        if self._ready or not self._link.poll():
+            return False
+        try:
+            self._link.recv_bytes()
+        except (EOFError, OSError):
+            return False
+        self._ready, self.until = True, time.monotonic() + self._give_up_s
+        return True
+
+    def end(self) -> tuple[Job, Any]:
         """The job and what came of it."""
-        job, late = self._job, time.monotonic() >= self.until
+        job = self._job
         assert job is not None
-        if not self._link.poll() and late:
+        if not self._link.poll() and time.monotonic() >= self.until:
             self._stop()
-            return job, Lost(f"given up after {give_up_s:g} s")
+            return job, Lost(f"given up after {self._give_up_s:g} s")
         try:
             return job, self._link.recv()
         except (EOFError, OSError):
@@ -165,7 +180,7 @@ class _Worker(Generic[Job]):
             self._process.wait(grace_s)
         self._process.kill()
         code = self._process.wait()
-        self._process = None
+        self._process, self._ready = None, False
         self._link.close()
         os.close(self._lifeline)
         return f"signal {-code}" if code < 0 else f"exit code {code}"

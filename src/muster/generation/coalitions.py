@@ -16,7 +16,7 @@ from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Flag, Whole
 
 Integers = npt.NDArray[np.int64]
-_TRIES = 10_000
+_TRIES = 1_000
 
 
 @record
@@ -38,7 +38,7 @@ def coalitions_mission(given: Coalitions, seed: int) -> Mission:
     Raises
     ------
     ParameterError
-        where robots that can do all tasks are not drawn in 10,000 tries.
+        where robots that can do all tasks are not drawn in 1,000 tries.
     """
     draw = np.random.default_rng(seed)
     skills, needs = _able(given, draw)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from muster.generation.generator import require_seed
 from muster.generation.registry import generator_named
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -36,4 +37,5 @@ def generate(family: str, count: int = 1, seed: int = 0, **parameters: Any) -> l
     generator = generator_named(family)
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_MISSIONS:
         raise ParameterError(f"count: {shown(count)}; expected a whole number from 1 to {MOST_MISSIONS}")
+    require_seed(seed)
     return [generator.mission(seed + k, **parameters) for k in range(count)]

@@ -73,8 +73,18 @@ class Generator:
         ParameterError
             as `with_values` does; for a seed that is no whole number from 0 to 2**64 - 1.
         """
-        if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed <= LARGEST_SEED:
-            raise ParameterError(f"seed: {shown(seed)}; expected a whole number from 0 to 2**64 - 1")
+        require_seed(seed)
         made = self.make(self.with_values(values), seed)
         name = f"{self.name}-{len(made.tasks)}T-{len(made.robots)}R-{seed}"
         return replace(made, name=name, source=IN_PYTHON)
+
+
+def require_seed(seed: object) -> None:
+    """Refuse what is no seed.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed <= LARGEST_SEED:
+        raise ParameterError(f"seed: {shown(seed)}; expected a whole number from 0 to 2**64 - 1")
