@@ -13,7 +13,11 @@ TYPE_CHECKING = False  # `typing` takes longer to import than all that stands he
 if TYPE_CHECKING:
     from typing import Any
 
+    from muster.comparison.compare import compare
+    from muster.comparison.comparison import Comparison
     from muster.execution import Report
+    from muster.generation.generate import generate
+    from muster.generation.generator import Generator
     from muster.library import MissionSummary, missions
     from muster.mission.errors import (
         Finding,
@@ -64,9 +68,11 @@ if TYPE_CHECKING:
 __all__ = [
     "Action",
     "Camera",
+    "Comparison",
     "Event",
     "Finding",
     "Found",
+    "Generator",
     "InputError",
     "Lag",
     "Landmark",
@@ -99,9 +105,11 @@ __all__ = [
     "Zone",
     "carry_out",
     "check",
+    "compare",
     "explain",
     "export",
     "gantt",
+    "generate",
     "load",
     "missions",
     "plot",
@@ -114,9 +122,11 @@ __all__ = [
 _LOADED_AT_FIRST_USE = {
     "Action": "muster.mission.model",
     "Camera": "muster.mission.model",
+    "Comparison": "muster.comparison.comparison",
     "Event": "muster.mission.model",
     "Finding": "muster.mission.errors",
     "Found": "muster.mission.model",
+    "Generator": "muster.generation.generator",
     "InputError": "muster.mission.errors",
     "Lag": "muster.mission.model",
     "Landmark": "muster.mission.model",
@@ -149,9 +159,11 @@ _LOADED_AT_FIRST_USE = {
     "Zone": "muster.mission.model",
     "carry_out": "muster.running.carry_out",
     "check": "muster.planning.questions",
+    "compare": "muster.comparison.compare",
     "explain": "muster.planning.questions",
     "export": "muster.planning.exporting",
     "gantt": "muster.planning.pictures",
+    "generate": "muster.generation.generate",
     "load": "muster.planning.loading",
     "missions": "muster.library",
     "plot": "muster.planning.pictures",

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
-import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing.synchronize import Event
 
-from muster.mission.interrupts import ctrl_c_held_back
+from muster.comparison.workers import in_processes, require_done
 from muster_studies.runs import Case, Outcome, Sample, perform
 
 Job = tuple[Case, int]
@@ -42,40 +36,9 @@ def _in_this_process(jobs: Sequence[Job]) -> Iterator[Outcome]:
 
 
 def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[Outcome]:
-    # Not forked: the caller may have threads (a progress bar has one), and a fork keeps what locks they hold.
-    context = multiprocessing.get_context("spawn")
-    leave = context.Event()
-    pool = ProcessPoolExecutor(
-        min(workers, len(jobs)), mp_context=context, initializer=_begin_process, initargs=(leave,)
-    )
-    try:
-        with ctrl_c_held_back():
-            futures = [pool.submit(_perform, case, seed) for case, seed in jobs]
-        for future in as_completed(futures):
-            yield future.result()
-    finally:
-        leave.set()
-        pool.shutdown(cancel_futures=True)
+    for job, found in in_processes(_perform, jobs, workers):
+        yield require_done(found, job)
 
 
-_leave: Event | None = None
-
-
-def _begin_process(leave: Event) -> None:
-    """Prepare a process: it ignores Ctrl-C, ends on its parent's event, and ends with its parent."""
-    global _leave  # an initializer has no other way to hand something to the jobs
-    _leave = leave
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
-
-
-def _perform(case: Case, seed: int) -> Outcome:
-    assert _leave is not None
-    return perform(case, seed, _leave.is_set)
+def _perform(job: Job) -> Outcome:
+    return perform(*job)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
 from statistics import fmean, stdev
@@ -12,19 +11,14 @@ from typing import Any
 from muster.allocation.allocator import make_parameters
 from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
-from muster.allocation.stop import Progress, Stop
+from muster.allocation.stop import Stop
+from muster.comparison.run import attempt
+from muster.mission.clock import ProcessorClock
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.planning.loading import load
 from muster.verification import Verdict, verify
-
-
-class ProcessorClock:
-    """The processor time of this process: what else the machine does takes nothing from a limit."""
-
-    def now(self) -> float:
-        return time.process_time()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +119,10 @@ def accepted(
     MusterError
         if the judge rejects the plan.
     """
-    verdict = verify(mission, plan, ignored, objective)
+    return _valid(verify(mission, plan, ignored, objective), whose)
+
+
+def _valid(verdict: Verdict, whose: str) -> Verdict:
     if not verdict.valid:
         raise MusterError(f"{whose}: the judge rejects the plan: {rejection(verdict)}")
     return verdict
@@ -138,8 +135,8 @@ def rejection(verdict: Verdict) -> str:
     return f"{found.kind}: {place + ', ' if place else ''}{found.detail}"
 
 
-def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -> Outcome:
-    """Run a case; it ends early when `unwanted`, which is called now and then, returns true.
+def perform(case: Case, seed: int) -> Outcome:
+    """Run a case.
 
     Raises
     ------
@@ -148,21 +145,8 @@ def perform(case: Case, seed: int, unwanted: Callable[[], bool] | None = None) -
     """
     mission, allocator = mission_named(case.mission), allocator_named(case.allocator)
     problem = Problem.compile(mission, case.objective, case.ignored).ready()
-
-    def end_if_unwanted(_: Progress) -> None:
-        if unwanted is not None and unwanted():
-            stop.interrupt()
-
     clock = ProcessorClock() if case.processor_time else None
-    stop = Stop(iterations=case.iterations, time_limit=case.time_limit, clock=clock, on_progress=end_if_unwanted)
-    begin = time.process_time()
-    plan = allocator.solve(problem, stop, seed=seed, params=make_parameters(allocator, dict(case.parameters)))
-    cpu_s = time.process_time() - begin
-    verdict = accepted(
-        mission,
-        plan,
-        f"internal error: {case.allocator} for {case.mission} with seed {seed}",
-        case.ignored,
-        case.objective,
-    )
-    return Outcome(case, seed, verdict, stop.iterations_done, cpu_s, stop.history[-1][0], tuple(stop.history))
+    stop = Stop(iterations=case.iterations, time_limit=case.time_limit, clock=clock)
+    made = attempt(problem, allocator, stop, seed, make_parameters(allocator, dict(case.parameters)))
+    verdict = _valid(made.verdict, f"internal error: {case.allocator} for {case.mission} with seed {seed}")
+    return Outcome(case, seed, verdict, stop.iterations_done, made.cpu_s, stop.history[-1][0], tuple(stop.history))

@@ -13,10 +13,10 @@ from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
 
+from muster.generation.uniform import large_mission
 from muster.mission.errors import MusterError
 from muster_studies.peers.machine import machine
 from muster_studies.tables import Cell, Report, Table
-from muster_studies.uniform import large_mission
 
 ROBOTS = {100: 5, 1_000: 20, 10_000: 200, 100_000: 2_000}
 """By the number of tasks of a mission."""

@@ -16,10 +16,10 @@ from muster.allocation.fixed import with_fixed_routes
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import run
+from muster.generation.uniform import large_mission
 from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
 from muster.mission.plan import Plan, Route
-from muster_studies.uniform import large_mission
 
 
 def plan_of(mission, routes):

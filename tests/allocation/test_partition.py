@@ -13,7 +13,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Job, Limits, Threads
-from muster_studies.uniform import large_mission
+from muster.generation.uniform import large_mission
 
 
 @given(seed=st.integers(0, 10**6), parts=st.integers(2, 5))

@@ -11,9 +11,9 @@ from tests.random_missions import random_mission
 import muster
 from muster import core
 from muster.allocation.problem import Problem
+from muster.generation.uniform import large_mission
 from muster.library import mission_names, mission_path
 from muster.mission.model import Mission, Robot, Rules, Task, TravelTable
-from muster_studies.uniform import large_mission
 
 
 def sent(problem):

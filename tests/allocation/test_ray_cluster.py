@@ -21,10 +21,10 @@ from muster.allocation.search import Parameters, anneal
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Job, Limits, Threads
 from muster.cli.main import run
+from muster.generation.uniform import large_mission
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.plan_reader import read_plan
 from muster.mission.yaml_writer import yaml_text
-from muster_studies.uniform import large_mission
 
 ray = pytest.importorskip("ray", reason="needs the extra ray")
 from ray.cluster_utils import Cluster  # noqa: E402

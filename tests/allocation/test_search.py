@@ -14,7 +14,7 @@ from muster import core
 from muster.allocation.problem import Problem
 from muster.allocation.search import Parameters, Variations, allocate
 from muster.allocation.stop import Stop
-from muster_studies.uniform import large_mission
+from muster.generation.uniform import large_mission
 
 
 @settings(max_examples=400)

@@ -14,9 +14,9 @@ from muster.execution.executor import Executor
 from muster.execution.reallocation import Reallocation, reasons_in_one_line
 from muster.execution.remaining_problem import remaining_problem
 from muster.execution.travel import travel_of, way_of
+from muster.generation.uniform import large_mission
 from muster.mission.model import Action, Event, Map, Zone
 from muster.mission.plan import Reason
-from muster_studies.uniform import large_mission
 
 
 class Kept(Reallocation):

@@ -15,9 +15,9 @@ from subprocess import DEVNULL, PIPE
 
 from tests.negotiation.real_network import RealNetwork, why_not
 
+from muster.generation.uniform import uniform_mission
 from muster.mission.yaml_writer import yaml_text
 from muster.negotiation.keys import new_key, write_key
-from muster_studies.uniform import uniform_mission
 
 LOSSES = (0.0, 0.1, 0.3, 0.5)
 DELAY_S, CUT_S, CUT_LOSS = 0.05, 15.0, 0.3

@@ -13,12 +13,12 @@ from muster import verify
 from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
+from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.participation import plan_of_view
 from muster.negotiation.process_reports import TRANSPORTS, TeamSetup
 from muster.negotiation.team import Team, timeouts_for
-from muster_studies.uniform import uniform_mission
 
 GUARD_S = 60.0
 

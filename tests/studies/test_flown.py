@@ -2,8 +2,8 @@
 
 import pytest
 
+from muster.generation.moving import SETTINGS, moving_mission
 from muster_studies.flown.study import Job, times_of
-from muster_studies.instances.moving import SETTINGS, moving_mission
 
 ACTIONS, WALLS, TEAMS = "6T-2R-actions", "yard", "collapsed-building"
 

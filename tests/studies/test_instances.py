@@ -3,9 +3,11 @@
 import pytest
 
 import muster
-from muster_studies.instances.coalitions import ONE_SKILL, SEVERAL_SKILLS, SKILL_SETS, counted_teams
+from muster.generation.teams import counted_teams
+from muster.generation.windows import windows_mission
+from muster_studies.instances.coalitions import ONE_SKILL, SEVERAL_SKILLS, SKILL_SETS
+from muster_studies.instances.lattice import lattice_mission
 from muster_studies.instances.solomon import REFERENCES, solomon_instance
-from muster_studies.instances.waiting import lattice_mission, windows_mission
 
 
 @pytest.mark.parametrize(("name", "robots"), REFERENCES)
@@ -51,7 +53,7 @@ def test_the_robots_together_can_do_every_task(skill_set, seed):
     mission = skill_set.mission(seed)
     assert muster.check(mission).impossible == ()
     species = {tuple(sorted(robot.abilities)) for robot in mission.robots}
-    assert len(species) == skill_set.species
+    assert len(species) == skill_set.parameters.species
 
 
 def test_a_lattice_has_a_task_at_each_of_its_places():

@@ -12,6 +12,7 @@ import muster
 from muster import Mission, Robot, Rules, Task
 from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
+from muster.generation.uniform import large_mission
 from muster.mission.model import OBJECTIVES
 from muster_studies.effort import Effort
 from muster_studies.peers import peers_study
@@ -22,7 +23,6 @@ from muster_studies.peers.study import Limits
 from muster_studies.peers.sweep import RUNS, Routed, swept
 from muster_studies.repetition import Repetition
 from muster_studies.tables import Report, Table
-from muster_studies.uniform import large_mission
 
 SECONDS = 0.1
 EXACT = "CP-SAT"

@@ -10,12 +10,12 @@ from muster import Mission, Robot, Rules, Task
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
+from muster.generation.customers import customers_mission
+from muster.generation.transports import transports_mission
 from muster_studies.effort import Effort
 from muster_studies.instances.charging import CHARGING_REFERENCES, charging_mission
-from muster_studies.instances.families import customers_mission
 from muster_studies.instances.goods import GOODS_REFERENCES, goods_instance
 from muster_studies.instances.solomon import REFERENCES, solomon_instance
-from muster_studies.instances.transports import transports_mission
 from muster_studies.peers import peers_goods_study
 from muster_studies.peers.contest import OWN, PEERS, Result, mission_of
 from muster_studies.peers.goods_tables import CHARGING, CUSTOMERS, LOADS, PEERS_WITH_GOODS, TRANSPORTS

@@ -8,6 +8,7 @@ import pytest
 import muster
 from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
+from muster.generation.clustered import Clustered, clustered_mission
 from muster_studies.effort import Effort
 from muster_studies.instances.orienteering import (
     BEST_SCORES,
@@ -18,7 +19,6 @@ from muster_studies.instances.orienteering import (
 from muster_studies.instances.routing import (
     LONGEST_ROUTES,
     SHORTER_ROUTES,
-    clustered_mission,
     routing_instance,
     shorter_plan,
     uniform_tour,
@@ -113,9 +113,10 @@ def test_instances_and_numbers_of_robots_that_are_none_are_told():
 
 
 def test_generated_missions_are_those_of_their_seed():
-    mission = clustered_mission(8, 120, 0)
+    size = Clustered(robots=8, tasks=120)
+    mission = clustered_mission(size, 0)
     assert (len(mission.robots), len(mission.tasks)) == (8, 120)
-    assert mission == clustered_mission(8, 120, 0) != clustered_mission(8, 120, 1)
+    assert mission == clustered_mission(size, 0) != clustered_mission(size, 1)
     nearest = [min(math.dist(a.position, b.position) for b in mission.tasks if b != a) for a in mission.tasks]
     assert sum(nearest) / len(nearest) < 30  # of as many places all over the square: 46
     tour = uniform_tour(500, 0)

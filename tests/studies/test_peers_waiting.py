@@ -8,8 +8,8 @@ import muster
 from muster import Mission, Robot, Rules, Task
 from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
+from muster.generation.precedence import SHAPES, precedence_mission
 from muster_studies.effort import Effort
-from muster_studies.instances.precedence import SHAPES, precedence_mission
 from muster_studies.peers import peers_waiting_study
 from muster_studies.peers.contest import OWN, WAITING_PEER, Match, Result, Run, mission_of, perform
 from muster_studies.peers.instance import Instance

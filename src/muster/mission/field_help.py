@@ -29,7 +29,7 @@ def fields_text(fields: Sequence[Field[Any]]) -> str:
 def _lines(f: Field[Any]) -> tuple[str, str]:
     needed = f.default is MISSING and f.default_factory is MISSING
     default = "required" if needed else f"default {_shown(f.default)}"
-    head = f"{f.name} : {', '.join(filter(None, (str(f.type), _unit(f), default)))}"
+    head = f"{f.name} : {', '.join(filter(None, (str(f.type), unit_of(f), default)))}"
     return head, f"    {f.metadata['doc']}{_choices(f.metadata['kind'])}"
 
 
@@ -39,7 +39,7 @@ def _choices(kind: object) -> str:
     return f" ({one.expected})" if isinstance(one, Choice) and isinstance(one.words, tuple) else ""
 
 
-def _unit(f: Field[Any]) -> str:
+def unit_of(f: Field[Any]) -> str:
     """As declared; else by the end of the name, as in `speed_mps`; positions are in metres."""
     if f.metadata.get("unit"):
         return str(f.metadata["unit"])

@@ -52,3 +52,24 @@ def save_figure(picture: Axes | Figure, path: str | Path) -> None:
     except OSError as error:
         reason = error.strerror or str(error)
         raise InputError([Finding(str(path), None, "", reason, "a path that can be written")]) from None
+
+
+def svg_text(picture: Axes | Figure) -> str:
+    """A picture as an SVG element that stands in a page: as wide as its place, its text as paths.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    require_matplotlib()
+    from io import StringIO
+
+    from matplotlib import rc_context
+
+    figure: Any = picture.figure.canvas.figure
+    text = StringIO()
+    with rc_context({"svg.hashsalt": "muster"}):
+        figure.savefig(text, format="svg", bbox_inches="tight", pad_inches=0.05, metadata={"Date": None})
+    whole = text.getvalue()
+    return whole[whole.index("<svg") :]

@@ -13,10 +13,10 @@ from muster.allocation.genetic import Parameters, evolve, first_population
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
+from muster.generation.uniform import large_mission
 from muster.planning.judging import verify
 from muster.planning.loading import load
 from muster_studies.benches.measurement import Measurement
-from muster_studies.uniform import large_mission
 
 
 def greedy_small(runs: int) -> list[Measurement]:

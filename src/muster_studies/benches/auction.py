@@ -13,12 +13,12 @@ from random import Random
 
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
+from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.process_reports import TRANSPORTS, TeamSetup
 from muster.negotiation.team import Team, timeouts_for
 from muster_studies.benches.measurement import Measurement
-from muster_studies.uniform import uniform_mission
 
 ROBOTS, TASKS, GUARD_S = 20, 50, 120.0
 VICTIMS, KILLED_IN_ROUND = ("r_0", "r_7", "r_13"), 10

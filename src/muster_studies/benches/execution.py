@@ -14,13 +14,13 @@ from muster.allocation.greedy import GREEDY
 from muster.allocation.stop import Stop
 from muster.execution import Executor, Reallocation, Revision, travel_of
 from muster.execution.remaining_problem import RemainingMission, remaining_problem
+from muster.generation.uniform import uniform_mission
 from muster.mission.model import Event, Mission, Rules
 from muster.mission.plan import Plan, Route
 from muster.planning.judging import verify
 from muster.planning.solve import solve
 from muster.simulation import KinematicWorld
 from muster_studies.benches.measurement import Measurement
-from muster_studies.uniform import uniform_mission
 
 ROBOTS, TASKS, SIDE_M, FAILS_S = 20, 100, 200.0, 60.0
 

@@ -7,9 +7,11 @@ import time
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
+from muster.generation.ordered import ordered_mission
+from muster.generation.windows import windows_mission
+from muster.mission.clock import ProcessorClock
 from muster_studies.benches.measurement import Measurement
-from muster_studies.instances.waiting import lattice_mission, ordered_mission, windows_mission
-from muster_studies.peers.processor_time import ProcessorClock
+from muster_studies.instances.lattice import lattice_mission
 from muster_studies.runs import accepted
 
 SECONDS, LATTICE_S = 1.0, 5.0

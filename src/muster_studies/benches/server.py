@@ -20,10 +20,10 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MissingExtraError, MusterError
 from muster.mission.yaml_writer import yaml_text
 from muster_studies.benches.measurement import Measurement
-from muster_studies.uniform import uniform_mission
 
 ROBOTS, TASKS, SIDE_M = 50, 500, 400.0
 WATCHERS, WINDOW_S = 50, 15.0

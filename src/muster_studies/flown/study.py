@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from muster.generation.moving import SETTINGS, Setting, moving_mission
 from muster.library import missions
 from muster.mission.model import Mission
 from muster.planning.judging import verify
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster_studies.effort import Effort
-from muster_studies.instances.moving import SETTINGS, Setting, moving_mission
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.runs import mission_named
 from muster_studies.tables import Cell, Table

@@ -7,22 +7,19 @@ objective is max for the instances of He and Hao [he2022] [he2023], total for th
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from importlib.resources import files
 from types import MappingProxyType
 
 import numpy as np
 
+from muster.generation.clustered import closed_routes, pairs
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 
 _FOLDER = "routing_instances"
 _SIDE_M = 1000.0
-_CLUSTERS = 7
-_SPREAD_M = 45.0
-
-Places = Sequence[tuple[float, float]]
 
 LONGEST_ROUTES: Mapping[tuple[str, int], float] = MappingProxyType(
     {
@@ -76,7 +73,7 @@ def routing_instance(name: str, robots: int, objective: str = "max") -> Mission:
         depots *= robots
     if not 1 <= len(depots) == robots:
         raise ParameterError(f"robots: {robots}; expected {len(depots) or 'one at least'}, the depots of {name}")
-    return routing_mission(depots, tasks, objective, f"{name}-{robots}")
+    return closed_routes(depots, tasks, objective, f"{name}-{robots}")
 
 
 def shorter_plan(name: str, robots: int) -> Plan:
@@ -89,35 +86,11 @@ def shorter_plan(name: str, robots: int) -> Plan:
     return Plan(routes=tuple(Route(f"r_{k}", tuple(line.split())) for k, line in enumerate(text.splitlines())))
 
 
-def clustered_mission(robots: int, tasks: int, seed: int) -> Mission:
-    """Depots all over a square of 1000 m, and tasks in seven clusters of 45 m (one sigma): cc64 is of this kind."""
-    draw = np.random.default_rng(seed)
-    centres = draw.uniform(0, _SIDE_M, (_CLUSTERS, 2))
-    places = centres[draw.integers(0, _CLUSTERS, tasks)] + draw.normal(0, _SPREAD_M, (tasks, 2))
-    depots = draw.uniform(0, _SIDE_M, (robots, 2))
-    return routing_mission(_pairs(depots), _pairs(places), "total", f"clustered-{robots}-{tasks}-{seed}")
-
-
 def uniform_tour(places: int, seed: int) -> Mission:
     """One robot at the first of so many random places of a square of 1000 m; the others are its tasks."""
-    depot, *tasks = _pairs(np.random.default_rng(seed).uniform(0, _SIDE_M, (places, 2)))
-    return routing_mission([depot], tasks, "total", f"tour-{places}-{seed}")
-
-
-def routing_mission(depots: Places, tasks: Places, objective: str, name: str) -> Mission:
-    """A robot r_0, r_1, ... at each depot, to which it returns; tasks 1, 2, ..."""
-    return Mission(
-        name=name,
-        rules=Rules(objective=objective, return_to_start=True),
-        robots=tuple(Robot(id=f"r_{k}", position=depot) for k, depot in enumerate(depots)),
-        tasks=tuple(Task(id=str(j), position=place) for j, place in enumerate(tasks, start=1)),
-    )
+    depot, *tasks = pairs(np.random.default_rng(seed).uniform(0, _SIDE_M, (places, 2)))
+    return closed_routes([depot], tasks, "total", f"tour-{places}-{seed}")
 
 
 def _places(text: str) -> list[tuple[float, float]]:
     return [(float(x), float(y)) for x, y in map(str.split, text.strip().splitlines())]
-
-
-def _pairs(places: np.typing.NDArray[np.float64]) -> list[tuple[float, float]]:
-    """Places to the millimetre."""
-    return [(float(x), float(y)) for x, y in places.round(3)]

@@ -10,6 +10,7 @@ from random import Random
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
+from muster.generation.uniform import uniform_mission
 from muster.mission.model import Mission
 from muster.negotiation.codec import Codec
 from muster.negotiation.encryption import OVERHEAD
@@ -19,7 +20,6 @@ from muster.negotiation.robot_view import view_of
 from muster.verification import verify
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table
-from muster_studies.uniform import uniform_mission
 
 TASKS_A_ROBOT = 2.5
 DELAY_S = 0.05

@@ -7,10 +7,10 @@ from random import Random
 
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
+from muster.generation.uniform import uniform_mission
 from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import negotiator_of
-from muster_studies.uniform import uniform_mission
 
 DELAY_S = 0.05
 END_S = 600.0

@@ -11,29 +11,31 @@ from statistics import fmean
 from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Stop
+from muster.generation.clustered import Clustered, clustered_mission
+from muster.generation.customers import customers_mission
+from muster.generation.precedence import precedence_mission
+from muster.generation.teams import counted_teams
+from muster.generation.transports import transports_mission
+from muster.generation.uniform import large_mission
+from muster.generation.windows import windows_mission
+from muster.mission.clock import ProcessorClock
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.verification import verify
 from muster_studies.instances.charging import charging_mission
-from muster_studies.instances.coalitions import SKILL_SETS, counted_teams
-from muster_studies.instances.families import customers_mission
+from muster_studies.instances.coalitions import SKILL_SETS
 from muster_studies.instances.goods import goods_instance
 from muster_studies.instances.orienteering import orienteering_instance
-from muster_studies.instances.precedence import precedence_mission
-from muster_studies.instances.routing import clustered_mission, routing_instance, uniform_tour
+from muster_studies.instances.routing import routing_instance, uniform_tour
 from muster_studies.instances.solomon import solomon_instance
-from muster_studies.instances.transports import transports_mission
-from muster_studies.instances.waiting import windows_mission
 from muster_studies.peers.cp_sat import CpSat
 from muster_studies.peers.cp_sat_schedule import CpSatSchedule
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, Peer
-from muster_studies.peers.processor_time import ProcessorClock
 from muster_studies.peers.pyvrp_peer import PyVRP
 from muster_studies.peers.routing import Routing
 from muster_studies.peers.vroom_peer import Vroom
 from muster_studies.runs import mission_named
-from muster_studies.uniform import large_mission
 
 OWN = "search"
 """The allocator that is compared."""
@@ -58,7 +60,7 @@ GENERATED: Mapping[str, Callable[[Sequence[str]], Mission]] = {
     "counted": lambda words: counted_teams(int(words[0])),
     "orienteering": lambda words: orienteering_instance(words[0]),
     "routes": lambda words: routing_instance(words[0], int(words[1])),
-    "clustered": lambda words: clustered_mission(*map(int, words)),
+    "clustered": lambda words: clustered_mission(Clustered(robots=int(words[0]), tasks=int(words[1])), int(words[2])),
     "tour": lambda words: uniform_tour(*map(int, words)),
 }
 """Missions by the first word of their name, from the words that follow."""

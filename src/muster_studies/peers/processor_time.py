@@ -5,13 +5,6 @@ from __future__ import annotations
 import time
 
 
-class ProcessorClock:
-    """The processor time of this process, of all its threads."""
-
-    def now(self) -> float:
-        return time.process_time()
-
-
 class ProcessorStop:
     """Due when so many seconds of processor time are used. PyVRP calls it with the cost of its best plan."""
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from muster.generation.precedence import SHAPES
 from muster_studies.effort import Effort
-from muster_studies.instances.precedence import SHAPES
 from muster_studies.peers.contest import OWN, Match, Result, Run, Standings, runs_of, standings_of
 from muster_studies.peers.cp_sat_schedule import CpSatSchedule
 from muster_studies.peers.gaps import above, gap_cells, mean_cells

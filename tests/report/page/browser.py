@@ -83,14 +83,14 @@ class Browser:
         message, _, self._rest = self._rest.partition(b"\0")
         return json.loads(message)
 
-    def open(self, file, width=1280, height=900, *, dark=False, mobile=False):
-        """Open a file in a window of some size; returns when the page has loaded."""
+    def open(self, file, width=1280, height=900, *, dark=False, mobile=False, shown="#map *"):
+        """Open a file in a window of some size; returns when the page has loaded, and shows what a selector means."""
         self.events.clear()
         self("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self("Emulation.setEmulatedMedia", features=[scheme])
         self("Page.navigate", url=file.resolve().as_uri())
-        self.wait_for("document.readyState === 'complete' && document.querySelectorAll('#map *').length > 0")
+        self.wait_for("document.readyState === 'complete' && document.querySelector('" + shown + "') !== null")
 
     def evaluate(self, expression):
         """The value of an expression in the page."""

@@ -7,9 +7,10 @@ from dataclasses import replace
 from random import Random
 from typing import Any
 
+from muster.generation.places import random_place
+from muster.generation.uniform import SIDE_M
 from muster.mission.model import OBJECTIVES, Lag, Mission, Robot, Rules, Task, TeamPart
 
-SIDE_M = 100.0
 SKILLS = ("camera", "gripper")
 LIFT = "lift_kg"
 # What robots can agree on without a centre.
@@ -27,7 +28,7 @@ def random_mission(random: Random, *, robots: int, tasks: int, once: float, free
         robots=tuple(
             Robot(
                 id=f"r_{k}",
-                position=random_place(random),
+                position=random_place(random, SIDE_M),
                 work_capacity=random.choice((100.0, 200.0, 300.0)) if limited and random.random() < 0.7 else None,
                 skills=tuple(skill for skill in SKILLS if random.random() < 0.7),
                 speed_mps=random.choice((1.0, 1.0, 2.0)),
@@ -98,14 +99,9 @@ def random_task(random: Random, name: str, *, before: list[str], skilled: bool, 
     """A task in the square."""
     return Task(
         id=name,
-        position=random_place(random),
+        position=random_place(random, SIDE_M),
         prerequisites=tuple(before),
         requires=(random.choice(SKILLS),) if skilled and random.random() < 0.3 else (),
         actuation_cost=random.choice((0.0, 5.0)),
         across_partition="at-most-once" if once else "at-least-once",
     )
-
-
-def random_place(random: Random, side_m: float = SIDE_M) -> tuple[float, float]:
-    """A place in a square of that side, metres."""
-    return random.uniform(0, side_m), random.uniform(0, side_m)

@@ -6,7 +6,10 @@ import math
 from dataclasses import dataclass
 from random import Random
 
+from muster.generation.generator import Generator
 from muster.mission.model import Action, Camera, Map, Mission, Robot, Rules, Task, Zone
+from muster.mission.records import Checked, record, spec
+from muster.mission.value_types import Choice, Flag
 
 _SIDE_M = 60.0
 _HEIGHT_M = 6.0  # at which drones fly
@@ -28,6 +31,14 @@ class Setting:
 SETTINGS = tuple(
     Setting(kinds, over_map) for over_map in (False, True) for kinds in (("ground",), ("air",), ("ground", "air"))
 )
+
+
+@record
+class Moving(Checked):
+    """What missions of the family `moving` share."""
+
+    kinds: str = spec(Choice(("ground", "air", "both")), "what robots there are", default="both")
+    obstacles: bool = spec(Flag(), "a map with 4 to 9 obstacles", default=False)
 
 
 def moving_mission(setting: Setting, seed: int) -> Mission:
@@ -146,4 +157,19 @@ def _on_the_ground(draw: Random, what: str, place: tuple[float, float, float]) -
     if what == "area":
         return Action(name="ground-patrol", side_m=draw.uniform(2, 4))
     angle = draw.uniform(-math.pi, math.pi)
-    return Action(name="delivery", pickup=(place[0] + 2 * math.cos(angle), place[1] + 2 * math.sin(angle), 0.0))
+    x, y = (round(middle + 2 * turn(angle), 9) for middle, turn in zip(place, (math.cos, math.sin), strict=False))
+    return Action(name="delivery", pickup=(x, y, 0.0))
+
+
+def _make(given: Moving, seed: int) -> Mission:
+    kinds = ("ground", "air") if given.kinds == "both" else (given.kinds,)
+    return moving_mission(Setting(kinds, given.obstacles), seed)
+
+
+MOVING = Generator(
+    name="moving",
+    summary="2 to 5 robots with bodies and motion profiles, 6 to 20 tasks with actions; with obstacles or without",
+    source="the missions of `muster study flown`",
+    parameters=Moving,
+    make=_make,
+)

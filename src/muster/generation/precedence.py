@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from random import Random
 
+from muster.generation.generator import MOST_ROBOTS, MOST_TASKS, Generator
+from muster.generation.places import random_place
 from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.records import Checked, record, spec
+from muster.mission.value_types import Choice, Whole
 
 _SIDE_M = 100.0
 _SKILLS = ("lift", "weld", "scan")
@@ -67,6 +71,15 @@ SHAPES: Mapping[str, Callable[[int, Random], Prerequisites]] = {
 }
 
 
+@record
+class Precedence(Checked):
+    """What missions of the family `precedence` share."""
+
+    shape: str = spec(Choice(tuple(SHAPES)), "how tasks wait for each other", default="tree")
+    robots: int = spec(Whole(minimum=1, maximum=MOST_ROBOTS), "how many robots", default=5)
+    tasks: int = spec(Whole(minimum=1, maximum=MOST_TASKS), "how many tasks", default=40)
+
+
 def precedence_mission(shape: str, tasks: int, robots: int, seed: int = 0) -> Mission:
     """Robots of two speeds with two of three skills; tasks of 10 to 60 s that need one.
 
@@ -100,4 +113,13 @@ def precedence_mission(shape: str, tasks: int, robots: int, seed: int = 0) -> Mi
 
 
 def _place(draw: Random) -> tuple[float, float, float]:
-    return draw.uniform(0, _SIDE_M), draw.uniform(0, _SIDE_M), 0.0
+    return (*random_place(draw, _SIDE_M), 0.0)
+
+
+PRECEDENCE = Generator(
+    name="precedence",
+    summary="tasks that wait for each other in a tree, in layers, in series and in parallel, or on pieces of work",
+    source="the missions of `muster bench peers-waiting`",
+    parameters=Precedence,
+    make=lambda given, seed: precedence_mission(given.shape, given.tasks, given.robots, seed),
+)

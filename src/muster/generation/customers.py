@@ -12,9 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 
+from muster.generation.generator import MOST_TASKS, Generator
 from muster.mission.customer_missions import Customer, Instance, instance_mission
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
+from muster.mission.records import Checked, record, spec
+from muster.mission.value_types import Choice, Whole
 
 Place = tuple[float, float]
 
@@ -75,12 +78,23 @@ class Kind:
         return draw.randint(0, _SIDE), draw.randint(0, _SIDE)
 
 
-def customers_mission(family: str, customers: int, seed: int) -> Mission:
-    """Customers with loads and windows, a vehicle for each four of them."""
+KIND = Choice(tuple(_DAYS))
+
+
+@record
+class Customers(Checked):
+    """What missions of the family `customers` share."""
+
+    kind: str = spec(KIND, "where customers are, and how long the day is", default="R1")
+    customers: int = spec(Whole(minimum=1, maximum=MOST_TASKS), "how many customers: tasks", default=25)
+
+
+def customers_mission(family: str, customers: int, seed: int, *, per_vehicle: int = _PER_VEHICLE) -> Mission:
+    """Customers with loads and windows, a vehicle for each four of them unless told otherwise."""
     kind, draw = Kind(family), Random(f"customers {family} {customers} {seed}")
     places = kind.places(customers, draw)
     work = [_customer(str(k), place, kind, draw) for k, place in enumerate(places, start=1)]
-    return family_mission(f"customers-{family}-{customers}-{seed}", kind, work, -(-customers // _PER_VEHICLE))
+    return family_mission(f"customers-{family}-{customers}-{seed}", kind, work, -(-customers // per_vehicle))
 
 
 def family_mission(name: str, kind: Kind, customers: Sequence[Customer], vehicles: int) -> Mission:
@@ -104,3 +118,12 @@ def _customer(name: str, place: Place, kind: Kind, draw: Random) -> Customer:
         window = max(first, middle - half), min(last, middle + half)
     load = draw.choice((10, 20, 30)) if kind.name.startswith("C") else draw.randint(1, 36)
     return Customer(None, name, place, load, window, kind.service)
+
+
+CUSTOMERS = Generator(
+    name="customers",
+    summary="customers with time windows and loads, vehicles from one depot: vehicle routing with time windows",
+    source="in the manner of [solomon1987] and [gehring1999]; the table `customers` of `muster bench peers-goods`",
+    parameters=Customers,
+    make=lambda given, seed: customers_mission(given.kind, given.customers, seed),
+)

@@ -2,7 +2,7 @@
 
 from random import Random
 
-from muster_studies.uniform import uniform_mission
+from muster.generation.uniform import uniform_mission
 
 
 def test_robots_come_before_tasks_and_x_before_y():

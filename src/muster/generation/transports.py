@@ -12,9 +12,12 @@ from dataclasses import dataclass
 from itertools import count
 from random import Random
 
+from muster.generation.customers import KIND, Kind, Place, family_mission
+from muster.generation.generator import MOST_ROBOTS, Generator
 from muster.mission.customer_missions import NONE, Customer
 from muster.mission.model import Mission
-from muster_studies.instances.families import Kind, Place, family_mission
+from muster.mission.records import Checked, record, spec
+from muster.mission.value_types import Whole
 
 _NEAREST = 4
 _MARGIN = 2.0
@@ -22,6 +25,14 @@ _MARGIN = 2.0
 _EARLIER_LATER = (10.0, 60.0)
 _WIDER = 3
 _LOADS = (5, 40)
+
+
+@record
+class Transports(Checked):
+    """What missions of the family `transports` share."""
+
+    kind: str = spec(KIND, "where pickups and deliveries are, and how long the day is", default="R1")
+    transports: int = spec(Whole(minimum=1, maximum=MOST_ROBOTS), "how many transports: two tasks each", default=12)
 
 
 @dataclass(frozen=True)
@@ -82,3 +93,12 @@ def _customer(
     last = math.floor(kind.day - kind.service - math.dist(stop.place, kind.depot))
     window = math.floor(max(0.0, stop.arrival - before)), min(last, math.ceil(stop.arrival + after))
     return Customer(None, name, stop.place, load, window, kind.service, pickup, delivery)
+
+
+TRANSPORTS = Generator(
+    name="transports",
+    summary="pickups and deliveries with time windows and loads, vehicles from one depot",
+    source="in the manner of [li2001]; the table `transports` of `muster bench peers-goods`",
+    parameters=Transports,
+    make=lambda given, seed: transports_mission(given.kind, given.transports, seed),
+)

@@ -1,0 +1,142 @@
+"""The results of a comparison in a file: each run is a line of CSV, written as it comes."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Iterable
+from dataclasses import fields
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from muster.comparison.performer import Trial
+from muster.comparison.run import Run
+from muster.mission.errors import Finding, InputError, ParameterError
+
+COLUMNS = tuple(f.name for f in fields(Run))
+_ASKED = ("objective", "parameters", "time_limit_s", "iteration_limit", "clock", "digest")
+"""What must be the same where a comparison goes on."""
+_TYPES: dict[str, Any] = {
+    f.name: int if "int" in str(f.type) else float if "float" in str(f.type) else str for f in fields(Run)
+}
+
+
+class ResultsFile:
+    """A file of runs, to which others are added.
+
+    Raises
+    ------
+    InputError
+        if it is there, and is none of this kind.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._runs = _read(path) if path.exists() and path.stat().st_size else []
+
+    def __enter__(self) -> ResultsFile:
+        begins = not self._path.exists() or self._path.stat().st_size == 0
+        if not begins:
+            _drop_broken_line(self._path)
+        self._file = self._path.open("a", encoding="utf-8", newline="")
+        if begins:
+            self._write(COLUMNS)
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._file.close()
+
+    def known(self, blanks: Iterable[Run]) -> dict[Trial, Run]:
+        """The runs that the file has of those asked for.
+
+        Parameters
+        ----------
+        blanks
+            for each run asked for its row before it is made.
+
+        Raises
+        ------
+        InputError
+            if the file has one of them that was made otherwise.
+        """
+        wanted = {(run.mission, run.allocator, run.seed): run for run in blanks}
+        found: dict[Trial, Run] = {}
+        for line, run in self._runs:
+            key = run.mission, run.allocator, run.seed
+            if key in wanted:
+                self._require_same(run, wanted[key], line)
+                found[key] = run
+        return found
+
+    def add(self, run: Run) -> None:
+        """Write a run; it is in the file when this returns."""
+        self._write(tuple(_text(getattr(run, name)) for name in COLUMNS))
+
+    def _write(self, cells: Iterable[str]) -> None:
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerow(cells)
+        self._file.write(text.getvalue())
+        self._file.flush()
+
+    def _require_same(self, run: Run, asked: Run, line: int) -> None:
+        for name in _ASKED:
+            had, wants = getattr(run, name), getattr(asked, name)
+            if had != wants:
+                what = "another mission of this name" if name == "digest" else _text(had) or "none"
+                expected = f"{_text(wants) or 'none'}, as asked now; or another file"
+                raise InputError([Finding(str(self._path), line, name, what, expected)])
+
+
+def _read(path: Path) -> list[tuple[int, Run]]:
+    """The runs of a file, with their lines; a last line that was not written to its end is left out."""
+    text = path.read_text(encoding="utf-8", errors="replace")
+    lines = text[: text.rfind("\n") + 1].splitlines()
+    reader = csv.reader(lines)
+    head = next(reader, [])
+    if tuple(head) != COLUMNS:
+        expected = f"results of muster compare: a first line {','.join(COLUMNS[:4])},..."
+        raise InputError([Finding(str(path), 1, "", ",".join(head[:4]) or "no first line", expected)])
+    return [(reader.line_num, _run(path, reader.line_num, cells)) for cells in reader]
+
+
+def _run(path: Path, line: int, cells: list[str]) -> Run:
+    if len(cells) != len(COLUMNS):
+        raise InputError([Finding(str(path), line, "", f"{len(cells)} cells", f"{len(COLUMNS)}, as in the first line")])
+    values: dict[str, Any] = {}
+    for name, cell in zip(COLUMNS, cells, strict=True):
+        try:
+            values[name] = cell if _TYPES[name] is str else None if cell == "" else _TYPES[name](cell)
+        except ValueError:
+            raise InputError([Finding(str(path), line, name, cell, "a number")]) from None
+    return Run(**values)
+
+
+def _text(value: object) -> str:
+    return "" if value is None else repr(value) if isinstance(value, float) else str(value)
+
+
+def _drop_broken_line(path: Path) -> None:
+    """Cut off a last line that was not written to its end."""
+    with path.open("rb+") as file:
+        data = file.read()
+        whole = data.rfind(b"\n") + 1
+        if whole < len(data):
+            file.seek(whole)
+            file.truncate()
+
+
+def require_results_place(path: Path) -> None:
+    """Refuse a file of results that cannot be written, before anything is made.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if path.suffix.lower() != ".csv":
+        raise ParameterError(f"results: {path}; expected a file that ends in .csv")
+    if path.is_dir() or not path.parent.is_dir():
+        raise ParameterError(f"results: {path}; expected a file in a folder that exists")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise ParameterError(f"results: {path}; expected a place with permission to write")

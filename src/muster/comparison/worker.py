@@ -1,0 +1,61 @@
+"""A process that does jobs for another, which gives them through a pipe (`workers`)."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import sys
+import threading
+from multiprocessing.connection import Connection
+from typing import Any
+
+from muster.comparison.workers import Raised
+
+
+def main(link_fd: int, lifeline_fd: int) -> None:
+    """Do jobs until there are no more, or the other process has ended."""
+    threading.Thread(target=_end_with_parent, args=(lifeline_fd,), daemon=True).start()
+    link: Connection[Any, Any] = Connection(link_fd)
+    try:
+        do = pickle.loads(link.recv_bytes())  # noqa: S301  (of the process that began this one)
+    except Exception as error:
+        do = _raising(error)
+    link.send_bytes(b"ready")
+    while True:
+        try:
+            job = link.recv()
+        except EOFError:
+            return
+        try:
+            answer = do(job)
+        except Exception as error:
+            answer = Raised(error)
+        _answer(link, answer)
+
+
+def _answer(link: Connection[Any, Any], answer: Any) -> None:
+    try:
+        data = pickle.dumps(answer)
+    except Exception as error:
+        said = answer.error if isinstance(answer, Raised) else error
+        data = pickle.dumps(Raised(RuntimeError(f"{type(said).__name__}: {said}")))
+    link.send_bytes(data)
+
+
+def _raising(error: Exception) -> Any:
+    from muster.mission.errors import MusterError
+
+    def do(job: Any) -> Any:
+        raise MusterError(f"what is to be done cannot be loaded in another process: {type(error).__name__}: {error}")
+
+    return do
+
+
+def _end_with_parent(lifeline_fd: int) -> None:
+    """End this process when the other end of the pipe is closed: when the other process has ended, however it did."""
+    os.read(lifeline_fd, 1)
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]))

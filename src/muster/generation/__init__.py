@@ -1,0 +1,1 @@
+"""Random missions by families: the same family, parameters and seed give the same mission on every machine."""
