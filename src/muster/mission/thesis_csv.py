@@ -76,8 +76,23 @@ def _without_robots(
     data: dict[str, object] = {"schema": SCHEMA, "name": tasks.stem}
     data["tasks"] = _tasks(columns.cells)
     if suitability is not None:
-        data["suitability"] = _suitability(suitability, places)
+        data["suitability"] = suitability_table(suitability, places)
     return data, _Lines("tasks", str(tasks), columns.lines, beside=places)
+
+
+def is_task_list(tasks: FilePath, robots: FilePath | None) -> bool:
+    """Whether the first lines of two files have all columns of these; without robots, that of the one has."""
+    lists = [(tasks, TASK_COLUMNS), *([] if robots is None else [(robots, ROBOT_COLUMNS)])]
+    return all(set(needed) <= set(_head(path)) for path, needed in lists)
+
+
+def _head(path: FilePath) -> list[str]:
+    """The columns of a file, where it has a first line in UTF-8."""
+    try:
+        with path.open(encoding="utf-8-sig") as stream:
+            return [name.strip() for name in next((line for line in stream if line.strip()), "").split(",")]
+    except (OSError, ValueError):
+        return []  # whoever reads it says why
 
 
 class _Lines(Mapping[Path, Place]):
@@ -158,7 +173,8 @@ _WRITTEN: Mapping[str, Callable[[str], object]] = {
 """How the cells of tasks are read, where they are not empty."""
 
 
-def _suitability(path: FilePath, places: dict[Path, Place]) -> dict[str, dict[str, object]]:
+def suitability_table(path: FilePath, places: dict[Path, Place]) -> dict[str, dict[str, object]]:
+    """The scores of robot types for task types in a file; the place of each robot type goes into `places`."""
     columns, rows = read_table(path)
     for k, name in enumerate(columns):
         if name in columns[:k]:
