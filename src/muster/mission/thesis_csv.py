@@ -81,9 +81,11 @@ def _without_robots(
 
 
 def is_task_list(tasks: FilePath, robots: FilePath | None) -> bool:
-    """Whether the first lines of two files have all columns of these; without robots, that of the one has."""
-    lists = [(tasks, TASK_COLUMNS), *([] if robots is None else [(robots, ROBOT_COLUMNS)])]
-    return all(set(needed) <= set(_head(path)) for path, needed in lists)
+    """Whether the first lines of two files have the columns of these, and no others; without robots, that of one."""
+    lists = [(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))]
+    lists += [] if robots is None else [(robots, ROBOT_COLUMNS, ("z",))]
+    heads = [(_head(path), set(needed), {*needed, *optional}) for path, needed, optional in lists]
+    return all(needed <= set(head) <= known and len(set(head)) == len(head) for head, needed, known in heads)
 
 
 def _head(path: FilePath) -> list[str]:

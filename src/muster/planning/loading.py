@@ -95,7 +95,7 @@ def load_noted(
         from muster.exchange.qgc_reader import read_plan_files
 
         return Noted(read_plan_files(path))
-    if suffix not in _YAML:
+    if suffix not in (*_YAML, *_SUFFIXES):
         from muster.exchange.sites.readers import unknown_file
 
         raise unknown_file(path)

@@ -13,6 +13,7 @@ from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Coordinate
 from muster.exchange.sites.frame import FARTHEST_M, Frame
 from muster.exchange.sites.keys import AT_POINTS, COVERAGE, keys_of
+from muster.exchange.sites.roles import role_word
 from muster.exchange.sites.times import KEYS as TIMES
 from muster.exchange.sites.times import chosen_start, robot_times, task_times
 from muster.exchange.sites.ways import Ways
@@ -24,7 +25,7 @@ from muster.mission.value_types import Path, shown
 
 _GROUPS = {"task": "tasks", "robot": "robots", "station": "stations"}
 _ID_LISTS = ("prerequisites", "same_robot_as", "other_robot_than", "starts_with", "only_robots")
-_OWN = frozenset(("id", "name", "kind", "battery", *TIMES))
+_OWN = frozenset(("id", "name", "kind", "moves", "battery", *TIMES))
 """Keys of entries that do not go into the mission as they are."""
 _AREAS = ("zone", "boundary", "survey")
 
@@ -234,12 +235,11 @@ class Builder:
         record: dict[str, Any] = {"id": name, "position": position}
         record |= {key: value for key, value in entry.values.items() if key in known and key not in _OWN}
         if entry.role == "robot":
-            record |= {"kind": entry.values["kind"]} if "kind" in entry.values else {}
+            moves = entry.values.get("moves", entry.values.get("kind"))
+            record |= {} if moves is None or role_word(moves) else {"kind": moves}
             if "battery" in entry.values:
                 record["battery"] = {"capacity": entry.values["battery"]}
             record |= robot_times(entry, self.built.findings)
-            if record.get("kind") in ("robot", "robots"):
-                del record["kind"]
         elif entry.role == "task":
             record |= task_times(entry, self.built.findings)
         return record
@@ -374,6 +374,7 @@ _SAID_AS = {
     "starts": ("shift", "available_from_s"),
     "ends": ("shift", "available_until_s"),
     "door": ("id",),
+    "moves": ("kind",),
     "lat": ("position",),
     "lat_lon": ("position",),
     "x": ("position",),

@@ -8,10 +8,11 @@ from typing import Any
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
 from muster.exchange.sites.headings import Columns, columns_of
-from muster.exchange.sites.keys import AT_POINTS
+from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
 from muster.exchange.sites.roles import Roles, names_role
 from muster.exchange.sites.shapes import from_text
 from muster.mission.errors import Finding
+from muster.mission.near_matches import did_you_mean
 
 _IN_DEGREES = ("lat", "lon", "lat_lon", "alt")
 _IN_METRES = ("x", "y", "position")
@@ -79,10 +80,16 @@ def entries_of(
         for feature in members:
             found += _entry(role, feature, columns, findings)
     lost = set.intersection(*unread) if unread else set()
-    if names := [heading for heading in layer.headings if heading in lost and heading != "kind"]:
-        told = ", ".join(names[:8]) + (f", and {len(names) - 8} more" if len(names) > 8 else "")
-        notes.append(f"{layer.title}: not read: {told}")
+    if names := [heading for heading in layer.headings if heading in lost and heading.casefold() != ROLE.name]:
+        notes.append(f"{layer.title}: not read: {_told_unread(names, list(by_role))}")
     return found
+
+
+def _told_unread(names: list[str], roles: list[str]) -> str:
+    """Headings that mean nothing, and for those that are nearly a key what that may be."""
+    known = [key for role in roles for key in keys_of(role)]
+    told = [name + did_you_mean(name, known).replace("; did", " (did").replace("?", "?)") for name in names[:8]]
+    return ", ".join(told) + (f", and {len(names) - 8} more" if len(names) > 8 else "")
 
 
 def _with_shapes(layer: Layer, findings: list[Finding]) -> Iterator[Feature]:

@@ -53,6 +53,11 @@ def _lower(value: object) -> str:
     return cells.text(value).casefold()
 
 
+def _choices(value: object) -> list[str]:
+    """Words of a few letters, between which spaces may stand."""
+    return [part for one in cells.words(value) for part in one.casefold().split()]
+
+
 PLACE = (
     SiteKey(
         "lat", partial(cells.degrees, most=90.0), names=("latitude", "latdeg", "latitudedeg", "latwgs84", "gpslat")
@@ -123,7 +128,7 @@ _TASK = (
 _ROBOT = (
     SiteKey("id", cells.text, names=(*IDENTITY[0].names, "robot", "callsign")),
     SiteKey("type", cells.text, names=("model", "class")),
-    SiteKey("kind", _lower, names=("moves", "domain")),
+    SiteKey("moves", _lower, names=("domain",)),
     SiteKey("speed_mps", partial(_number, "speed"), "speed", ("speed", "maxspeed", "velocity", "cruisespeed")),
     SiteKey("work_capacity", cells.limit, names=("capacity", "budget", "range")),
     SiteKey("skills", cells.words, names=("skill", "capabilities", "equipment")),
@@ -138,7 +143,7 @@ _ROBOT = (
 )
 _STATION = (
     SiteKey("id", cells.text, names=(*IDENTITY[0].names, "station")),
-    SiteKey("services", cells.words, names=("service",)),
+    SiteKey("services", _choices, names=("service",)),
     SiteKey("charge_per_s", cells.number, names=("charge", "chargerate")),
     SiteKey("swap_s", cells.duration, "time", ("swap", "swaptime")),
 )
@@ -147,9 +152,7 @@ _ZONE = (
     _DOOR,
     _length("floor_m", "floor", "minheight", "lowerlimit"),
     _length("ceiling_m", "ceiling", "maxheight", "upperlimit"),
-    SiteKey(
-        "forbidden_to", lambda value: [one.casefold() for one in cells.words(value)], names=("closedto", "forbidden")
-    ),
+    SiteKey("forbidden_to", _choices, names=("closedto", "forbidden")),
 )
 _LANE = (
     _DOOR,
@@ -218,7 +221,9 @@ def _reading(kind: Kind) -> Read | None:
             return _lower
         case Text():
             return cells.text
-        case Many() | OneOrMany() if isinstance(kind.kind, Text | Choice):
+        case Many() | OneOrMany() if isinstance(kind.kind, Choice):
+            return _choices
+        case Many() | OneOrMany() if isinstance(kind.kind, Text):
             return cells.words
     return None
 
