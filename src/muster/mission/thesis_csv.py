@@ -82,7 +82,7 @@ def _without_robots(
 
 def is_task_list(tasks: FilePath, robots: FilePath | None) -> bool:
     """Whether the first lines of two files have the columns of these, and no others; without robots, that of one."""
-    lists = [(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))]
+    lists: list[tuple[FilePath, Sequence[str], Sequence[str]]] = [(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))]
     lists += [] if robots is None else [(robots, ROBOT_COLUMNS, ("z",))]
     heads = [(_head(path), set(needed), {*needed, *optional}) for path, needed, optional in lists]
     return all(needed <= set(head) <= known and len(set(head)) == len(head) for head, needed, known in heads)

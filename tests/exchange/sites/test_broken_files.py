@@ -87,6 +87,15 @@ def number(data, chance):
 MUTATIONS = (cut, lose, put, turn, swap, encode, number)
 
 
+def message(file, robots):
+    """What is said of a file; None where it is read."""
+    try:
+        read_site(file, robots=robots)
+    except MusterError as error:
+        return str(error)
+    return None
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_broken_file_is_read_or_refused_with_a_message(kind, good, tmp_path):
     robots = tmp_path / "robots.csv"
@@ -95,13 +104,10 @@ def test_a_broken_file_is_read_or_refused_with_a_message(kind, good, tmp_path):
     for k in range(FILES_A_KIND):
         file = tmp_path / f"{k}.{kind}"
         file.write_bytes(MUTATIONS[k % len(MUTATIONS)](good[kind], chance))
-        try:
-            read_site(file, robots=robots)
-        except MusterError as error:
-            refused += 1
-            assert str(file) in str(error)
-            assert "expected" in str(error)
-            assert all(len(line) < 600 for line in str(error).splitlines())
+        told = message(file, robots)
+        refused += told is not None
+        assert told is None or (str(file) in told and "expected" in told)
+        assert all(len(line) < 600 for line in (told or "").splitlines())
     assert refused > FILES_A_KIND // 2
 
 

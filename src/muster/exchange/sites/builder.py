@@ -12,7 +12,7 @@ from muster.exchange.sites.areas import areas_of, around, boundary_of, survey_ta
 from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Coordinate
 from muster.exchange.sites.frame import FARTHEST_M, Frame
-from muster.exchange.sites.keys import AT_POINTS, COVERAGE, keys_of
+from muster.exchange.sites.keys import AT_POINTS, COVERAGE, can_survey, keys_of
 from muster.exchange.sites.roles import role_word
 from muster.exchange.sites.times import KEYS as TIMES
 from muster.exchange.sites.times import chosen_start, robot_times, task_times
@@ -274,7 +274,7 @@ class Builder:
     def _add_areas(self, spatial: bool) -> None:
         entries = [entry for entry in self._entries if entry.role in _AREAS]
         surveys = [entry for entry in entries if entry.role == "survey"]
-        if surveys and COVERAGE not in ACTION_KEYS:
+        if surveys and not can_survey():
             expected = f"the action {COVERAGE}, which surveys need and this version has not; or --as NAME=zone"
             self.built.findings.append(surveys[0].feature.finding("", "an area to survey", expected))
             return

@@ -136,8 +136,10 @@ def duration(value: object, factor: float = 1.0) -> float:
         seconds = 3600.0 * value.hour + 60 * value.minute + value.second + value.microsecond / 1e6
     elif isinstance(value, str):
         seconds = _seconds(value.translate(_SPACES).strip(), factor, expected)
-    else:
+    elif isinstance(value, int | float) and not isinstance(value, bool):
         seconds = number(value, "time", factor)
+    else:
+        raise CellError(expected)
     if seconds < 0:
         raise CellError(f"{expected}, at least 0")
     return round(seconds, 6)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from typing import Any
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
@@ -12,8 +13,9 @@ from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
 from muster.exchange.sites.roles import Roles, names_role
 from muster.exchange.sites.shapes import from_text
 from muster.mission.errors import Finding
-from muster.mission.near_matches import did_you_mean
 
+_NEAR = 0.75
+"""How much a heading that means nothing is like a key, to be taken for a slip."""
 _IN_DEGREES = ("lat", "lon", "lat_lon", "alt")
 _IN_METRES = ("x", "y", "position")
 _EXPECTED_PLACE = "columns of latitude and longitude (or x and y); --column lat=HEADING --column lon=HEADING names them"
@@ -88,7 +90,8 @@ def entries_of(
 def _told_unread(names: list[str], roles: list[str]) -> str:
     """Headings that mean nothing, and for those that are nearly a key what that may be."""
     known = [key for role in roles for key in keys_of(role)]
-    told = [name + did_you_mean(name, known).replace("; did", " (did").replace("?", "?)") for name in names[:8]]
+    near = {name: get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR) for name in names[:8]}
+    told = [f"{name} (did you mean {found[0]}?)" if found else name for name, found in near.items()]
     return ", ".join(told) + (f", and {len(names) - 8} more" if len(names) > 8 else "")
 
 

@@ -70,6 +70,8 @@ class _Table:
             raise refused(file, None, "gpkg_contents", "a name that is no text", _WHAT)
         self._database, self._file, self._name, self._column = database, file, name, column
         self._transform: Callable[[Coordinate], Coordinate] | None = None
+        self._unsaid: set[str | None] = set()
+        """Columns without a meaning: the key, and the geometry."""
         if column is not None and srs not in (0, 4326):
             system = f"{organization}:{number}".upper() if organization else f"srs_id {srs}"
             self._transform = to_wgs84(system, file, f"layer {name}")
@@ -78,7 +80,9 @@ class _Table:
         quoted = self._name.replace('"', '""')
         cursor = self._database.execute(f'SELECT * FROM "{quoted}"')  # noqa: S608 - in quotes
         names = [description[0] for description in cursor.description]
-        headings = tuple(name for name in names if name != self._column)
+        keys = {row[1] for row in self._database.execute(f'PRAGMA table_info("{quoted}")') if row[5]}
+        self._unsaid = {*keys, self._column}
+        headings = tuple(name for name in names if name not in self._unsaid)
         features: list[Feature] = []
         for k, row in enumerate(cursor, 1):
             if k > MOST_ROWS:

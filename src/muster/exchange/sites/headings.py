@@ -90,7 +90,9 @@ def columns_of(layer: Layer, role: str, given: Mapping[str, str], findings: list
                 findings.append(_of_layer(layer, heading, f"means {column.key.name}, as {other} does", expected))
             elif column.factor == 0:
                 told = units_text(column.key.dimension)
-                findings.append(_of_layer(layer, heading, "a unit that does not fit", f"{told}, or no unit"))
+                findings.append(
+                    _of_layer(layer, heading, "a unit that does not fit", f"{told}, or nothing in brackets")
+                )
             else:
                 found[column.key.name] = column
     return Columns(found, tuple(dict.fromkeys(unread)))
@@ -110,7 +112,8 @@ def given_columns(given: Mapping[str, str], layers: Sequence[Layer]) -> dict[str
     for named, heading in given.items():
         keys = [key for role in ROLES if (key := _key_named(named, keys_of(role))) is not None]
         if not keys:
-            raise ParameterError(f"--column: {named}; expected one of {', '.join(known)}{did_you_mean(named, known)}")
+            hint, told = did_you_mean(named, known), ", ".join(known)
+            raise ParameterError(f"--column: {named}; expected {hint.removeprefix('; ') or f'one of {told}'}")
         if heading not in headings:
             hint = did_you_mean(heading, headings) or f"; the files have {', '.join(headings[:12]) or 'none'}"
             raise ParameterError(f"--column {named}: no heading {heading}{hint}")
@@ -153,7 +156,7 @@ def _readings(heading: str, key: SiteKey) -> Iterator[tuple[str, float]]:
     words = [word.casefold() for word in _WORD.findall(_CAMEL.sub(" ", base))]
     for start in (0, 1) if len(words) > 1 and words[0] in _SUBJECTS else (0,):
         own = words[start:]
-        yield "".join(own), units.get(unit, 0.0 if unit in ALL_UNITS else 1.0)
+        yield "".join(own), units.get(unit, 0.0 if unit in ALL_UNITS or (unit and key.dimension) else 1.0)
         if not unit and len(own) > 1:
             beside = own[-1] if len(own) < 3 or own[-2:] not in (["km", "h"], ["m", "s"]) else f"{own[-2]}/{own[-1]}"
             name = own[: -2 if "/" in beside else -1]

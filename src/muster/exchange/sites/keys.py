@@ -184,23 +184,32 @@ _INSTEAD = frozenset(
 """Keys of a mission that other columns say here, or none."""
 
 
-@cache
 def keys_of(role: str) -> Mapping[str, SiteKey]:
     """The keys that features of a role may have, by name: those named here, then all others of a mission file."""
+    return _keys_of(role, can_survey())
+
+
+def can_survey() -> bool:
+    """Whether the action of surveys is there."""
+    return COVERAGE in ACTION_KEYS
+
+
+@cache
+def _keys_of(role: str, surveys: bool) -> Mapping[str, SiteKey]:
     place = PLACE if role in AT_POINTS else PLACE[-1:]
     own = {key.name: key for key in (*place, *IDENTITY, ROLE, *_OF_ROLES[role])}
-    for name, kind in _mission_keys(role).items():
+    for name, kind in _mission_keys(role, surveys).items():
         if name not in own and name not in _INSTEAD and (read := _reading(kind)) is not None:
             own[name] = SiteKey(name, read, _dimension(name) if isinstance(kind, Number) else "")
     return own
 
 
-def _mission_keys(role: str) -> Mapping[str, Kind]:
+def _mission_keys(role: str, surveys: bool) -> Mapping[str, Kind]:
     from muster.mission.model import Action, Robot, Station, Task, Zone
 
     classes: dict[str, type[Any]] = {"task": Task, "survey": Task, "robot": Robot, "station": Station, "zone": Zone}
     found = {} if role not in classes else {key_of(f): f.metadata["kind"] for f in specified(classes[role])}
-    if role == "survey" and COVERAGE in ACTION_KEYS:
+    if role == "survey" and surveys:
         action = ACTION_KEYS[COVERAGE]
         of_action = {f.name: f.metadata["kind"] for f in fields(Action) if "kind" in f.metadata}
         of_action |= {name: key.kind for name, key in action.own.items()}

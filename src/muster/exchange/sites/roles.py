@@ -34,6 +34,7 @@ _FITTING = {
     "area": ("zone", "boundary", "survey"),
 }
 _BY_SHAPE = {"point": "task", "line": "lane", "area": "zone"}
+_SAID = {"point": "a point", "line": "a line", "area": "an area"}
 _TOKEN = re.compile(r"[^\W\d_]+")
 
 
@@ -77,7 +78,7 @@ class Roles:
         if told is not None:
             if told in _FITTING[shape]:
                 return told
-            expected = f"one of {', '.join(_FITTING[shape])} for a {shape}"
+            expected = f"one of {', '.join(_FITTING[shape])} for {_SAID[shape]}"
             findings.append(feature.finding(said, told, expected))
             return _BY_SHAPE[shape]
         names = ([] if shape == "point" else [_name(feature)]) + _names_of(layer)

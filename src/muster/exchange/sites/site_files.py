@@ -84,8 +84,7 @@ def read_site(
     if not there.get("robots") and not any(entry.role == "robot" for entry in entries):
         raise refused(main, None, "robots", "missing", _ROBOTS)
     builder = Builder(entries, there, options)
-    if base is None:
-        builder.built.data["name"] = options.name or Path(main).stem
+    builder.built.data["name"] = Path(main).stem if base is None else base.name
     built = builder.build()
     data = built.data
     data.setdefault("tasks", [])
