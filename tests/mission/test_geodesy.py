@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.mission.formats import FILE
 
-from muster.mission.errors import MissingExtraError
+from muster.mission.errors import MissingExtraError, MissionError
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
