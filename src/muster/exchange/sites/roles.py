@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import PurePath
 
 from muster.exchange.sites.features import Feature, Layer
@@ -118,8 +119,14 @@ def _roles_in(name: str) -> list[str]:
 
 
 def _names_of(layer: Layer) -> list[str]:
-    path = PurePath(layer.file)
-    return [name for name in (layer.name, path.stem, path.name) if name]
+    return _names_in(layer.name, layer.file)
+
+
+@lru_cache(maxsize=64)
+def _names_in(name: str, file: str) -> list[str]:
+    """The names by which a layer may be called; asked for each of its features."""
+    path = PurePath(file)
+    return [told for told in (name, path.stem, path.name) if told]
 
 
 def _name(feature: Feature) -> str:
