@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from muster.mission.plan import Plan, Route
     from muster.mission.plan_reader import read_plan
     from muster.planning.exporting import export
+    from muster.planning.importing import read_site
     from muster.planning.judging import verify
     from muster.planning.loading import load
     from muster.planning.options import PlanningOptions
@@ -114,6 +115,7 @@ __all__ = [
     "missions",
     "plot",
     "read_plan",
+    "read_site",
     "simulate",
     "solve",
     "verify",
@@ -168,6 +170,7 @@ _LOADED_AT_FIRST_USE = {
     "missions": "muster.library",
     "plot": "muster.planning.pictures",
     "read_plan": "muster.mission.plan_reader",
+    "read_site": "muster.planning.importing",
     "simulate": "muster.running.simulate",
     "solve": "muster.planning.solve",
     "verify": "muster.planning.judging",

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.mission.formats import FILE
 
-from muster.mission.errors import MissingExtraError
+from muster.mission.errors import MissingExtraError, MissionError
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
@@ -90,3 +90,34 @@ def test_without_pymap3d_the_extra_is_named(monkeypatch):
 def test_missions_in_metres_do_not_load_pymap3d():
     script = "import sys, muster; muster.load('6T-2R'); sys.exit('pymap3d' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
+
+
+def test_areas_and_nodes_in_degrees_are_metres_in_the_mission():
+    mission = parse_yaml(
+        HEAD + "map:\n  boundary: {lat_lon: [[35.52, 24.05], [35.52, 24.07], [35.54, 24.07]]}\n"
+        "  zones: [{polygon: {lat_lon: [[35.53, 24.06], [35.53, 24.061], [35.531, 24.061]]}}]\n"
+        "lanes: {nodes: {a: {lat_lon: [35.53, 24.06]}, b: [9, 9]}, edges: [{from: a, to: b}]}\n"
+        "robots: [{id: r_0, position: [0, 0]}]\ntasks: []\n",
+        FILE,
+    )
+    corners = [(35.53, 24.06, 12), (35.53, 24.061, 12), (35.531, 24.061, 12)]
+    np.testing.assert_allclose(mission.map.zones[0].polygon, wgs84_to_enu(corners, (35.53, 24.06, 12))[:, :2])
+    assert (len(mission.map.boundary), mission.lanes.nodes["a"]) == (3, (0, 0))
+    assert parse_yaml(yaml_text(mission), FILE) == mission
+
+
+@pytest.mark.parametrize(
+    ("area", "message"),
+    [
+        ("[[35.5, 24.0], [97, 24.0], [35.6, 24.1]]", r"boundary.lat_lon\[1\]\[0\]: 97; expected a finite number"),
+        ("[[35.5, 24.0], [35.5, 24.0, 3], [35.6, 24.1]]", r"lat_lon\[1\]: .*; expected \[lat, lon\] in degrees$"),
+        ("[[35.5, 24.0]]", r"map.boundary: .*lat_lon.*; expected a list of at least 3, each \[x, y\] in metres$"),
+        ("3", r"map.boundary: .*lat_lon.*; expected a list of at least 3"),
+    ],
+)
+def test_a_wrong_area_in_degrees_is_named_once(area, message):
+    with pytest.raises(MissionError, match=message) as caught:
+        parse_yaml(
+            HEAD + f"map: {{boundary: {{lat_lon: {area}}}}}\nrobots: [{{id: r, position: [0, 0]}}]\ntasks: []\n", FILE
+        )
+    assert len(caught.value.findings) == 1

@@ -30,6 +30,7 @@ VERBS: Mapping[str, str] = MappingProxyType(
         "docs": "Read the documents: list them, or show a page.",
         "missions": "List the missions that come with Muster.",
         "init": "Write a mission file to start from.",
+        "import": "Make a mission of the files of a site: tables, maps, tracks.",
         "generate": "Write random missions of a family.",
         "check": "Find what is wrong with a mission, and the tasks that can never be done.",
         "solve": "Plan a mission.",
@@ -50,6 +51,8 @@ VERBS: Mapping[str, str] = MappingProxyType(
     }
 )
 """The verbs of this package, each in the module of its name, with their summaries in the order of `--help`."""
+_MODULES = {"import": "import_site"}
+"""The modules of verbs whose names Python keeps for itself."""
 
 
 class _OutputClosedError(Exception):
@@ -64,7 +67,7 @@ class _Verbs(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name in VERBS:
-            command: click.Command = importlib.import_module(f"muster.cli.{cmd_name}").command
+            command: click.Command = importlib.import_module(f"muster.cli.{_MODULES.get(cmd_name, cmd_name)}").command
             return command
         found = other_verbs().get(cmd_name)
         return None if found is None else _loaded(found)
@@ -137,7 +140,7 @@ def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
 
 _HELP = """Plan missions of robot teams: who does what, in which order.
 
-A MISSION is a file (YAML, a task-list CSV, TSPLIB, VRPLIB, ...) or the name of a mission that comes with Muster:
+A MISSION is a file (YAML, CSV, GeoJSON, KML, TSPLIB, ...) or the name of a mission that comes with Muster:
 
 \b
   muster solve 31T-6R50 --plot plan.png

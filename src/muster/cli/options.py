@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -48,6 +48,7 @@ class MissionFile:
     suitability: Path | None
     salesmen: int | None
     depot: str | None
+    columns: tuple[str, ...] = ()
 
     @property
     def files(self) -> tuple[str | Path | None, ...]:
@@ -55,20 +56,23 @@ class MissionFile:
         return self.name, self.robots, self.suitability
 
     def load(self, *, verbose: bool = False) -> Mission:
-        """Read the mission; with -v print the file and the numbers of robots and tasks."""
-        from muster import load
+        """Read the mission, print what was chosen; with -v the file and the numbers of robots and tasks."""
+        from muster.planning.loading import load_noted
 
         if self.depot is not None and self.salesmen is None:
             raise ParameterError("--depot given; expected it together with --salesmen")
         flags = {name: getattr(self, name) for name in ("robots", "suitability", "salesmen")}
-        loaded = load(self.name, **flags, depot=self.depot)
+        found = load_noted(self.name, **flags, depot=self.depot, columns=pairs_of("--column", self.columns) or None)
+        loaded = found.mission
+        for note in () if click.get_current_context().params.get("quiet") else found.notes:
+            click.echo(note, err=True)
         if verbose:
             amount = f"{len(loaded.robots)} robots, {len(loaded.tasks)} tasks"
             click.echo(f"read {loaded.source.file}: mission {loaded.name}, {amount}", err=True)
         return loaded
 
 
-MISSION_FLAGS = ("robots", "suitability", "salesmen", "depot")
+MISSION_FLAGS = ("robots", "suitability", "salesmen", "depot", "columns")
 
 
 def mission_argument(verb: Verb) -> Verb:
@@ -86,14 +90,14 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
     def with_mission(*, mission: str | None, **given: Any) -> Any:
         flags = {name: given.pop(name) for name in MISSION_FLAGS}
         if mission is None:
-            require_none_without_mission(**flags)
+            require_none_without_mission(**{name: value or None for name, value in flags.items()})
             return verb(mission=None, **given)
         return verb(mission=MissionFile(name=mission, **flags), **given)
 
     options = (
         click.argument("mission", required=required),
-        click.option("--robots", type=_FILE, metavar="CSV", help="Robots of a task-list CSV."),
-        click.option("--suitability", type=_FILE, metavar="CSV", help="Suitability of a task-list CSV."),
+        click.option("--robots", type=_FILE, metavar="FILE", help="Robots of a task list or a site."),
+        click.option("--suitability", type=_FILE, metavar="CSV", help="Suitability of a task list or a site."),
         click.option(
             "--salesmen",
             type=click.IntRange(min=1),
@@ -101,11 +105,42 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
             help="Robots of an instance file (TSPLIB, VRPLIB, ...).",
         ),
         click.option("--depot", metavar="NODE", help="Start and end of a TSPLIB mission.  [default: 1]"),
+        column_option,
     )
     decorated: Any = with_mission
     for option in reversed(options):
         decorated = option(decorated)
     return cast("Verb", decorated)
+
+
+def column_option(verb: Verb) -> Verb:
+    """--column."""
+    return click.option(
+        "--column",
+        "columns",
+        multiple=True,
+        metavar="KEY=HEADING",
+        help="What a heading of a table means, where its name does not say so: lat=Breite.",
+    )(verb)
+
+
+def pairs_of(option: str, given: Sequence[str]) -> dict[str, str]:
+    """The values of NAME=VALUE by name.
+
+    Raises
+    ------
+    ParameterError
+        if one is not of this form, or stands twice.
+    """
+    found: dict[str, str] = {}
+    for pair in given:
+        name, _, value = (part.strip() for part in pair.partition("="))
+        if not name or not value:
+            raise ParameterError(f"{option}: {pair}; expected NAME=VALUE")
+        if name in found:
+            raise ParameterError(f"{option}: {name} given twice; expected it once")
+        found[name] = value
+    return found
 
 
 def require_none_without_mission(**of_mission: object) -> None:

@@ -16,17 +16,24 @@ from muster.exchange.geographic_features import Feature, Survey
 from muster.exchange.xml_text import add, decimal, text_of, time_text
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
+_OWN_NAMESPACE = "urn:muster:1"
+_OF_STATIONS = ("services", "slots", "charge_per_s", "swap_s")
+"""What stations have in `extensions`, so that a file that is read again has them."""
 
 
 def gpx_text(survey: Survey) -> str:
     """A GPX document."""
     root = Tree.Element("gpx", {"version": "1.1", "creator": "Muster", "xmlns": _NAMESPACE})
+    if survey.stations:
+        root.set("xmlns:muster", _OWN_NAMESPACE)
     add(add(root, "metadata"), "name", survey.mission)
     for feature in (*survey.robots, *survey.tasks, *survey.stations):
         point = _point(root, "wpt", feature.spots[0], feature)
         add(point, "name", feature.name)
         add(point, "desc", _told(feature))
         add(point, "type", feature.kind)
+        if feature.kind == "station":
+            _add_own(point, feature.properties)
     for number, feature in enumerate(survey.routes, 1):
         route = add(root, "rte")
         add(route, "name", feature.name)
@@ -46,6 +53,13 @@ def _point(parent: Tree.Element, tag: str, spot: Spot, feature: Feature, k: int 
     if feature.times:
         add(point, "time", time_text(feature.times[k]))
     return point
+
+
+def _add_own(point: Tree.Element, properties: Mapping[str, Any]) -> None:
+    extensions = add(point, "extensions")
+    for name in _OF_STATIONS:
+        if (value := properties.get(name)) is not None:
+            add(extensions, f"muster:{name}", " ".join(value) if isinstance(value, list) else value)
 
 
 def _told(feature: Feature) -> str:

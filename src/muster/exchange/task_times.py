@@ -73,6 +73,7 @@ def _load(load: Amount | None) -> Any:
 def station_properties(station: Station, stops: tuple[Stop, ...]) -> dict[str, Any]:
     """What a station does, and for each of `robots` that come there when, and what it adds to their batteries."""
     found: dict[str, Any] = {"services": list(station.services), "slots": station.slots}
+    found |= {name: getattr(station, name) for name in ("charge_per_s", "swap_s") if getattr(station, name)}
     found |= {"robots": [stop.robot for stop in stops], "orders": [stop.order for stop in stops]}
     for name in ("arrives_s", "starts_s", "ends_s"):
         found[name] = [getattr(stop.visit, name) for stop in stops]

@@ -1,8 +1,9 @@
 """Converts places that a file gives in degrees to metres in the map frame, before the mission is read.
 
 A robot, a task, a tag and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit`,
-`pickup` and the nodes of lanes may be `{lat_lon: [lat, lon]}`. With an altitude a place has three coordinates, without
-it two: it is taken at the altitude of the origin, and its height over the plane of the map frame is dropped.
+`pickup` and the nodes of lanes may be `{lat_lon: [lat, lon]}`, the boundary of a map and the polygon of a zone
+`{lat_lon: [[lat, lon], ...]}`. With an altitude a place has three coordinates, without it two: it is taken at the
+altitude of the origin, and its height over the plane of the map frame is dropped.
 """
 
 from __future__ import annotations
@@ -11,12 +12,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from muster.mission.place_types import LatLon, Place
+from muster.mission.place_types import Corners, LatLon, Place
 from muster.mission.raw_records import listed, of_events, robots_in, tasks_in
 from muster.mission.records import Record
 from muster.mission.site import Origin
 from muster.mission.tasks import Action
-from muster.mission.value_types import INVALID, Fault, Path, shown
+from muster.mission.value_types import INVALID, Fault, Path, is_list, shown
 
 _OTHER_PLACES = ("end_position", "entry", "exit", "pickup")
 _WORDS = (("x, y, z", "lat, lon, alt"), ("x, y", "lat, lon"))
@@ -24,12 +25,21 @@ _WORDS = (("x, y, z", "lat, lon, alt"), ("x, y", "lat, lon"))
 
 @dataclass(frozen=True)
 class InDegrees:
-    """A place in degrees: its value and path in the file; the path, and the mapping, in which the metres go."""
+    """A place in degrees: its value and path in the file; the path, and the mapping or list, in which the metres go."""
 
     value: object
     at: Path
     metres_at: Path
-    record: dict[str, Any]
+    record: dict[str, Any] | list[Any]
+    planar: bool = False
+
+    def put(self, metres: Any) -> None:
+        """Put the metres where the degrees were."""
+        if isinstance(self.record, list):
+            self.record[int(self.metres_at[-1])] = metres
+        else:
+            self.record.pop("lat_lon", None)
+            self.record[str(self.metres_at[-1])] = metres
 
 
 def degrees_to_metres(data: object, faults: list[Fault]) -> Mapping[Path, InDegrees]:
@@ -50,8 +60,7 @@ def degrees_to_metres(data: object, faults: list[Fault]) -> Mapping[Path, InDegr
     origin = _origin(data, found[0], faults)
     read = [_read(place, faults) for place in found]
     for place, metres in zip(found, _metres(read, origin), strict=True):
-        place.record.pop("lat_lon", None)
-        place.record[str(place.metres_at[-1])] = metres
+        place.put(metres)
     return {place.metres_at: place for place in found}
 
 
@@ -75,15 +84,31 @@ def _places(data: object) -> Iterator[InDegrees]:
     lanes = data.get("lanes") if isinstance(data, dict) else None
     nodes = lanes.get("nodes") if isinstance(lanes, dict) else None
     if isinstance(nodes, dict):
-        yield from _by_key(("lanes", "nodes"), nodes, nodes)
+        yield from _by_key(("lanes", "nodes"), nodes, nodes, planar=True)
+    area = data.get("map") if isinstance(data, dict) else None
+    if isinstance(area, dict):
+        yield from _corners(("map",), area, "boundary")
+        for at, zone in listed(area, "zones"):
+            yield from _corners(("map", *at), zone, "polygon")
 
 
-def _by_key(at: Path, record: dict[str, Any], keys: Iterable[str]) -> Iterator[InDegrees]:
+def _corners(at: Path, record: dict[str, Any], key: str) -> Iterator[InDegrees]:
+    """The corners of an area, each a place; a list of metres takes the place of their mapping."""
+    value = record.get(key)
+    given = value["lat_lon"] if isinstance(value, dict) and list(value) == ["lat_lon"] else None
+    if is_list(given) and len(given) >= Corners().minimum:
+        metres: list[Any] = [INVALID] * len(given)
+        record[key] = metres
+        for k, corner in enumerate(given):
+            yield InDegrees(corner, (*at, key, "lat_lon", k), (*at, key, k), metres, planar=True)
+
+
+def _by_key(at: Path, record: dict[str, Any], keys: Iterable[str], *, planar: bool = False) -> Iterator[InDegrees]:
     """The places of a record, by these of its keys."""
     for key in keys:
         value = record.get(key)
         if isinstance(value, dict) and list(value) == ["lat_lon"]:
-            yield InDegrees(value["lat_lon"], (*at, key, "lat_lon"), (*at, key), record)
+            yield InDegrees(value["lat_lon"], (*at, key, "lat_lon"), (*at, key), record, planar)
 
 
 def _own_places(record: Mapping[str, Any]) -> list[str]:
@@ -112,7 +137,7 @@ def _read(place: InDegrees, faults: list[Fault]) -> Any:
     if place.at[-2:] != (place.metres_at[-1], "lat_lon") and "position" in place.record:
         faults.append(Fault(place.at, shown(place.value), "position or lat_lon, not both"))
         return INVALID
-    return LatLon().read(place.value, place.at, faults)
+    return LatLon(planar=place.planar).read(place.value, place.at, faults)
 
 
 def _origin(data: object, first: InDegrees, faults: list[Fault]) -> Origin | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from muster.mission.place_types import LatLon
+from muster.mission.place_types import Corners, LatLon
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Text, Whole, shown
 
@@ -28,7 +28,7 @@ class Origin(Checked):
 class Zone(Checked):
     """A part of the map that some robots may not enter; with an id a door, which events close and open."""
 
-    polygon: tuple[Point, ...] = spec(Many(Position(planar=True), minimum=3), "corners in order")
+    polygon: tuple[Point, ...] = spec(Corners(), "corners in order")
     floor_m: float | None = spec(Number(), "lower end of the zone", default=None)
     ceiling_m: float | None = spec(Number(), "upper end of the zone", default=None)
     forbidden_to: tuple[str, ...] = spec(
@@ -61,9 +61,7 @@ class Map(Checked):
     origin: Point | None = spec(
         Position(third="yaw"), "[x, y, yaw] of the image's lower left corner, metres and radians", default=None
     )
-    boundary: tuple[Point, ...] | None = spec(
-        Many(Position(planar=True), minimum=3), "corners of the arena in order", default=None
-    )
+    boundary: tuple[Point, ...] | None = spec(Corners(), "corners of the arena in order", default=None)
     zones: tuple[Zone, ...] = spec(Many(Record(Zone, "a zone")), "parts that some robots may not enter", default=())
 
     @classmethod

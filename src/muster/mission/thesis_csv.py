@@ -76,8 +76,25 @@ def _without_robots(
     data: dict[str, object] = {"schema": SCHEMA, "name": tasks.stem}
     data["tasks"] = _tasks(columns.cells)
     if suitability is not None:
-        data["suitability"] = _suitability(suitability, places)
+        data["suitability"] = suitability_table(suitability, places)
     return data, _Lines("tasks", str(tasks), columns.lines, beside=places)
+
+
+def is_task_list(tasks: FilePath, robots: FilePath | None) -> bool:
+    """Whether the first lines of two files have the columns of these, and no others; without robots, that of one."""
+    lists: list[tuple[FilePath, Sequence[str], Sequence[str]]] = [(tasks, TASK_COLUMNS, ("z", *TIME_COLUMNS))]
+    lists += [] if robots is None else [(robots, ROBOT_COLUMNS, ("z",))]
+    heads = [(_head(path), set(needed), {*needed, *optional}) for path, needed, optional in lists]
+    return all(needed <= set(head) <= known and len(set(head)) == len(head) for head, needed, known in heads)
+
+
+def _head(path: FilePath) -> list[str]:
+    """The columns of a file, where it has a first line in UTF-8."""
+    try:
+        with path.open(encoding="utf-8-sig") as stream:
+            return [name.strip() for name in next((line for line in stream if line.strip()), "").split(",")]
+    except (OSError, ValueError):
+        return []  # whoever reads it says why
 
 
 class _Lines(Mapping[Path, Place]):
@@ -158,7 +175,8 @@ _WRITTEN: Mapping[str, Callable[[str], object]] = {
 """How the cells of tasks are read, where they are not empty."""
 
 
-def _suitability(path: FilePath, places: dict[Path, Place]) -> dict[str, dict[str, object]]:
+def suitability_table(path: FilePath, places: dict[Path, Place]) -> dict[str, dict[str, object]]:
+    """The scores of robot types for task types in a file; the place of each robot type goes into `places`."""
     columns, rows = read_table(path)
     for k, name in enumerate(columns):
         if name in columns[:k]:

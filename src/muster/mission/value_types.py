@@ -130,8 +130,9 @@ def is_list(value: object) -> TypeGuard[Sequence[Any]]:
 
 
 def refuse(kind: Kind, value: object, at: Path, faults: list[Fault]) -> Invalid:
-    """Put a value that is not of a kind on the list of faults."""
-    faults.append(Fault(at, shown(value), kind.expected))
+    """Put a value that is not of a kind on the list of faults; INVALID was refused before."""
+    if value is not INVALID:
+        faults.append(Fault(at, shown(value), kind.expected))
     return INVALID
 
 

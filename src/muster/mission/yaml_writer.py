@@ -20,18 +20,20 @@ M = TypeVar("M", bound=MissionData)
 def yaml_text(mission: MissionData) -> str:
     """The mission as YAML of `schema: muster/1`; one line a robot and task."""
     lines: list[str] = []
-    for f in specified(MissionData):
-        value = getattr(mission, f.name)
-        if f.name != "schema" and value == f.default:
-            continue
-        data = _file_form(f, mission)
+    for name, data in file_data(mission).items():
         if isinstance(data, list) and data:
-            lines += [f"{f.name}:", *(f"  - {flow_text(item)}" for item in data)]
-        elif f.name == "suitability" and isinstance(data, dict):
-            lines += [f"{f.name}:", *(f"  {_word(name)}: {flow_text(row)}" for name, row in data.items())]
+            lines += [f"{name}:", *(f"  - {flow_text(item)}" for item in data)]
+        elif name == "suitability" and isinstance(data, dict):
+            lines += [f"{name}:", *(f"  {_word(row)}: {flow_text(scores)}" for row, scores in data.items())]
         else:
-            lines.append(f"{f.name}: {flow_text(data)}")
+            lines.append(f"{name}: {flow_text(data)}")
     return "\n".join(lines) + "\n"
+
+
+def file_data(mission: MissionData) -> dict[str, Any]:
+    """The mission as the plain data of a file; defaults are left out."""
+    fields = [f for f in specified(MissionData) if f.name == "schema" or getattr(mission, f.name) != f.default]
+    return {f.name: _file_form(f, mission) for f in fields}
 
 
 def with_files_from(mission: M, folder: Path) -> M:

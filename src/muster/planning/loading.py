@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from muster.library import mission_names, mission_path
@@ -17,21 +19,26 @@ def load(
     suitability: str | Path | None = None,
     salesmen: int | None = None,
     depot: str | None = None,
+    columns: Mapping[str, str] | None = None,
 ) -> Mission:
-    """Read a mission: YAML, a task-list CSV, an instance file of the field, QGroundControl plans, or a shipped name.
+    """Read a mission: YAML, a file of a site, an instance file of the field, QGroundControl plans, or a shipped name.
 
-    Instance files are those of TSPLIB and VRPLIB, of Solomon [solomon1987], Gehring and Homberger [gehring1999], Li and
-    Lim [li2001], and Schneider, Stenger and Goeke [schneider2014]. They are known by their first lines.
+    Files of sites are tables (CSV, XLSX), maps (GeoJSON, KML, KMZ, GeoPackage) and tracks (GPX); `read_site` reads
+    several, and says what was chosen. Instance files are those of TSPLIB and VRPLIB, of Solomon [solomon1987], Gehring
+    and Homberger [gehring1999], Li and Lim [li2001], and Schneider, Stenger and Goeke [schneider2014]. They are known
+    by their first lines.
 
     Parameters
     ----------
     path_or_name
         a file, a folder of QGroundControl `.plan` files, or one of `muster missions`; a file of that name comes first.
     robots, suitability
-        the CSV files that go with a task-list CSV.
+        the files that go with a file of a site: robots, or a mission that has them; and a table of types (CSV).
     salesmen, depot
         how many robots, for instance files: TSPLIB needs it, the others have a number of their own; and the number of
         the node where robots start and end, for TSPLIB, 1 if None.
+    columns
+        headings of a site's table by what they mean: `{"lat": "Breite"}`.
 
     Raises
     ------
@@ -39,36 +46,112 @@ def load(
         with everything that is wrong: file, line, field, value, what was expected.
     ParameterError
         if a parameter is missing, or does not go with this kind of file.
+    MissingExtraError
+        if the file needs an optional part of the installation.
     """
+    return load_noted(
+        path_or_name, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot, columns=columns or None
+    ).mission
+
+
+@dataclass(frozen=True)
+class Noted:
+    """A mission, and what its reader has chosen or not read, one line each."""
+
+    mission: Mission
+    notes: tuple[str, ...] = ()
+
+
+def load_noted(
+    path_or_name: str | Path,
+    *,
+    robots: str | Path | None = None,
+    suitability: str | Path | None = None,
+    salesmen: int | None = None,
+    depot: str | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> Noted:
+    """Read a mission as `load` does, with what there is to say of how."""
     from muster.mission.instance_files import TSPLIB, instance_form
 
     path = _found(path_or_name)
-    suffix, form = path.suffix.lower(), instance_form(path)
-    kind = suffix if form is None else _TSPLIB if form == TSPLIB else _VEHICLES
-    _check_flags(path_or_name, kind, robots=robots, suitability=suitability, salesmen=salesmen, depot=depot)
-    if suffix == ".csv":
+    suffix, form = path.suffix.lower(), None if _is_site(path) else instance_form(path)
+    kind = _kind(path, Path(str(robots)) if robots is not None else None, form)
+    given = {"robots": robots, "suitability": suitability, "salesmen": salesmen, "depot": depot, "columns": columns}
+    _check_flags(path_or_name, kind, **given)
+    if kind == _SITE:
+        return _site(path, robots, None if suitability is None else Path(suitability), columns or {})
+    if kind == _TASK_LIST:
         from muster.mission.thesis_csv import read_csv
 
-        return read_csv(path, Path(str(robots)), None if suitability is None else Path(suitability))
+        return Noted(read_csv(path, Path(str(robots)), None if suitability is None else Path(suitability)))
     if form == TSPLIB:
         from muster.mission.tsplib import read_tsplib
 
-        return read_tsplib(path, salesmen or 0, "1" if depot is None else depot)
+        return Noted(read_tsplib(path, salesmen or 0, "1" if depot is None else depot))
     if callable(form):
-        return form(path, salesmen)
+        return Noted(form(path, salesmen))
     if suffix == ".plan" or path.is_dir():
         from muster.exchange.qgc_reader import read_plan_files
 
-        return read_plan_files(path)
+        return Noted(read_plan_files(path))
+    if suffix not in (*_YAML, *_SUFFIXES):
+        from muster.exchange.sites.readers import unknown_file
+
+        raise unknown_file(path)
     from muster.mission.yaml_reader import read_yaml
 
-    return read_yaml(path)
+    return Noted(read_yaml(path))
+
+
+def _site(path: Path, robots: str | Path | None, suitability: Path | None, columns: Mapping[str, str]) -> Noted:
+    from muster.exchange.sites.builder import SiteOptions
+    from muster.exchange.sites.site_files import read_site
+
+    team, of_robots = team_of(robots)
+    found = read_site([path], SiteOptions(columns=columns), robots=of_robots, team=team, suitability=suitability)
+    return Noted(found.mission, found.notes)
+
+
+def team_of(robots: str | Path | None) -> tuple[Mission | None, Path | None]:
+    """The mission whose robots are taken; or the file that has robots alone."""
+    if robots is None:
+        return None, None
+    return (None, Path(robots)) if is_site_file(robots) else (load(robots), None)
+
+
+def is_site_file(path_or_name: str | Path) -> bool:
+    """Whether a file is one of a site, and not a mission by itself."""
+    return _is_site(Path(path_or_name)) or Path(path_or_name).suffix.lower() not in (*_SUFFIXES, "")
+
+
+def _is_site(path: Path) -> bool:
+    if path.suffix.lower() in _SUFFIXES:
+        return False
+    from muster.exchange.sites.readers import is_site
+
+    return is_site(path)
+
+
+def _kind(path: Path, robots: Path | None, form: object) -> str:
+    """What kind of file it is, as its flags are known by."""
+    from muster.mission.instance_files import TSPLIB
+
+    if form is not None:
+        return _TSPLIB if form == TSPLIB else _VEHICLES
+    if not _is_site(path):
+        return path.suffix.lower()
+    if path.suffix.lower() == _TASK_LIST:
+        from muster.mission.thesis_csv import is_task_list
+
+        return _TASK_LIST if is_task_list(path, robots) else _SITE
+    return _SITE
 
 
 def _found(path_or_name: str | Path) -> Path:
     path = Path(path_or_name)
     shipped = mission_path(str(path_or_name))
-    named_as_file = path.suffix.lower() in _SUFFIXES
+    named_as_file = path.suffix.lower() in _SUFFIXES or (shipped is None and path.suffix != "" and _is_site(path))
     if path.is_file() or (shipped is None and (path.exists() or named_as_file)):
         return path
     if shipped is None:
@@ -77,10 +160,18 @@ def _found(path_or_name: str | Path) -> Path:
     return shipped
 
 
-_SUFFIXES = (".yaml", ".yml", ".csv", ".tsp", ".atsp", ".vrp", ".txt", ".plan")
-_TSPLIB, _VEHICLES = ".tsp", "vehicles"
-_FLAGS = {".csv": ("robots", "suitability"), _TSPLIB: ("salesmen", "depot"), _VEHICLES: ("salesmen",)}
-_NEEDED_FLAGS = {".csv": "robots", _TSPLIB: "salesmen"}
+_YAML = (".yaml", ".yml", ".json", ".txt", "")
+_SUFFIXES = (".yaml", ".yml", ".tsp", ".atsp", ".vrp", ".txt", ".plan")
+"""Suffixes of missions by themselves."""
+_TASK_LIST, _SITE, _TSPLIB, _VEHICLES = ".csv", "site", ".tsp", "vehicles"
+_FLAGS = {
+    _TASK_LIST: ("robots", "suitability"),
+    _SITE: ("robots", "suitability", "columns"),
+    _TSPLIB: ("salesmen", "depot"),
+    _VEHICLES: ("salesmen",),
+}
+_NEEDED_FLAGS = {_TASK_LIST: "robots", _TSPLIB: "salesmen"}
+_OPTIONS = {"columns": "column"}
 
 
 def _check_flags(named: str | Path, kind: str, **given: object) -> None:
@@ -89,4 +180,5 @@ def _check_flags(named: str | Path, kind: str, **given: object) -> None:
         raise ParameterError(f"{named}: --{needed} missing; expected with a {kind} file")
     for name, value in given.items():
         if value is not None and name not in _FLAGS.get(kind, ()):
-            raise ParameterError(f"{named}: --{name} given; expected no --{name} with this kind of mission")
+            option = _OPTIONS.get(name, name)
+            raise ParameterError(f"{named}: --{option} given; expected no --{option} with this kind of mission")

@@ -1,13 +1,17 @@
 """What workers answer: the same as the command, for missions with their files."""
 
+import base64
 import json
+from pathlib import Path
 
 import pytest
+from tests.exchange.sites.writers import CSV, ROBOTS, area, geojson
 from tests.server.work.asking import FLOOR, MAPPED, TINY, given, shipped
 
 import muster
 from muster.library import mission_path
 from muster.mission.plan_reader import plan_from
+from muster.mission.yaml_reader import parse_yaml
 from muster.server.work import StopRequest, WorkError
 
 
@@ -161,3 +165,12 @@ def test_planning_that_is_stopped_at_once_gives_the_first_plan(asked, bound, why
     done = asked("plan", mission=shipped("31T-6R50"), time_limit=600.0, bound=bound, stop_request=stop_request)
     assert done["plan"]["tasks_completed"] > 0
     assert (done["plan"].get("lower_bound"), done["why"]) == (None, why)
+
+
+def test_the_files_of_a_site_are_one_mission(asked):
+    texts = {"panels.csv": CSV, "robots.csv": ROBOTS, "fences.geojson": geojson(area())}
+    files = {name: base64.b64encode(text.encode()).decode() for name, text in texts.items()}
+    answer = asked("convert", name="panels.csv", files=files, robots="robots.csv")
+    mission = parse_yaml(answer["text"], Path("panels.yaml"))
+    assert (answer["name"], answer["needs"]) == ("panels", [])
+    assert (len(mission.tasks), len(mission.robots), len(mission.map.zones)) == (3, 1, 1)

@@ -19,6 +19,7 @@ from muster.exchange.mission_control import (
     User,
     VersionEntry,
 )
+from muster.exchange.sites.readers import READERS
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.server.services.actions import Actions, Refused, ignore_refusal
@@ -27,7 +28,7 @@ from muster.server.services.uploads import as_text, check_sizes, findings_of, mi
 from muster.server.store import Store
 
 _READ_AS_THEY_ARE = (".yaml", ".yml")
-_CONVERTED = (".csv", ".tsp", ".atsp", ".vrp", ".txt", ".plan")
+_CONVERTED = (*(f".{name}" for name in READERS), ".tsp", ".atsp", ".vrp", ".txt", ".plan")
 
 
 class Workers(Protocol):
@@ -194,7 +195,7 @@ class Missions:
     async def upload(
         self, who: User, filename: str, data: bytes, beside: Mapping[str, bytes] | None = None, **options: Any
     ) -> MissionVersion:
-        """Create a mission from a file: YAML as it is; task lists, instance files and QGroundControl's plans converted.
+        """Create a mission from a file: YAML as it is; files of sites, of the field and of QGroundControl converted.
 
         `beside` are further files that the file needs. `options` are those of the worker task `convert`: `robots` and
         `suitability` (names of files of `beside`), `salesmen`, `depot`.

@@ -8,6 +8,7 @@ from typing import Any
 
 from nicegui import events, ui
 
+from muster.exchange.sites.readers import READERS
 from muster.mission.errors import ParameterError
 from muster.mission.yaml_writer import flow_text
 from muster.server.pages.buttons import once
@@ -39,7 +40,8 @@ _STARTS = {
     "": (EMPTY, "A small start: two robots, one task"),
     "/3-D": (EMPTY_IN_SPACE, "A small start in 3-D: two drones, one task"),
 }
-_ACCEPT = ".yaml,.yml,.csv,.tsp,.atsp,.vrp,.txt,.plan,.png,.pgm,.jpg"
+_SITES = tuple(f".{name}" for name in READERS.shipped)
+_ACCEPT = ",".join((".yaml,.yml", *_SITES, ".tsp,.atsp,.vrp,.txt,.plan,.png,.pgm,.jpg"))
 _MOST_BYTES = 16 * 2**20
 _REJECTED = "entries => emit(entries.map(entry => [entry.failedPropValidation, entry.file.name, entry.file.size]))"
 _CSV = (  # as `mission.thesis_csv` reads them
@@ -76,8 +78,8 @@ async def open_new_mission() -> None:
 def _uploading() -> None:
     ui.label("Or from a file").classes("dialog-title")
     ui.label(
-        "A mission (YAML, with the files that it names), tasks and robots (CSV, chosen together), an instance file "
-        "(TSPLIB, VRPLIB, Solomon, ...), or a plan of QGroundControl."
+        "A mission (YAML, with the files that it names), the files of a site (CSV, XLSX, GeoJSON, KML, GPX, "
+        "GeoPackage; chosen together), an instance file (TSPLIB, VRPLIB, Solomon, ...), or a plan of QGroundControl."
     ).classes("quiet small")
     with ui.element("details").classes("more small"):
         with ui.element("summary"):
@@ -151,11 +153,11 @@ def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str,
     kind = PurePath(name).suffix.lower()
     if kind in (".tsp", ".atsp"):
         return {"salesmen": salesmen, "depot": "1"}
-    if kind != ".csv":
+    if kind not in _SITES:
         return {}
-    if "robots" not in beside:
+    if kind == ".csv" and "robots" not in beside:
         raise ParameterError(
-            f"{name}: the robots are missing; expected two CSV files chosen together, of which one has the word "
+            f"{name}: the robots are missing; expected two files chosen together, of which one has the word "
             "robots in its name"
         )
     return dict(beside)
@@ -165,11 +167,12 @@ def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
     """Which of the chosen files are the mission, its robots, and its suitability."""
     beside = {}
     for kind, word in (("robots", "robot"), ("suitability", "suitab")):
-        named_so = [name for name in names if name.lower().endswith(".csv") and word in name.lower()]
+        ends = _SITES if kind == "robots" else (".csv",)
+        named_so = [name for name in names if name.lower().endswith(ends) and word in name.lower()]
         if named_so and len(names) > 1:
             beside[kind] = named_so[0]
     rest = [name for name in names if name not in beside.values()]
     rest.sort(
-        key=lambda name: not name.lower().endswith((".yaml", ".yml", ".tsp", ".atsp", ".vrp", ".txt", ".plan", ".csv"))
+        key=lambda name: not name.lower().endswith((".yaml", ".yml", ".tsp", ".atsp", ".vrp", ".txt", ".plan", *_SITES))
     )
     return rest[0], beside

@@ -51,9 +51,9 @@ def _notes(corners: Sequence[Corner], ground: object) -> list[str]:
 
 
 def lies_outside(ground: object, corners: Iterable[Corner]) -> bool:
-    """Whether a corner is outside the boundary of a map, if that has one."""
+    """Whether a corner is outside the boundary of a map, if that has one in metres."""
     boundary = ground.get("boundary") if isinstance(ground, dict) else None
-    return boundary is not None and any(not _is_within(corner, boundary) for corner in corners)
+    return isinstance(boundary, list) and any(not _is_within(corner, boundary) for corner in corners)
 
 
 def _is_within(point: Corner, polygon: Sequence[Corner]) -> bool:

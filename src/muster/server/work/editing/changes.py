@@ -22,6 +22,8 @@ def move(text: str, one: Mapping[str, Any], x: float, y: float) -> str:
     """
     if one["what"] == "zone":
         corner: Path = ("map", "zones", int(one["id"]), "polygon", int(one["corner"]))
+        if isinstance(_at(data_of(text), corner[:-1]), dict):
+            raise EditError(f"zone {int(one['id']) + 1} is placed in degrees (lat_lon); change that in the text")
         was = one.get("from")
         if was is not None and _at(data_of(text), corner)[:2] != list(was):
             raise EditError(f"the corner of zone {int(one['id']) + 1} is elsewhere by now; drag it again")
@@ -92,8 +94,10 @@ def _let_go(text: str, key: str, name: str) -> str:
 
 
 def _is_of(zone: Any, corners: Sequence[Sequence[float]]) -> bool:
-    """Whether a zone as it is written has those corners."""
+    """Whether a zone as it is written has those corners; of one in degrees, as many."""
     polygon = zone.get("polygon") if isinstance(zone, dict) else None
+    if isinstance(polygon, dict) and isinstance(polygon.get("lat_lon"), list):
+        return len(polygon["lat_lon"]) == len(corners)
     written = polygon if isinstance(polygon, list) else []
     return [list(corner[:2]) for corner in written if isinstance(corner, list)] == [list(c) for c in corners]
 

@@ -7,21 +7,24 @@ from pathlib import Path
 from typing import Any
 
 from muster import load
+from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import yaml_text
+from muster.planning.importing import read_site
 from muster.server.work.missions import written_files
 
-_SUFFIXES = (".csv", ".tsp", ".atsp", ".vrp", ".txt", ".plan")
+_MISSIONS = (".tsp", ".atsp", ".vrp", ".txt", ".plan")
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
     """`{"name", "files", ...}` -> `{"text", "name", "needs"}`: a mission as YAML, its name, the files that it names.
 
-    `name` is which of `files` (base64, by name) is the mission: a task-list CSV, with `robots` and perhaps
-    `suitability`, which name others of them; an instance file, perhaps with `salesmen` and `depot`, of which TSPLIB
-    needs the first; a `.plan` of QGroundControl, of which all `.plan` files are taken together.
+    `name` is which of `files` (base64, by name) is the mission: a task-list CSV or a file of a site, perhaps with
+    `robots` and `suitability`, which name others of them, and all other files of a site are added; an instance file,
+    perhaps with `salesmen` and `depot`, of which TSPLIB needs the first; a `.plan` of QGroundControl, of which all
+    `.plan` files are taken together.
     """
     name, files = arguments["name"], arguments["files"]
     options = {key: arguments[key] for key in _OPTIONS if arguments.get(key) is not None}
@@ -29,11 +32,23 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
         if key not in files or "/" in key:
             raise MissionError([Finding(shown(key), None, "", "no such file", "one of the files that were given")])
     path = Path(name)
-    if path.suffix.lower() not in _SUFFIXES:
-        raise MissionError([Finding(shown(name), None, "", "not known", f"a file in {', '.join(_SUFFIXES)}")])
+    suffixes = (*(f".{name}" for name in READERS), *_MISSIONS)
+    if path.suffix.lower() not in suffixes:
+        raise MissionError([Finding(shown(name), None, "", "not known", f"a file in {', '.join(suffixes)}")])
     written_files(files)
+    others = _others_of_site(name, files, options)
+    if others:
+        beside = {key: options[key] for key in ("robots", "suitability") if key in options}
+        mission = read_site(name, *others, **beside).mission
+        return {"text": yaml_text(mission), "name": mission.name, "needs": []}
     mission = load(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
     return {"text": yaml_text(mission), "name": mission.name, "needs": sorted(set((mission.travel or {}).values()))}
+
+
+def _others_of_site(name: str, files: Mapping[str, str], options: Mapping[str, Any]) -> list[str]:
+    """The other files of a site, where the mission is one of a site."""
+    of_site = [one for one in files if Path(one).suffix.lower().lstrip(".") in READERS]
+    return [one for one in of_site if one not in (name, *options.values())] if name in of_site else []
 
 
 def _folder_of_plans(files: Mapping[str, str]) -> Path:

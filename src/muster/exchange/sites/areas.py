@@ -1,0 +1,140 @@
+"""Areas of a site in metres: zones, the boundary, and areas to survey, each with its holes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from muster.exchange.sites.entries import Entry
+from muster.exchange.sites.features import Coordinate, Ring
+from muster.exchange.sites.frame import Frame, unwrapped
+from muster.exchange.sites.keys import COVERAGE
+from muster.exchange.sites.shapes import require_valid, without_holes
+from muster.mission.errors import Finding, MissingExtraError
+
+if TYPE_CHECKING:
+    import shapely
+
+_SEAM = 1e-8
+"""Degrees within which a corner on the meridian of 180 degrees lies on the line between its neighbours."""
+_MARGIN_M = 50.0
+_EXPECTED = "an area whose sides meet at its corners alone"
+
+
+def areas_of(entry: Entry, frame: Frame, findings: list[Finding]) -> list[shapely.Polygon]:
+    """The areas of an entry in metres; those cut at the meridian of 180 degrees are whole again.
+
+    Raises
+    ------
+    MissingExtraError
+        without shapely.
+    """
+    try:
+        import shapely
+    except ImportError:
+        raise MissingExtraError("map", f"{entry.feature.file}: areas") from None
+    assert entry.geometry is not None
+    pieces = [[_open(ring) for ring in piece] for piece in entry.geometry.pieces]
+    if entry.geometry.shape == "line":
+        pieces = [[[place for piece in pieces for place in piece[0]]]]  # a track around an area
+    found = []
+    for rings in _whole(pieces, frame):
+        try:
+            found.append(require_valid([frame.metres([place[:2] for place in ring]) for ring in rings]))
+        except ValueError as error:
+            findings.append(entry.feature.finding("geometry", str(error), _EXPECTED))
+    return [shapely.orient_polygons(area) for area in found]
+
+
+def _open(ring: Ring) -> list[Coordinate]:
+    """The corners of a ring, none of them twice in a row."""
+    corners = [ring[0][:2], *(b[:2] for a, b in pairwise(ring) if a[:2] != b[:2])]
+    return corners[:-1] if len(corners) > 1 and corners[0] == corners[-1] else corners
+
+
+def _whole(pieces: list[list[list[Coordinate]]], frame: Frame) -> list[list[list[Coordinate]]]:
+    """Areas that were cut at the meridian of 180 degrees (RFC 7946, section 3.1.9), put together."""
+    cut = [any(abs(abs(place[0]) - 180) < _SEAM for ring in piece for place in ring) for piece in pieces]
+    if sum(cut) < 2:
+        return pieces
+    import shapely
+
+    sides = [
+        shapely.Polygon(*_rings([[(unwrapped(place[0], frame.lon), place[1]) for place in ring] for ring in piece]))
+        for piece, is_cut in zip(pieces, cut, strict=True)
+        if is_cut and all(len(ring) > 2 for ring in piece)
+    ]
+    joined = [
+        [_without_seam(line.coords[:-1]) for line in (area.exterior, *area.interiors)]
+        for area in shapely.get_parts(shapely.union_all(sides, grid_size=1e-9))
+        if area.geom_type == "Polygon"
+    ]
+    return [*joined, *(piece for piece, is_cut in zip(pieces, cut, strict=True) if not is_cut)]
+
+
+def _rings(rings: list[list[Coordinate]]) -> tuple[list[Coordinate], list[list[Coordinate]]]:
+    return rings[0], rings[1:]
+
+
+def _without_seam(corners: Sequence[Sequence[float]]) -> list[Coordinate]:
+    """The corners without those that the cut has made."""
+    kept: list[Coordinate] = []
+    for k, here in enumerate(corners):
+        before, after = corners[k - 1], corners[(k + 1) % len(corners)]
+        turn = abs((here[0] - before[0]) * (after[1] - before[1]) - (here[1] - before[1]) * (after[0] - before[0]))
+        length = max(abs(after[0] - before[0]), abs(after[1] - before[1]))
+        if abs(abs(here[0]) - 180) > _SEAM or turn > _SEAM * length:
+            kept.append((here[0], here[1]))
+    return kept
+
+
+def zones_of(entry: Entry, areas: Sequence[shapely.Polygon], findings: list[Finding]) -> list[dict[str, Any]]:
+    """The zones of a mission's map: areas with holes are cut into several without."""
+    polygons = [_corners(part.exterior) for area in areas for part in without_holes(area)]
+    own = {key: entry.values[key] for key in ("floor_m", "ceiling_m", "forbidden_to", "open") if key in entry.values}
+    if "door" in entry.values:
+        own["id"] = entry.values["door"]
+        if len(polygons) > 1:
+            findings.append(entry.finding("door", entry.values["door"], "one area without holes for a door"))
+    return [{"polygon": polygon, **own} for polygon in polygons]
+
+
+def boundary_of(
+    entry: Entry, areas: Sequence[shapely.Polygon], findings: list[Finding]
+) -> tuple[list[list[float]], list[dict[str, Any]]]:
+    """The boundary of a mission's map, and its holes as zones."""
+    if len(areas) != 1:
+        if areas:
+            findings.append(entry.feature.finding("geometry", f"{len(areas)} areas", "one area for the boundary"))
+        return [], []
+    (area,) = areas
+    return _corners(area.exterior), [{"polygon": _corners(hole)} for hole in area.interiors]
+
+
+def survey_tasks(entry: Entry, areas: Sequence[shapely.Polygon], spatial: bool) -> list[dict[str, Any]]:
+    """Tasks to survey areas; what the action is to know comes from the entry, under the names of its keys."""
+    from muster.mission.action_keys import ACTION_KEYS
+
+    keys = ACTION_KEYS[COVERAGE].names
+    found = []
+    for area in areas:
+        action: dict[str, Any] = {"name": COVERAGE, "area": _corners(area.exterior)}
+        if area.interiors:
+            action["holes"] = [_corners(hole) for hole in area.interiors]
+        action |= {key: value for key, value in entry.values.items() if key in keys}
+        inside = area.representative_point()
+        place = [round(inside.x, 4), round(inside.y, 4), *([0.0] if spatial else [])]
+        found.append({"position": place, "action": action})
+    return found
+
+
+def around(points: Sequence[Sequence[float]]) -> list[list[float]]:
+    """A rectangle around all points, with a margin, in whole metres."""
+    west, south = (float(int(min(p[k] for p in points) - _MARGIN_M)) for k in (0, 1))
+    east, north = (float(int(max(p[k] for p in points) + _MARGIN_M)) for k in (0, 1))
+    return [[west, south], [east, south], [east, north], [west, north]]
+
+
+def _corners(line: shapely.LinearRing) -> list[list[float]]:
+    return [[round(x, 4) + 0.0, round(y, 4) + 0.0] for x, y in line.coords[:-1]]

@@ -1,0 +1,382 @@
+"""The mission of a site: its entries as the data of a mission file, in one map frame."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import Any
+
+from muster.exchange.sites.areas import areas_of, around, boundary_of, survey_tasks, zones_of
+from muster.exchange.sites.entries import Entry
+from muster.exchange.sites.features import Coordinate
+from muster.exchange.sites.frame import FARTHEST_M, Frame
+from muster.exchange.sites.keys import AT_POINTS, COVERAGE, can_survey, keys_of
+from muster.exchange.sites.roles import role_word
+from muster.exchange.sites.times import KEYS as TIMES
+from muster.exchange.sites.times import chosen_start, robot_times, task_times
+from muster.exchange.sites.ways import Ways
+from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.errors import Finding, MissionError
+from muster.mission.model import SCHEMA
+from muster.mission.source import Place
+from muster.mission.value_types import Path, shown
+
+_GROUPS = {"task": "tasks", "robot": "robots", "station": "stations"}
+_ID_LISTS = ("prerequisites", "same_robot_as", "other_robot_than", "starts_with", "only_robots")
+_OWN = frozenset(("id", "name", "kind", "moves", "battery", *TIMES))
+"""Keys of entries that do not go into the mission as they are."""
+_AREAS = ("zone", "boundary", "survey")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteOptions:
+    """What a user says of a site besides its files.
+
+    Parameters
+    ----------
+    columns
+        headings by the keys that they mean.
+    kinds
+        what features are (`boundary`, `survey`, ...) by the name of their file, layer, or their own.
+    origin
+        latitude and longitude of the map frame's origin, and perhaps its altitude.
+    starts_at
+        when the mission begins, for clock times.
+    name
+        of the mission.
+    flat
+        whether heights are left out.
+    """
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    kinds: Mapping[str, str] = field(default_factory=dict)
+    origin: tuple[float, ...] | None = None
+    starts_at: str | None = None
+    name: str | None = None
+    flat: bool = False
+
+
+@dataclass
+class Built:
+    """The data of a mission, where its values are from, and what there is to say of it."""
+
+    data: dict[str, Any]
+    places: dict[Path, Place] = field(default_factory=dict)
+    fields: dict[Path, str] = field(default_factory=dict)
+    findings: list[Finding] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+class Builder:
+    """Builds one mission; what is wrong is gathered, and raised when the frame depends on it."""
+
+    def __init__(self, entries: Sequence[Entry], base: Mapping[str, Any] | None, options: SiteOptions) -> None:
+        self._base = dict(base or {})
+        self._options = options
+        self._entries = [entry for entry in entries if entry.role != "route"]
+        self.built = Built({"schema": SCHEMA, "name": "site", **self._base})
+        passed_over = len(entries) - len(self._entries)
+        if passed_over:
+            self.built.notes.append(f"{passed_over} routes of a plan passed over: Muster plans them anew")
+
+    def build(self) -> Built:
+        """The whole mission."""
+        data = self.built.data
+        if self._options.name is not None:
+            data["name"] = self._options.name
+        points = [entry for entry in self._entries if entry.role in AT_POINTS]
+        self._frame = self._chosen_frame()
+        self._refuse_far()
+        self._raise_findings()
+        spatial = self._is_spatial(points)
+        positions = self._positions(points, spatial)
+        ids = self._ids(points)
+        for entry, position, name in zip(points, positions, ids, strict=True):
+            self._add(_GROUPS[entry.role], entry, self._record(entry, name, position))
+        self._split_lists(self._all_ids())
+        self._add_areas(spatial)
+        self._add_lanes()
+        self._set_start()
+        self._raise_findings()
+        return self.built
+
+    def _raise_findings(self) -> None:
+        if self.built.findings:
+            raise MissionError(sorted(self.built.findings, key=lambda finding: (finding.file, finding.line or 0)))
+
+    # Where on Earth
+
+    def _chosen_frame(self) -> Frame | None:
+        """The frame of the base, of the options, or one around everything; None where nothing is in degrees."""
+        given = self._base.get("origin_wgs84")
+        stated = self._options.origin
+        if given is not None:
+            if stated is not None:
+                told = "origin_wgs84 of the mission that is there"
+                self.built.findings.append(Finding("--origin", None, "", shown(list(stated)), f"none beside {told}"))
+            return Frame(given["lat_deg"], given["lon_deg"], given.get("alt_m", 0.0))
+        if stated is not None:
+            frame = Frame(stated[0], stated[1], stated[2] if len(stated) > 2 else 0.0)
+            self._set_origin(frame)
+            return frame
+        in_degrees = list(self._degrees())
+        in_metres = next((entry for entry in self._entries if entry.metres is not None), None)
+        if not in_degrees:
+            return None
+        if in_metres is not None or self._base:
+            self._refuse_mixture(in_degrees[0][0], in_metres)
+            return None
+        spatial = not self._options.flat
+        altitudes = [e.height for e in self._entries if e.height is not None and not e.over_ground and spatial]
+        frame = Frame.around([place for _, place in in_degrees], altitudes)
+        self._set_origin(frame)
+        self.built.notes.append(
+            f"origin_wgs84 chosen: lat_deg {frame.lat}, lon_deg {frame.lon}, alt_m {frame.alt}; --origin says another"
+        )
+        return frame
+
+    def _set_origin(self, frame: Frame) -> None:
+        self.built.data["origin_wgs84"] = {"lat_deg": frame.lat, "lon_deg": frame.lon, "alt_m": frame.alt}
+
+    def _refuse_mixture(self, entry: Entry, in_metres: Entry | None) -> None:
+        expected = "--origin LAT,LON, the place of [0, 0] on Earth, as others are in metres"
+        where = "" if in_metres is None else f" ({in_metres.feature.file})"
+        self.built.findings.append(entry.feature.finding("", "a place in degrees", expected + where))
+
+    def _degrees(self) -> Iterable[tuple[Entry, Coordinate]]:
+        for entry in self._entries:
+            if entry.degrees is not None:
+                yield entry, entry.degrees
+            elif entry.geometry is not None:
+                yield from ((entry, place) for piece in entry.geometry.pieces for ring in piece for place in ring)
+
+    def _refuse_far(self) -> None:
+        """Refuse places that cannot be meant; the first that is far from the origin, or from all others."""
+        if self._frame is None:
+            return
+        for entry, place in self._degrees():
+            if self._frame.is_far(place):
+                self.built.findings.append(self._far(entry, place))
+                return
+
+    def _far(self, entry: Entry, place: Coordinate) -> Finding:
+        assert self._frame is not None
+        value = f"latitude {place[1]:g}, longitude {place[0]:g}"
+        apart = self._frame.distance(place) / 1000
+        expected = f"within {FARTHEST_M / 1000:g} km of the origin, not {apart:,.0f}"
+        return entry.feature.finding("", value, f"{expected}; are latitude and longitude swapped, or 0?")
+
+    # Points
+
+    def _is_spatial(self, points: Sequence[Entry]) -> bool:
+        """Whether the mission is in space: where it is so already, or all places have heights."""
+        if self._options.flat:
+            return False
+        there = next((len(one["position"]) for one in self._base.get("robots", ())), None)
+        if there is not None:
+            return there == 3
+        high = [entry for entry in points if entry.height is not None]
+        if not high:
+            return False
+        low = next((entry for entry in points if entry.height is None), None)
+        if low is None:
+            return True
+        title = low.feature.file
+        if all(entry.over_ground or entry.metres is not None for entry in high):
+            self.built.notes.append(f"{title}: places without a height are taken on the ground, at height 0")
+            return True
+        self.built.notes.append(f"heights left out: places of {title} have none")
+        return False
+
+    def _positions(self, points: Sequence[Entry], spatial: bool) -> list[list[float]]:
+        size = 3 if spatial else 2
+        found: dict[int, list[float]] = {}
+        for over_ground in (False, True):
+            chosen = [k for k, e in enumerate(points) if e.degrees is not None and e.over_ground == over_ground]
+            places = [point.degrees[:size] for k in chosen if (point := points[k]).degrees is not None]
+            if self._frame is not None:
+                found |= dict(zip(chosen, self._frame.metres(places, over_ground), strict=True))
+        found |= {k: list(e.metres[:size]) for k, e in enumerate(points) if e.metres is not None}
+        return [[*found[k], *[0.0] * (size - len(found[k]))] for k in range(len(points))]
+
+    def _ids(self, points: Sequence[Entry]) -> list[str]:
+        """The id of each; names that stand several times, and places without a name, are numbered."""
+        taken = Counter(self._all_ids())
+        counts: Counter[str] = Counter()
+        ids = []
+        repeated: dict[str, int] = {}
+        for entry in points:
+            own, name = entry.values.get("id"), entry.values.get("name")
+            stem = str(own or name or PurePath(entry.feature.file).stem)
+            if own is None:
+                counts[stem] += 1
+                number = counts[stem]
+                own = stem if name is not None and number == 1 else f"{stem}-{number}"
+                while taken[own]:
+                    counts[stem] += 1
+                    own = f"{stem}-{counts[stem]}"
+                if name is not None and own != stem:
+                    repeated[stem] = counts[stem]
+            taken[str(own)] += 1
+            ids.append(str(own))
+        if repeated:
+            told = ", ".join(f"{name} ({count} times)" for name, count in list(repeated.items())[:4])
+            self.built.notes.append(f"names that stand several times are numbered: {told}")
+        return ids
+
+    def _all_ids(self) -> list[str]:
+        return [str(one["id"]) for group in _GROUPS.values() for one in self.built.data.get(group, ())]
+
+    def _record(self, entry: Entry, name: str, position: list[float]) -> dict[str, Any]:
+        """A task, robot or station as a mission file has it."""
+        known = keys_of(entry.role)
+        record: dict[str, Any] = {"id": name, "position": position}
+        record |= {key: value for key, value in entry.values.items() if key in known and key not in _OWN}
+        if entry.role == "robot":
+            moves = entry.values.get("moves", entry.values.get("kind"))
+            record |= {} if moves is None or role_word(moves) else {"kind": moves}
+            if "battery" in entry.values:
+                record["battery"] = {"capacity": entry.values["battery"]}
+            record |= robot_times(entry, self.built.findings)
+        elif entry.role == "task":
+            record |= task_times(entry, self.built.findings)
+        return record
+
+    def _split_lists(self, known: Sequence[str]) -> None:
+        """Lists of ids with nothing but spaces between them, where the whole is no id."""
+        ids = set(known)
+        for group in ("tasks", "robots"):
+            for record in self.built.data.get(group, ()):
+                for key in _ID_LISTS:
+                    names = record.get(key)
+                    if isinstance(names, list) and all(isinstance(name, str) for name in names):
+                        record[key] = [part for name in names for part in ([name] if name in ids else name.split())]
+
+    def _add(self, group: str, entry: Entry, record: dict[str, Any]) -> None:
+        items = self.built.data.setdefault(group, [])
+        self._place((group, len(items)), entry)
+        items.append(record)
+
+    def _place(self, at: Path, entry: Entry) -> None:
+        feature = entry.feature
+        self.built.places[at] = feature.file, feature.line
+        prefix = f"{feature.where}, " if feature.where else ""
+        if prefix:
+            self.built.fields[at] = feature.where
+        for key, column in entry.columns.by_key.items():
+            for name in {key, *_SAID_AS.get(key, ())}:
+                self.built.fields[*at, name] = f"{prefix}{column.heading}"
+
+    # Areas and lines
+
+    def _add_areas(self, spatial: bool) -> None:
+        entries = [entry for entry in self._entries if entry.role in _AREAS]
+        surveys = [entry for entry in entries if entry.role == "survey"]
+        if surveys and not can_survey():
+            expected = f"the action {COVERAGE}, which surveys need and this version has not; or --as NAME=zone"
+            self.built.findings.append(surveys[0].feature.finding("", "an area to survey", expected))
+            return
+        zones: list[tuple[Entry, dict[str, Any]]] = []
+        bounds: list[tuple[Entry, list[list[float]]]] = []
+        for entry in entries:
+            assert self._frame is not None
+            areas = areas_of(entry, self._frame, self.built.findings)
+            if entry.role == "survey":
+                for task, name in zip(
+                    survey_tasks(entry, areas, spatial), self._ids([entry] * len(areas)), strict=True
+                ):
+                    record = self._record(entry, name, task["position"])
+                    kept = {key: value for key, value in record.items() if key not in ACTION_KEYS[COVERAGE].names}
+                    self._add("tasks", entry, kept | task_times(entry, self.built.findings) | task)
+                continue
+            if entry.role == "boundary":
+                corners, holes = boundary_of(entry, areas, self.built.findings)
+                bounds.append((entry, corners))
+            else:
+                holes = zones_of(entry, areas, self.built.findings)
+            zones += [(entry, zone) for zone in holes]
+        self._set_map(bounds, [(entry, zone) for entry, zone in zones if zone.get("forbidden_to") != []])
+
+    def _set_map(
+        self, bounds: Sequence[tuple[Entry, list[list[float]]]], zones: Sequence[tuple[Entry, dict[str, Any]]]
+    ) -> None:
+        there = dict(self._base.get("map") or {})
+        if not bounds and not zones:
+            return
+        if len(bounds) > 1 or (bounds and there):
+            entry = bounds[1 if len(bounds) > 1 else 0][0]
+            other = f"that of {bounds[0][0].feature.file}" if len(bounds) > 1 else "the map of the mission"
+            expected = f"one boundary: {other} is there; --as NAME=zone or survey says what it is"
+            self.built.findings.append(entry.feature.finding("", "a second boundary", expected))
+            return
+        if bounds:
+            there["boundary"] = bounds[0][1]
+            self._place(("map", "boundary"), bounds[0][0])
+        elif not there:
+            points = [one["position"] for group in _GROUPS.values() for one in self.built.data.get(group, ())]
+            points += [corner for _, zone in zones for corner in zone["polygon"]]
+            there["boundary"] = around(points)
+            self.built.notes.append("no boundary given: a rectangle 50 m around everything is taken")
+        there["zones"] = [*there.get("zones", ())]
+        for entry, zone in zones:
+            self._place(("map", "zones", len(there["zones"])), entry)
+            there["zones"].append(zone)
+        if not there["zones"]:
+            del there["zones"]
+        self.built.data["map"] = there
+
+    def _add_lanes(self) -> None:
+        entries = [entry for entry in self._entries if entry.role == "lane"]
+        if not entries:
+            return
+        there = self._base.get("lanes") or {}
+        ways = Ways(dict(there.get("nodes", {})), list(there.get("edges", ())))
+        begin = len(ways.edges)
+        for entry in entries:
+            assert self._frame is not None
+            ways.add(entry, self._frame, self.built.findings)
+        for k, entry in enumerate(ways.made, begin):
+            self._place(("lanes", "edges", k), entry)
+        if ways.edges:
+            self.built.data["lanes"] = {"nodes": ways.nodes, "edges": ways.edges}
+
+    # When
+
+    def _set_start(self) -> None:
+        stated = self._options.starts_at
+        if stated is not None:
+            self.built.data["starts_at"] = stated
+        if self.built.data.get("starts_at") is not None:
+            return
+        chosen, needed = chosen_start(self._entries)
+        if chosen is not None:
+            self.built.data["starts_at"] = chosen
+            self.built.notes.append(
+                f"starts_at chosen: {chosen}, the earliest time in the files; --starts-at says another"
+            )
+        elif needed:
+            timed = next(
+                entry for entry in self._entries if any(isinstance(entry.values.get(k), str | list) for k in TIMES)
+            )
+            expected = "--starts-at 2027-03-01T08:00, the moment at which the mission begins, beside clock times"
+            self.built.findings.append(timed.feature.finding("starts_at", "missing", expected))
+
+
+_SAID_AS = {
+    "name": ("id",),
+    "opens": ("window", "window_s"),
+    "closes": ("window", "window_s"),
+    "window": ("window_s",),
+    "deadline": ("deadline_s",),
+    "due": ("due_s",),
+    "starts": ("shift", "available_from_s"),
+    "ends": ("shift", "available_until_s"),
+    "door": ("id",),
+    "moves": ("kind",),
+    "lat": ("position",),
+    "lat_lon": ("position",),
+    "x": ("position",),
+}
+"""The keys of a mission that are said by those of entries."""

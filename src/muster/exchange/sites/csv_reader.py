@@ -1,0 +1,79 @@
+"""CSV of spreadsheets as a layer: with commas, semicolons, tabs or bars; in UTF-8 or UTF-16, marked or not."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from muster.exchange.sites.features import Layer, refused
+from muster.exchange.sites.file_sizes import read_bytes
+from muster.exchange.sites.tables import Row, table_layer
+
+_SEPARATORS = ";\t,|"
+_MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
+
+
+def read_csv_layers(path: Path) -> Sequence[Layer]:
+    """The table of a file as one layer.
+
+    Raises
+    ------
+    MissionError
+        with the line at which it is no such table.
+    """
+    file = str(path)
+    text = decoded(read_bytes(path), file)
+    layer = table_layer(file, "", _rows(text, file))
+    if not layer.headings:
+        raise refused(file, 1, "", "empty", "a row of headings, then a row for each task or robot")
+    return [layer]
+
+
+def decoded(data: bytes, file: str) -> str:
+    """The text in UTF-8 or UTF-16."""
+    mark, encoding = next(((mark, name) for mark, name in _MARKS if data.startswith(mark)), (b"", ""))
+    encoding = encoding or _unmarked(data[:200])
+    try:
+        text = data[len(mark) :].decode(encoding)
+    except UnicodeDecodeError as error:
+        line = 1 + data.count(b"\n", 0, error.start + len(mark))
+        expected = "a text in UTF-8 or UTF-16; in a spreadsheet, save as CSV UTF-8"
+        told = f"byte {error.start + len(mark)} is not {encoding.upper()}"
+        raise refused(file, line, "", told, expected) from None
+    if "\0" in text:
+        line = 1 + text.count("\n", 0, text.index("\0"))
+        raise refused(file, line, "", "a character of code 0", "a text, as CSV is")
+    return text
+
+
+def _unmarked(start: bytes) -> str:
+    """UTF-16 without a mark has a zero beside each Latin letter."""
+    zeros = [start[k::2].count(0) * 4 > len(start) for k in (0, 1)]
+    return "utf-16-be" if zeros[0] and not zeros[1] else "utf-16-le" if zeros[1] and not zeros[0] else "utf-8"
+
+
+def _rows(text: str, file: str) -> Iterator[Row]:
+    lines = text.splitlines()
+    told = next((line.strip().strip('"') for line in lines if line.strip()), "")
+    stated = told[4:] if told[:4].casefold() == "sep=" and len(told) == 5 else ""
+    separator = stated or _separator(told)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    begins, skips = 1, bool(stated)
+    try:
+        for cells in reader:
+            if skips and any(map(str.strip, cells)):
+                skips = False
+            else:
+                yield begins, cells
+            begins = reader.line_num + 1
+    except csv.Error as error:
+        raise refused(file, begins, "", str(error), "CSV: a cell with separators or quotes in quotes") from None
+
+
+def _separator(head: str) -> str:
+    """The separator that stands most often in the headings, outside of quotes; the first of those where several do."""
+    outside = "".join(head.split('"')[::2])
+    return max(_SEPARATORS, key=outside.count) if any(sign in outside for sign in _SEPARATORS) else ","

@@ -1,0 +1,192 @@
+"""The features of a layer with their roles and values: what a mission is built of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from typing import Any
+
+from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
+from muster.exchange.sites.headings import Columns, columns_of
+from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
+from muster.exchange.sites.roles import Roles, names_role
+from muster.exchange.sites.shapes import from_text
+from muster.mission.errors import Finding
+
+_NEAR = 0.75
+"""How much a heading that means nothing is like a key, to be taken for a slip."""
+_IN_DEGREES = ("lat", "lon", "lat_lon", "alt")
+_IN_METRES = ("x", "y", "position")
+_EXPECTED_PLACE = "columns of latitude and longitude (or x and y); --column lat=HEADING --column lon=HEADING names them"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One thing of the site.
+
+    Parameters
+    ----------
+    values
+        by key, without those of its place.
+    degrees, metres
+        of a point, one of the two.
+    over_ground
+        whether the third of `degrees` is a height over the ground.
+    geometry
+        of a line or an area.
+    """
+
+    role: str
+    feature: Feature
+    columns: Columns
+    values: Mapping[str, object]
+    degrees: Coordinate | None = None
+    metres: tuple[float, ...] | None = None
+    over_ground: bool = False
+    geometry: Geometry | None = None
+
+    def finding(self, key: str, value: object, expected: str) -> Finding:
+        """What is wrong with the value of a key."""
+        return self.feature.finding(self.columns.heading(key), value, expected)
+
+    @property
+    def height(self) -> float | None:
+        """Of a point, if it has one."""
+        place = self.degrees or self.metres or ()
+        return place[2] if len(place) > 2 else None
+
+
+def entries_of(
+    layer: Layer,
+    roles: Roles,
+    default: str | None,
+    given: Mapping[str, str],
+    findings: list[Finding],
+    notes: list[str],
+) -> list[Entry]:
+    """What a layer holds; what of it is not read is noted."""
+    features = list(_with_shapes(layer, findings))
+    by_role: dict[str, list[Feature]] = {}
+    for feature in features:
+        by_role.setdefault(roles.role(layer, feature, default, findings), []).append(feature)
+    found: list[Entry] = []
+    unread: list[set[str]] = []
+    for role, members in by_role.items():
+        columns = columns_of(layer, role, given, findings)
+        if role in AT_POINTS and not _has_places(members, columns):
+            if not _passes_over(layer, default, notes):
+                findings.append(_without_places(layer))
+            continue
+        unread.append(set(columns.unread))
+        for feature in members:
+            found += _entry(role, feature, columns, findings)
+    lost = set.intersection(*unread) if unread else set()
+    if names := [heading for heading in layer.headings if heading in lost and heading.casefold() != ROLE.name]:
+        notes.append(f"{layer.title}: not read: {_told_unread(names, list(by_role))}")
+    return found
+
+
+def _told_unread(names: list[str], roles: list[str]) -> str:
+    """Headings that mean nothing, and for those that are nearly a key what that may be."""
+    known = [key for role in roles for key in keys_of(role)]
+    near = {name: get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR) for name in names[:8]}
+    told = [f"{name} (did you mean {found[0]}?)" if found else name for name, found in near.items()]
+    return ", ".join(told) + (f", and {len(names) - 8} more" if len(names) > 8 else "")
+
+
+def _with_shapes(layer: Layer, findings: list[Finding]) -> Iterator[Feature]:
+    """The features; those of tables whose geometry is a text with the parts of that."""
+    columns = columns_of(layer, "lane", {}, [])
+    if "wkt" not in columns:
+        yield from layer.features
+        return
+    column = columns.by_key["wkt"]
+    for feature in layer.features:
+        told = column.value(feature, findings) if feature.geometry is None else None
+        if not isinstance(told, str):
+            yield feature
+            continue
+        try:
+            for geometry in from_text(told):
+                yield replace(feature, geometry=geometry)
+        except ValueError as error:
+            expected = "a geometry as well-known text, longitude first: POINT (24.06 35.53)"
+            findings.append(feature.finding(column.heading, str(error), expected))
+
+
+def _has_places(features: list[Feature], columns: Columns) -> bool:
+    return any(feature.geometry is not None for feature in features) or any(
+        key in columns for key in (*_IN_DEGREES[:3], *_IN_METRES)
+    )
+
+
+def _passes_over(layer: Layer, default: str | None, notes: list[str]) -> bool:
+    """Whether a layer without places is one of several that holds something else, such as remarks."""
+    if not layer.name or default is not None or names_role(layer):
+        return False
+    notes.append(f"{layer.title}: passed over, it has no places")
+    return True
+
+
+def _without_places(layer: Layer) -> Finding:
+    line = None if layer.name or not layer.features or layer.features[0].line is None else 1
+    told = ", ".join(layer.headings[:8]) or "no headings"
+    return Finding(layer.file, line, layer.name, f"no places under {told}", _EXPECTED_PLACE)
+
+
+def _entry(role: str, feature: Feature, columns: Columns, findings: list[Finding]) -> list[Entry]:
+    """The entries of a feature: one, but of several points one each; none with a wrong place."""
+    before = len(findings)
+    read = {key: column.value(feature, findings) for key, column in columns.by_key.items()}
+    values = {key: value for key, value in read.items() if value is not None}
+    own = {key: value for key, value in values.items() if key not in (*_IN_DEGREES, *_IN_METRES, "z", "wkt")}
+    entry = Entry(role, feature, columns, own)
+    geometry = feature.geometry
+    if role not in AT_POINTS:
+        return [replace(entry, geometry=geometry)]
+    if geometry is None:
+        placed = _placed(entry, values, findings) if len(findings) == before else None
+        return [] if placed is None else [placed]
+    points = [piece[0][0] for piece in geometry.pieces]
+    height = values.get("z")
+    if isinstance(height, float):
+        points = [(*point[:2], height) for point in points]
+    over_ground = geometry.over_ground or height is not None
+    several = [replace(entry, degrees=point, over_ground=over_ground) for point in points]
+    return several if len(several) == 1 else [_numbered(one, k) for k, one in enumerate(several, 1)]
+
+
+def _numbered(entry: Entry, number: int) -> Entry:
+    """One of the points of a feature; the name of each has its number."""
+    named = {key: f"{entry.values[key]}-{number}" for key in ("id", "name") if key in entry.values}
+    return replace(entry, values={**entry.values, **named})
+
+
+def _placed(entry: Entry, values: Mapping[str, object], findings: list[Finding]) -> Entry | None:
+    """An entry of a table with its place; None, with a finding, where it has none."""
+    height = values.get("z")
+    together = values.get("lat_lon")
+    if isinstance(together, tuple):
+        values = {**values, **dict(zip(("lat", "lon", "alt"), together, strict=False))}
+    lat, lon = values.get("lat"), values.get("lon")
+    if isinstance(lat, float) and isinstance(lon, float):
+        alt = values.get("alt")
+        third = height if isinstance(height, float) else alt if isinstance(alt, float) else None
+        degrees = (lon, lat) if third is None else (lon, lat, third)
+        return replace(entry, degrees=degrees, over_ground=isinstance(height, float))
+    given = values.get("position")
+    place: list[Any] = list(given) if isinstance(given, list) else []
+    if not place:
+        place = [values[axis] for axis in ("x", "y") if axis in values]
+        place += [height] if height is not None else []
+    if "position" not in values and not {"x", "y"} <= values.keys():
+        findings.append(_no_place(entry, values))
+        return None
+    return replace(entry, metres=tuple(place))
+
+
+def _no_place(entry: Entry, values: Mapping[str, object]) -> Finding:
+    keys = [key for key in (*_IN_DEGREES[:3], *_IN_METRES) if key in entry.columns and key not in values]
+    headings = ", ".join(entry.columns.heading(key) for key in keys)
+    return entry.feature.finding(headings, "missing", "a place: latitude and longitude, or x and y")

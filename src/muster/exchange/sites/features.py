@@ -1,0 +1,89 @@
+"""What readers of site files make of them: layers of features, each with its values and perhaps a geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from muster.mission.errors import Finding, MissionError
+from muster.mission.value_types import shown
+
+Coordinate = tuple[float, ...]
+"""Longitude and latitude in degrees (WGS84), and perhaps a height in metres."""
+Ring = tuple[Coordinate, ...]
+"""The coordinates of a line; of an area its corners, the first of them again at the end."""
+Shape = Literal["point", "line", "area"]
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Points, lines or areas.
+
+    Parameters
+    ----------
+    pieces
+        of a point or a line one ring each; of an area its outer ring, then its holes.
+    over_ground
+        whether heights are metres over the ground, and not over the ellipsoid.
+    """
+
+    shape: Shape
+    pieces: tuple[tuple[Ring, ...], ...]
+    over_ground: bool = False
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One row of a table, or one feature of a map.
+
+    Parameters
+    ----------
+    values
+        what stands under each heading; empty cells are left out.
+    file, line
+        where it begins; None where there are no lines.
+    where
+        which one of the file it is, where the line alone does not say so: `sheet Panels`, `features[3]`.
+    """
+
+    values: Mapping[str, object]
+    file: str
+    line: int | None
+    where: str = ""
+    geometry: Geometry | None = None
+
+    def finding(self, heading: str, value: object, expected: str) -> Finding:
+        """What is wrong with a value of it."""
+        field = ", ".join(part for part in (self.where, heading) if part)
+        return Finding(self.file, self.line, field, value if isinstance(value, str) else shown(value), expected)
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Features that have their headings in common: a table, a sheet, a folder.
+
+    `name` is that of the sheet, folder or layer, if there is one; `headings` are in the order of the file.
+    """
+
+    file: str
+    name: str
+    headings: tuple[str, ...]
+    features: tuple[Feature, ...]
+
+    @property
+    def title(self) -> str:
+        """The layer as messages name it."""
+        return f"{self.file}, {self.name}" if self.name else self.file
+
+
+def layer_of(file: str, name: str, features: list[Feature]) -> Layer:
+    """A layer whose headings are those of its features."""
+    headings = dict.fromkeys(heading for feature in features for heading in feature.values)
+    return Layer(file, name, tuple(headings), tuple(features))
+
+
+def refused(file: str, line: int | None, field: str, value: object, expected: str) -> MissionError:
+    """The error of a file that cannot be read."""
+    told = value if isinstance(value, str) else shown(value)
+    return MissionError([Finding(file, line, field, told, expected)])

@@ -1,0 +1,181 @@
+"""GeoJSON (RFC 7946) as a layer: a collection, a feature or a geometry; longitude first, heights over the ellipsoid.
+
+A `crs`, which the standard no longer has, is kept to where it stands.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, cast
+
+from muster.exchange.sites.coordinate_systems import to_wgs84
+from muster.exchange.sites.csv_reader import decoded
+from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, Ring, Shape, layer_of, refused
+from muster.exchange.sites.file_sizes import read_bytes
+from muster.mission.json_reader import JsonPlaces
+from muster.mission.value_types import Path as Where
+
+_WHAT = "GeoJSON: a FeatureCollection"
+_SHAPES: Mapping[str, tuple[Shape, int, bool]] = {
+    "Point": ("point", 0, False),
+    "MultiPoint": ("point", 0, True),
+    "LineString": ("line", 1, False),
+    "MultiLineString": ("line", 1, True),
+    "Polygon": ("area", 2, False),
+    "MultiPolygon": ("area", 2, True),
+}
+"""By type: the shape, how deep the lists of positions are, and whether there are several."""
+_LEAST = {"point": 1, "line": 2, "area": 4}
+_SELDOM_DEEPER = 8
+
+
+def read_geojson_layers(path: Path) -> Sequence[Layer]:
+    """The features of a file as one layer.
+
+    Raises
+    ------
+    MissionError
+        with the line at which it is no GeoJSON.
+    MissingExtraError
+        if it has another coordinate system, and pyproj is not installed.
+    """
+    file = str(path)
+    text = decoded(read_bytes(path), file)
+    try:
+        data = json.loads(text, parse_constant=_no_number)
+    except json.JSONDecodeError as error:
+        raise refused(file, error.lineno, "", error.msg, _WHAT) from None
+    except (RecursionError, ValueError) as error:
+        raise refused(file, None, "", str(error) or "nested too deep", _WHAT) from None
+    return [_Reading(file, text).layer(data)]
+
+
+def _no_number(name: str) -> float:
+    raise ValueError(f"{name} is no number in JSON")
+
+
+class _Reading:
+    def __init__(self, file: str, text: str) -> None:
+        self._file = file
+        self._places = JsonPlaces(text, file)
+        self._transform: Callable[[Coordinate], Coordinate] | None = None
+
+    def layer(self, data: Any) -> Layer:
+        kind = data.get("type") if isinstance(data, dict) else None
+        if kind not in ("FeatureCollection", "Feature", "GeometryCollection", *_SHAPES):
+            told = data if kind is None else kind
+            raise self._refused((), "type" if isinstance(data, dict) else "", told, _WHAT)
+        if data.get("crs") is not None:
+            self._transform = to_wgs84(_crs(data["crs"]), self._file, "crs")
+        name = data.get("name")
+        title = name if isinstance(name, str) and kind == "FeatureCollection" else ""
+        if kind != "FeatureCollection":
+            feature = data if kind == "Feature" else {"type": "Feature", "geometry": data, "properties": {}}
+            return layer_of(
+                self._file, "", list(self._features(feature, (), () if kind != "Feature" else ("geometry",)))
+            )
+        items = data.get("features")
+        if not isinstance(items, list):
+            raise self._refused(("features",), "features", items, "a list of features")
+        found = [
+            feature
+            for k, item in enumerate(items)
+            for feature in self._features(item, ("features", k), ("features", k, "geometry"))
+        ]
+        return layer_of(self._file, title, found)
+
+    def _features(self, item: Any, at: Where, geometry_at: Where) -> Iterator[Feature]:
+        where = f"features[{at[1]}]" if at else ""
+        if not isinstance(item, dict) or item.get("type") != "Feature":
+            told = item.get("type") if isinstance(item, dict) else item
+            raise self._refused(at, where, told, 'a mapping of type "Feature"')
+        properties = item.get("properties")
+        if properties is not None and not isinstance(properties, dict):
+            raise self._refused((*at, "properties"), f"{where}.properties", properties, "a mapping, or null")
+        values = {str(key): value for key, value in (properties or {}).items() if value not in (None, "")}
+        if isinstance(item.get("id"), str | int) and not isinstance(item["id"], bool):
+            values.setdefault("id", item["id"])
+        line = self._line(at)
+        if item.get("geometry") is None:
+            yield Feature(values, self._file, line, where)
+            return
+        for geometry in self._geometries(item["geometry"], geometry_at, f"{where}.geometry".lstrip(".")):
+            yield Feature(values, self._file, line, where, geometry)
+
+    def _geometries(self, data: Any, at: Where, where: str) -> Iterator[Geometry]:
+        kind = data.get("type") if isinstance(data, dict) else None
+        if kind == "GeometryCollection":
+            parts = data.get("geometries")
+            if not isinstance(parts, list) or len(at) > _SELDOM_DEEPER:
+                raise self._refused(at, f"{where}.geometries", parts, "a list of geometries, not nested deep")
+            for k, part in enumerate(parts):
+                yield from self._geometries(part, (*at, "geometries", k), f"{where}.geometries[{k}]")
+            return
+        if not isinstance(kind, str) or kind not in _SHAPES:
+            raise self._refused(at, f"{where}.type", kind if isinstance(data, dict) else data, ", ".join(_SHAPES))
+        shape, depth, several = _SHAPES[kind]
+        at, where = (*at, "coordinates"), f"{where}.coordinates"
+        given = data.get("coordinates")
+        items = self._list(given, at, where) if several else [given]
+        pieces = []
+        for k, piece in enumerate(items):
+            own_at, own_where = ((*at, k), f"{where}[{k}]") if several else (at, where)
+            pieces.append(self._piece(piece, shape, depth, own_at, own_where))
+        if pieces:
+            yield Geometry(shape, tuple(pieces))
+
+    def _piece(self, data: Any, shape: Shape, depth: int, at: Where, where: str) -> tuple[Ring, ...]:
+        if depth == 0:
+            return ((self._coordinate(data, at, where),),)
+        if depth == 1:
+            return (self._ring(data, shape, at, where),)
+        rings = self._list(data, at, where)
+        if not rings:
+            raise self._refused(at, where, data, "a ring of corners, then its holes")
+        return tuple(self._ring(ring, shape, (*at, k), f"{where}[{k}]") for k, ring in enumerate(rings))
+
+    def _ring(self, data: Any, shape: Shape, at: Where, where: str) -> Ring:
+        ring = self._list(data, at, where)
+        if len(ring) < _LEAST[shape]:
+            closed = ", the last as the first" if shape == "area" else ""
+            raise self._refused(at, where, data, f"at least {_LEAST[shape]} positions{closed}")
+        return tuple(self._coordinate(item, (*at, k), f"{where}[{k}]") for k, item in enumerate(ring))
+
+    def _coordinate(self, data: Any, at: Where, where: str) -> Coordinate:
+        numbers = data[:3] if isinstance(data, list) else []
+        if len(numbers) < 2 or not all(map(_is_number, numbers)):
+            raise self._refused(at, where, data, "[longitude, latitude], perhaps with a height")
+        found = tuple(map(float, numbers))
+        if self._transform is not None:
+            return self._transform(found)
+        if abs(found[1]) > 90 or abs(found[0]) > 360:
+            raise self._refused(at, where, data, "[longitude, latitude] in degrees, longitude first")
+        return found
+
+    def _list(self, data: Any, at: Where, where: str) -> list[Any]:
+        if not isinstance(data, list):
+            raise self._refused(at, where, data, "a list of positions")
+        return data
+
+    def _line(self, at: Where) -> int | None:
+        for length in range(len(at), -1, -1):
+            if at[:length] in self._places:
+                return self._places[at[:length]][1]
+        return None
+
+    def _refused(self, at: Where, where: str, value: object, expected: str) -> Exception:
+        return refused(self._file, self._line(at), where, "missing" if value is None else value, expected)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e12 and math.isfinite(value)
+
+
+def _crs(given: Any) -> str:
+    """The name of a coordinate system, as old GeoJSON has it."""
+    named = cast("Any", given).get("properties") if isinstance(given, dict) else None
+    name = named.get("name") if isinstance(named, dict) else None
+    return name if isinstance(name, str) else "?"

@@ -1,0 +1,170 @@
+"""What the headings of a layer mean: each a key and the unit of its numbers, or nothing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from muster.exchange.sites.cells import CellError
+from muster.exchange.sites.features import Feature, Layer
+from muster.exchange.sites.keys import ROLES, SiteKey, keys_of
+from muster.exchange.sites.units import ALL_UNITS, UNITS, units_text
+from muster.mission.errors import Finding, ParameterError
+from muster.mission.near_matches import did_you_mean
+
+_BRACKETED = re.compile(r"^(.*?)\s*[(\[]\s*([^)\]]*?)\s*[)\]]\s*$")
+_WORD = re.compile(r"[^\W_]+|°")
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_SUBJECTS = frozenset(
+    (
+        "task",
+        "robot",
+        "panel",
+        "point",
+        "site",
+        "station",
+        "zone",
+        "waypoint",
+        "poi",
+        "target",
+        "asset",
+        "lane",
+        "start",
+    )
+)
+"""Words before a name that say of what it is: `Panel name`."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A heading, the key that it means, and what one unit of its numbers is in SI units."""
+
+    heading: str
+    key: SiteKey
+    factor: float
+
+    def value(self, feature: Feature, findings: list[Finding]) -> object:
+        """The value of a feature; None where it has none, or, with a finding, a wrong one."""
+        cell = feature.values.get(self.heading)
+        if cell is None:
+            return None
+        try:
+            return self.key.read(cell, factor=self.factor) if self.key.dimension else self.key.read(cell)
+        except CellError as error:
+            findings.append(feature.finding(self.heading, cell, error.args[0]))
+            return None
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The columns of a layer for features of one role, by key; and the headings that mean nothing for it."""
+
+    by_key: Mapping[str, Column]
+    unread: tuple[str, ...]
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.by_key
+
+    def heading(self, key: str) -> str:
+        """The heading of a key; the key itself where no column has it."""
+        return self.by_key[key].heading if key in self.by_key else key
+
+
+def columns_of(layer: Layer, role: str, given: Mapping[str, str], findings: list[Finding]) -> Columns:
+    """What the headings of a layer mean for a role; `given` names headings by key, stronger than any other meaning."""
+    keys = keys_of(role)
+    chosen = {key: heading for key, heading in given.items() if key in keys and heading in layer.headings}
+    found: dict[str, Column] = {}
+    unread: list[str] = []
+    for heading in layer.headings:
+        mine = [key for key, named in chosen.items() if named == heading]
+        explicit: list[Column | None] = [_explicit(heading, keys[key]) for key in mine]
+        meanings = explicit or [_meaning(heading, keys)]
+        for column in meanings:
+            if column is None or (column.key.name in chosen and not mine):
+                unread.append(heading)
+            elif column.key.name in found:
+                other = found[column.key.name].heading
+                expected = f"one column that says {column.key.name}: --column {column.key.name}={other}"
+                findings.append(_of_layer(layer, heading, f"means {column.key.name}, as {other} does", expected))
+            elif column.factor == 0:
+                told = units_text(column.key.dimension)
+                findings.append(
+                    _of_layer(layer, heading, "a unit that does not fit", f"{told}, or nothing in brackets")
+                )
+            else:
+                found[column.key.name] = column
+    return Columns(found, tuple(dict.fromkeys(unread)))
+
+
+def given_columns(given: Mapping[str, str], layers: Sequence[Layer]) -> dict[str, str]:
+    """Headings by the keys that a user names, synonyms included.
+
+    Raises
+    ------
+    ParameterError
+        if there is no such key, or no layer has such a heading.
+    """
+    found: dict[str, str] = {}
+    headings = list(dict.fromkeys(heading for layer in layers for heading in layer.headings))
+    known = list(dict.fromkeys(name for role in ROLES for name in keys_of(role)))
+    for named, heading in given.items():
+        keys = [key for role in ROLES if (key := _key_named(named, keys_of(role))) is not None]
+        if not keys:
+            hint, told = did_you_mean(named, known), ", ".join(known)
+            raise ParameterError(f"--column: {named}; expected {hint.removeprefix('; ') or f'one of {told}'}")
+        if heading not in headings:
+            hint = did_you_mean(heading, headings) or f"; the files have {', '.join(headings[:12]) or 'none'}"
+            raise ParameterError(f"--column {named}: no heading {heading}{hint}")
+        found |= dict.fromkeys((key.name for key in keys), heading)
+    return found
+
+
+def _key_named(named: str, keys: Mapping[str, SiteKey]) -> SiteKey | None:
+    if named in keys:
+        return keys[named]
+    compact = "".join(_WORD.findall(named.casefold())).replace("_", "")
+    return next((key for key in keys.values() if compact in _names(key)), None)
+
+
+def _names(key: SiteKey) -> tuple[str, ...]:
+    return key.name.replace("_", ""), *key.names
+
+
+def _explicit(heading: str, key: SiteKey) -> Column:
+    return Column(heading, key, next((f for _, f in _readings(heading, key) if f), 1.0))
+
+
+def _meaning(heading: str, keys: Mapping[str, SiteKey]) -> Column | None:
+    """The column that a heading is; its factor is 0 where it has a unit that does not fit the key."""
+    wrong: Column | None = None
+    for key in keys.values():
+        for name, factor in _readings(heading, key):
+            if name in _names(key):
+                if factor:
+                    return Column(heading, key, factor)
+                wrong = wrong or Column(heading, key, 0.0)
+    return wrong
+
+
+def _readings(heading: str, key: SiteKey) -> Iterator[tuple[str, float]]:
+    """The names that a heading may be, the likeliest first, each with the factor of the unit beside it."""
+    bracketed = _BRACKETED.match(heading)
+    base, unit = (bracketed[1], bracketed[2].casefold()) if bracketed and bracketed[1] else (heading, "")
+    units = UNITS[key.dimension]
+    words = [word.casefold() for word in _WORD.findall(_CAMEL.sub(" ", base))]
+    for start in (0, 1) if len(words) > 1 and words[0] in _SUBJECTS else (0,):
+        own = words[start:]
+        yield "".join(own), units.get(unit, 0.0 if unit in ALL_UNITS or (unit and key.dimension) else 1.0)
+        if not unit and len(own) > 1:
+            beside = own[-1] if len(own) < 3 or own[-2:] not in (["km", "h"], ["m", "s"]) else f"{own[-2]}/{own[-1]}"
+            name = own[: -2 if "/" in beside else -1]
+            if beside in ALL_UNITS:
+                yield "".join(name[:-1] if name[-1:] == ["in"] else name), units.get(beside, 0.0)
+
+
+def _of_layer(layer: Layer, heading: str, value: str, expected: str) -> Finding:
+    first = layer.features[0] if layer.features else Feature({}, layer.file, None)
+    where = f"{layer.name}, {heading}" if layer.name else heading
+    return Finding(layer.file, 1 if first.line is not None and not layer.name else None, where, value, expected)

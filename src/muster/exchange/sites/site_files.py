@@ -1,0 +1,143 @@
+"""Files of a site as one mission: tables, maps and tracks, with a mission to which they are added."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from muster.exchange.sites.builder import Builder, SiteOptions
+from muster.exchange.sites.entries import Entry, entries_of
+from muster.exchange.sites.features import Layer, refused
+from muster.exchange.sites.headings import given_columns
+from muster.exchange.sites.readers import reader_of
+from muster.exchange.sites.roles import Roles
+from muster.mission.errors import Finding, MissionError
+from muster.mission.from_data import mission_from
+from muster.mission.garbage import collector_paused
+from muster.mission.model import Mission
+from muster.mission.source import Source
+from muster.mission.thesis_csv import suitability_table
+from muster.mission.yaml_writer import file_data
+
+_FROM_TEAM = ("robots", "origin_wgs84", "starts_at")
+_ROBOTS = "a sheet or file of robots: --robots FILE, or a file or sheet whose name says so (robots.csv)"
+
+
+@dataclass(frozen=True)
+class SiteMission:
+    """A mission made of files, and what there is to say of how, one line each.
+
+    Parameters
+    ----------
+    counts
+        what was read from each file.
+    notes
+        what was chosen, and what was not read.
+    """
+
+    mission: Mission
+    counts: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+@collector_paused()
+def read_site(
+    files: Sequence[Path],
+    options: SiteOptions,
+    *,
+    robots: Path | None = None,
+    base: Mission | None = None,
+    team: Mission | None = None,
+    suitability: Path | None = None,
+) -> SiteMission:
+    """The mission of one or more files of a site.
+
+    Parameters
+    ----------
+    robots
+        a file of which every point is a robot.
+    base
+        a mission to which the site is added.
+    team
+        a mission whose robots the mission has, with their origin and start; not beside `base`.
+    suitability
+        a table of robot types and task types (CSV).
+
+    Raises
+    ------
+    MissionError
+        with everything that is wrong: file, line, column, value, what was expected.
+    ParameterError
+        if an option names what none of the files has.
+    MissingExtraError
+        if a file needs an optional part of the installation.
+    """
+    layers = [(layer, None) for file in files for layer in reader_of(file)(file)]
+    found: list[tuple[Layer, str | None]] = [*layers]
+    if robots is not None:
+        found += [(layer, "robot") for layer in reader_of(robots)(robots)]
+    entries, notes = _entries(found, options)
+    there = _there(base, team)
+    main = base.source.file if base is not None else str(files[0] if files else robots)
+    if not there.get("robots") and not any(entry.role == "robot" for entry in entries):
+        raise refused(main, None, "robots", "missing", _ROBOTS)
+    builder = Builder(entries, there, options)
+    builder.built.data["name"] = Path(main).stem if base is None else base.name
+    built = builder.build()
+    data = built.data
+    data.setdefault("tasks", [])
+    if suitability is not None:
+        data["suitability"] = suitability_table(suitability, built.places)
+    source = Source(main, built.places, built.fields)
+    mission = mission_from(data, source, [], base.travel_tables if base is not None else None)
+    return SiteMission(mission, _counts(found, entries), (*notes, *built.notes))
+
+
+def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -> tuple[list[Entry], list[str]]:
+    whole = [layer for layer, _ in layers]
+    roles = Roles.of(options.kinds)
+    roles.require_used(whole)
+    columns = given_columns(options.columns, whole)
+    findings: list[Finding] = []
+    notes: list[str] = []
+    entries = [e for layer, default in layers for e in entries_of(layer, roles, default, columns, findings, notes)]
+    if findings:
+        raise MissionError(sorted(findings, key=lambda finding: (finding.file, finding.line or 0)))
+    if whole and not entries:
+        raise refused(whole[0].file, None, "", "nothing to read", "points, areas or lines")
+    return entries, notes
+
+
+def _there(base: Mission | None, team: Mission | None) -> dict[str, Any]:
+    """The data of the mission to which the site is added."""
+    if base is not None:
+        return file_data(base)
+    return {} if team is None else {key: value for key, value in file_data(team).items() if key in _FROM_TEAM}
+
+
+def _counts(layers: Sequence[tuple[Layer, str | None]], entries: Sequence[Entry]) -> tuple[str, ...]:
+    """For each file what was read from it."""
+    lines = []
+    for file in dict.fromkeys(layer.file for layer, _ in layers):
+        roles = [entry.role for entry in entries if entry.feature.file == file and entry.role != "route"]
+        told = [counted(roles.count(role), *_NOUNS[role]) for role in dict.fromkeys(roles)]
+        lines.append(f"{file}: {', '.join(told) or 'nothing'}")
+    return tuple(lines)
+
+
+def counted(number: int, one: str, several: str = "") -> str:
+    """`1 task`, `2 tasks`."""
+    return f"{number} {one if number == 1 else several or one + 's'}"
+
+
+_NOUNS: Mapping[str, tuple[str, ...]] = {
+    "task": ("task",),
+    "robot": ("robot",),
+    "station": ("station",),
+    "zone": ("zone",),
+    "boundary": ("boundary", "boundaries"),
+    "survey": ("area to survey", "areas to survey"),
+    "lane": ("line of lanes", "lines of lanes"),
+}

@@ -1,0 +1,61 @@
+"""Rows of cells as a layer: the first row that is not empty has the headings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from muster.exchange.sites.features import Feature, Layer, refused
+from muster.mission.value_types import shown
+
+Row = tuple[int, Sequence[object]]
+"""The number of a row, from 1, and its cells."""
+MOST_ROWS = 1_000_000
+
+
+def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> Layer:
+    """The layer of a table; empty rows, and columns without a heading and cells, are passed over.
+
+    Raises
+    ------
+    MissionError
+        if a row has a cell beyond the headings, or a heading stands twice.
+    """
+    filled = ((number, cells) for number, cells in rows if any(not is_empty(cell) for cell in cells))
+    first = next(filled, None)
+    if first is None:
+        return Layer(file, name, (), ())
+    line, head = first
+    headings = ["" if is_empty(cell) else " ".join(str(cell).split()) for cell in head]
+    named = [heading for heading in headings if heading]
+    twice = next((heading for heading in named if named.count(heading) > 1), None)
+    if twice is not None:
+        raise refused(file, line, _field(where, twice), "a heading for the second time", "each heading once")
+    features: list[Feature] = []
+    for number, cells in filled:
+        if len(features) >= MOST_ROWS:
+            raise refused(file, number, where, f"more than {MOST_ROWS:,} rows", "fewer, in several files")
+        _require_headings(file, number, cells, headings, where)
+        values = {heading: _tidy(cell) for heading, cell in zip(headings, cells, strict=False) if not is_empty(cell)}
+        features.append(Feature(values, file, number, where))
+    return Layer(file, name, tuple(named), tuple(features))
+
+
+def is_empty(cell: object) -> bool:
+    """Whether a cell holds nothing."""
+    return cell is None or (isinstance(cell, str) and not cell.strip())
+
+
+def _tidy(cell: object) -> object:
+    return cell.strip() if isinstance(cell, str) else cell
+
+
+def _require_headings(file: str, number: int, cells: Sequence[object], headings: Sequence[str], where: str) -> None:
+    for k, cell in enumerate(cells):
+        if not is_empty(cell) and (k >= len(headings) or not headings[k]):
+            expected = f"cells under {', '.join(filter(None, headings[:8]))}"
+            told = shown(cell if isinstance(cell, str | int | float) else str(cell))
+            raise refused(file, number, _field(where, f"column {k + 1}"), f"{told} without a heading", expected)
+
+
+def _field(where: str, heading: str) -> str:
+    return f"{where}, {heading}" if where else heading

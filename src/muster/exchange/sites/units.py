@@ -1,0 +1,48 @@
+"""Units in headings and beside numbers, and what one of them is in SI units."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+Dimension = Literal["", "time", "length", "speed", "angle"]
+
+UNITS: dict[Dimension, dict[str, float]] = {
+    "": {},
+    "time": {
+        **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1.0),
+        **dict.fromkeys(("min", "mins", "minute", "minutes"), 60.0),
+        **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), 3600.0),
+        **dict.fromkeys(("d", "day", "days"), 86400.0),
+        "ms": 0.001,
+    },
+    "length": {
+        **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
+        "km": 1000.0,
+        "cm": 0.01,
+        "mm": 0.001,
+        **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
+    },
+    "speed": {
+        **dict.fromkeys(("m/s", "mps", "ms"), 1.0),
+        **dict.fromkeys(("km/h", "kmh", "kph"), 1 / 3.6),
+        "mph": 0.44704,
+        **dict.fromkeys(("kn", "kt", "kts", "knot", "knots"), 1852 / 3600),
+    },
+    "angle": {**dict.fromkeys(("deg", "degree", "degrees", "°"), 1.0), "rad": 180 / math.pi},
+}
+"""By dimension the units by name; angles are in degrees, as in the names of a mission's keys."""
+
+_WORDS: dict[Dimension, str] = {
+    "": "no unit",
+    "time": "s, min or h",
+    "length": "m, km, cm or ft",
+    "speed": "m/s, km/h, mph or kn",
+    "angle": "deg or rad",
+}
+ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units)
+
+
+def units_text(dimension: Dimension) -> str:
+    """Units of a dimension, for messages."""
+    return _WORDS[dimension]

@@ -1,0 +1,95 @@
+"""Files of a site as a mission."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from muster.mission.errors import ParameterError
+from muster.planning.loading import is_site_file, load, team_of
+
+if TYPE_CHECKING:
+    from muster.exchange.sites.site_files import SiteMission
+
+
+def read_site(
+    *files: str | Path,
+    robots: str | Path | None = None,
+    suitability: str | Path | None = None,
+    columns: Mapping[str, str] | None = None,
+    kinds: Mapping[str, str] | None = None,
+    origin: Sequence[float] | None = None,
+    starts_at: str | None = None,
+    name: str | None = None,
+    flat: bool = False,
+) -> SiteMission:
+    """Read the files of a site as one mission: tables (CSV, XLSX), maps (GeoJSON, KML, GeoPackage), tracks (GPX).
+
+    Points are tasks, areas zones, lines lanes; a property `kind`, a word in a name, or `kinds` says other things
+    (docs/sites.md).
+
+    Parameters
+    ----------
+    files
+        of the site; one of them may be a mission, to which the others are added.
+    robots
+        a file of robots, or a mission whose robots are taken.
+    suitability
+        a table of robot types and task types (CSV).
+    columns
+        headings by what they mean: `{"lat": "Breite"}`.
+    kinds
+        what features are by the name of their file, layer, or their own: task, robot, station, zone, boundary, survey,
+        lane.
+    origin
+        latitude and longitude in degrees of the map frame's origin, and perhaps its altitude, metres; by default the
+        middle of all places.
+    starts_at
+        date and time at which the mission begins, for clock times.
+    name
+        of the mission; by default that of the first file.
+    flat
+        whether heights are left out.
+
+    Returns
+    -------
+    The mission, and what was read, chosen and not read.
+
+    Raises
+    ------
+    MissionError
+        with everything that is wrong: file, line, column, value, what was expected.
+    ParameterError
+        if an option names what is not there, or more than one mission is given.
+    MissingExtraError
+        if a file needs an optional part of the installation.
+    """
+    from muster.exchange.sites.builder import SiteOptions
+    from muster.exchange.sites.site_files import read_site as read
+
+    if not files:
+        raise ParameterError("no file given; expected one or more")
+    site = [Path(file) for file in files if is_site_file(file)]
+    missions = [file for file in files if not is_site_file(file)]
+    if len(missions) > 1:
+        raise ParameterError(f"{missions[1]}: a second mission; expected one, to which files of a site are added")
+    if missions and robots is not None and not is_site_file(robots):
+        raise ParameterError(f"--robots: {robots} beside {missions[0]}; expected one mission that has robots")
+    team, robots_file = team_of(robots)
+    options = SiteOptions(
+        columns=columns or {},
+        kinds=kinds or {},
+        origin=None if origin is None else tuple(origin),
+        starts_at=starts_at,
+        name=name,
+        flat=flat,
+    )
+    return read(
+        site,
+        options,
+        robots=robots_file,
+        base=load(missions[0]) if missions else None,
+        team=team,
+        suitability=None if suitability is None else Path(suitability),
+    )

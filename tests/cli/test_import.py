@@ -1,0 +1,74 @@
+"""`muster import`, and files of sites wherever a MISSION is."""
+
+import pytest
+from tests.exchange.sites import writers
+
+from muster import load
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, text in (
+        ("panels.csv", writers.CSV),
+        ("robots.csv", writers.ROBOTS),
+        ("fences.geojson", writers.geojson(writers.area())),
+    ):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def test_several_files_make_a_mission(muster, files):
+    code, out, err = muster("import", "panels.csv", "fences.geojson", "robots.csv", "-o", "m.yaml")
+    assert (code, out) == (0, "")
+    assert err == (
+        "panels.csv: 3 tasks\nfences.geojson: 1 zone\nrobots.csv: 1 robot\n"
+        "origin_wgs84 chosen: lat_deg 47.377, lon_deg 8.54205, alt_m 0.0; --origin says another\n"
+        "no boundary given: a rectangle 50 m around everything is taken\n"
+        "next: muster check m.yaml; muster solve m.yaml\n"
+    )
+    assert muster("check", "m.yaml")[0] == 0
+    mission = load("m.yaml")
+    assert (mission.name, len(mission.tasks), len(mission.robots), len(mission.map.zones)) == ("panels", 3, 1, 1)
+
+
+def test_without_a_file_to_write_it_goes_to_standard_output(muster, files):
+    code, out, err = muster("import", "panels.csv", "--robots", "robots.csv", "--name", "roof", "-q")
+    assert (code, err) == (0, "")
+    (files / "again.yaml").write_text(out, encoding="utf-8")
+    assert load("again.yaml").name == "roof"
+
+
+def test_a_site_stands_where_a_mission_does(muster, files):
+    code, out, err = muster("check", "panels.csv", "--robots", "robots.csv", "--column", "id=name")
+    assert code == 0
+    assert out.startswith("panels: 1 robot, 3 tasks; no errors\n")
+    assert err.startswith("origin_wgs84 chosen: ")
+    assert muster("verify", "panels.csv", "--robots", "robots.csv", "none.json", "-q")[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["none.csv"], "none.csv: No such file or directory; expected a file to read\n"),
+        (
+            ["panels.csv"],
+            "panels.csv: robots: missing; expected a sheet or file of robots: --robots FILE, or a file or",
+        ),
+        (["panels.csv", "--column", "lat"], "--column: lat; expected NAME=VALUE\n"),
+        (["panels.csv", "--as", "panels=tsk"], "--as panels: tsk; expected one of task, robot, station"),
+        (["panels.csv", "--origin", "here"], "--origin: here; expected latitude and longitude in degrees"),
+        (["panels.csv", "-o", "panels.csv"], "panels.csv: given twice; expected a file that is neither read"),
+        (["site.shp"], "site.shp: a file of the kind .shp; expected a mission (.yaml, .json, .plan), a site (.csv, "),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(muster, files, arguments, message):
+    code, out, err = muster("import", *arguments)
+    assert (code, out) == (2, "")
+    assert err.startswith(message)
+    assert len(err.splitlines()) == 1
+
+
+def test_columns_go_with_files_of_sites_alone(muster, files):
+    code, _, err = muster("check", "6T-2R", "--column", "lat=x")
+    assert (code, err) == (2, "6T-2R: --column given; expected no --column with this kind of mission\n")

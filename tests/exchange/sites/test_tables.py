@@ -1,0 +1,261 @@
+"""Tables of sites: headings, units, cells, encodings, workbooks, robots; and what is said of what is wrong."""
+
+import datetime
+import sys
+
+import pytest
+from tests.exchange.sites import writers
+
+from muster import MissingExtraError, MissionError, ParameterError, load, read_site
+from muster.exchange.sites.cells import CellError, duration, lat_lon, moment, number, pairs, words
+
+
+@pytest.fixture
+def robots(tmp_path):
+    file = tmp_path / "robots.csv"
+    file.write_text(writers.ROBOTS, encoding="utf-8")
+    return file
+
+
+def read(tmp_path, robots, text, encoding="utf-8", **options):
+    file = tmp_path / "panels.csv"
+    file.write_bytes(text.encode(encoding))
+    return read_site(file, robots=robots, **options)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("12,5", 12.5),
+        ("1.234,5", 1234.5),
+        ("1,234.5", 1234.5),
+        ("1 234,5", 1234.5),
+        ("\u22123e2", -300),
+        ("1'234", 1234),
+    ],
+)
+def test_numbers_as_people_write_them(text, value):
+    assert number(text) == value
+
+
+@pytest.mark.parametrize("text", ["", "nan", "inf", "1,2,3", "12 bananas", "1.2.3", "0x10"])
+def test_what_is_no_number(text):
+    with pytest.raises(CellError, match="a number"):
+        number(text)
+
+
+@pytest.mark.parametrize(
+    ("value", "seconds"),
+    [
+        ("90", 90), ("90 s", 90), ("15 min", 900), ("1 h 30 min", 5400), ("00:15", 900), ("00:15:30", 930),
+        ("PT15M", 900), ("1,5 h", 5400), (90, 90), (datetime.time(0, 15), 900), (datetime.timedelta(minutes=2), 120),
+    ],
+)  # fmt: skip
+def test_durations(value, seconds):
+    assert duration(value) == seconds
+
+
+@pytest.mark.parametrize("value", ["soon", "-5", "1:75", "3 m", True, "5 min 3 kg"])
+def test_what_is_no_duration(value):
+    with pytest.raises(CellError, match="a duration"):
+        duration(value)
+
+
+def test_moments_and_windows():
+    assert [moment(one) for one in ("9:30", "2:30 pm", "12 am", "600", datetime.time(10, 0))] == [
+        "09:30", "14:30", "00:00", 600.0, "10:00:00",
+    ]  # fmt: skip
+    assert pairs("10:00 - 11:00; 15:00\u201316:00") == [["10:00", "11:00"], ["15:00", "16:00"]]
+    assert pairs("600 1200; 2000 inf") == [[600.0, 1200.0], [2000.0, None]]
+    assert pairs([600, None]) == [[600, None]]
+    with pytest.raises(CellError, match="a clock time"):
+        moment("25:00")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "35.53, 24.06",
+        "35,53; 24,06",
+        "35.53 24.06",
+        "N35.53 E24.06",
+        "35\u00b031'48\"N, 24\u00b03'36\"E",
+        [35.53, 24.06],
+    ],
+)
+def test_latitude_and_longitude_in_one_cell(text):
+    assert lat_lon(text) == pytest.approx((35.53, 24.06))
+
+
+def test_lists():
+    assert words("camera; gripper arm") == ["camera", "gripper arm"]
+    assert words("[1,18]") == ["1", "18"]
+    assert words('["a,b", "c"]') == ["a,b", "c"]
+
+
+SEMICOLONS = """Panel name;Latitude;Longitude;Duration (min);Opens;Prio;Required skills;After;Remark
+A1;47,3769;8,5417;15;10:00;2;camera;;clean
+A2;47,3772;8,5421;5;;1,5;;A1;
+;;;;;;;;
+A3;47,3775;8,5417;90 s;11:00;1;;A1 A2;
+"""
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
+def test_a_table_of_a_spreadsheet(tmp_path, robots, encoding):
+    found = read(tmp_path, robots, SEMICOLONS, encoding)
+    first, second, third = found.mission.tasks
+    assert [task.id for task in found.mission.tasks] == ["A1", "A2", "A3"]
+    assert [task.duration_s for task in found.mission.tasks] == [900, 300, 90]
+    assert (first.window_s, third.window_s) == (((0, None),), ((3600, None),))
+    assert (first.requires, first.priority, second.priority) == (("camera",), 2, 1.5)
+    assert third.prerequisites == ("A1", "A2")
+    assert found.mission.starts_at == "2000-01-01T10:00"
+    assert found.mission.name == "panels"
+    assert found.counts == (f"{tmp_path}/panels.csv: 3 tasks", f"{robots}: 1 robot")
+    assert f"{tmp_path}/panels.csv: not read: Remark" in found.notes
+    assert any(note.startswith("origin_wgs84 chosen: lat_deg 47.37715, lon_deg 8.54185") for note in found.notes)
+
+
+def test_load_reads_it_as_well(tmp_path, robots):
+    found = read(tmp_path, robots, SEMICOLONS)
+    assert load(tmp_path / "panels.csv", robots=robots) == found.mission
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell", "metres_a_second"),
+    [
+        ("speed", "2", 2),
+        ("Speed (km/h)", "7,2", 2),
+        ("speed_kmh", "7.2", 2),
+        ("max speed [kn]", "2", 3704 / 3600),
+        ("speed", "3 mph", 1.34112),
+    ],
+)
+def test_units_in_headings_and_beside_numbers(tmp_path, heading, cell, metres_a_second):
+    robots = tmp_path / "robots.csv"
+    robots.write_text(f"id;x;y;{heading}\nr;0;0;{cell}\n", encoding="utf-8")
+    assert read(tmp_path, robots, "id,x,y\n1,3,4\n").mission.robots[0].speed_mps == pytest.approx(metres_a_second)
+
+
+def test_columns_named_by_hand_are_stronger(tmp_path, robots):
+    text = "Breite,Hoehe,lat,no\n47.3,8.5,1,7\n"
+    found = read(tmp_path, robots, text, columns={"latitude": "Breite", "lon": "Hoehe"}, origin=(47.3, 8.5))
+    assert (found.mission.tasks[0].id, found.mission.tasks[0].position) == ("7", (0.0, 0.0))
+    with pytest.raises(ParameterError, match="--column lat: no heading Breit; did you mean 'Breite'"):
+        read(tmp_path, robots, text, columns={"lat": "Breit"})
+    with pytest.raises(ParameterError, match="--column: priorty; expected did you mean 'priority'"):
+        read(tmp_path, robots, text, columns={"priorty": "no"})
+
+
+def test_what_is_wrong_is_named_with_line_and_column(tmp_path, robots):
+    text = "name,lat,lon,duration,prio\na,47.3,8.5,soon,high\nb,97,8.5,5,1\nc,,8.5,5,1\n"
+    with pytest.raises(MissionError) as caught:
+        read(tmp_path, robots, text)
+    assert [(f.line, f.field, f.value) for f in caught.value.findings] == [
+        (2, "duration", "soon"), (2, "prio", "high"), (3, "lat", "97"), (4, "lat", "missing"),
+    ]  # fmt: skip
+
+
+def test_what_the_mission_refuses_is_named_by_the_column(tmp_path, robots):
+    with pytest.raises(MissionError) as caught:
+        read(tmp_path, robots, "id,lat,lon,Prio,after\na,47.3,8.5,-1,\na,47.3,8.5,1,zz\n")
+    assert [(f.line, f.field) for f in caught.value.findings] == [(2, "Prio"), (3, "id"), (3, "after")]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("name,latitude,lat,lon\na,1,2,3\n", "lat: means lat, as latitude does; expected one column that says lat"),
+        ("name,x (kg),y\na,1,2\n", r"x \(kg\): a unit that does not fit; expected m, km, cm or ft"),
+        ("name,lat,lon,duration (km)\na,1,2,3\n", r"duration \(km\): a unit that does not fit; expected s, min or h"),
+        ("name,lat,lon\na,1,2,3\n", 'column 4: "3" without a heading'),
+        ("name,lat,lon,opens,window\na,47.4,8.5,5,10-20\n", "window: a window; expected it, or opens, not both"),
+        ("name,lat,lon,opens,closes\na,47.4,8.5,5,10:00\n", "clock times or seconds, not both"),
+        ("name,lat,lon,deadline\na,47.4,8.5,10:00\n", "starts_at: missing; expected --starts-at"),
+        ("id,lat,lon\na,47.4,8.5\nb,8.5,47.4\n", "are latitude and longitude swapped"),
+    ],
+)  # fmt: skip
+def test_tables_that_cannot_be_meant(tmp_path, robots, text, message):
+    with pytest.raises(MissionError, match=message):
+        read(tmp_path, robots, text)
+
+
+def test_ids_from_names_rows_and_numbers(tmp_path, robots):
+    found = read(tmp_path, robots, "name,lat,lon\np,47,8\nq,47,8\np,47,8\n", origin=(47, 8))
+    assert [task.id for task in found.mission.tasks] == ["p", "q", "p-2"]
+    assert "names that stand several times are numbered: p (2 times)" in found.notes
+    found = read(tmp_path, robots, "lat,lon\n47,8\n47,8\n", origin=(47, 8))
+    assert [task.id for task in found.mission.tasks] == ["panels-1", "panels-2"]
+
+
+def test_a_workbook_with_robots_on_a_second_sheet(tmp_path):
+    book = tmp_path / "site.xlsx"
+    writers.write_workbook(
+        book,
+        {
+            "Panels": [
+                ["Panel ID", "GPS", "Duration", "Opens", "Deadline", "Flag"],
+                [
+                    1,
+                    "47.3775, 8.5417",
+                    datetime.time(0, 15),
+                    datetime.time(10, 0),
+                    datetime.datetime(2027, 3, 1, 17),
+                    True,
+                ],
+                [],
+                [2, "47.3770, 8.5425", "00:05", None, None, None],
+            ],
+            "Robots": [
+                ["Robot", "Latitude", "Longitude", "Skills", "Shift"],
+                ["r1", 47.3768, 8.5416, "a, b", "08:00-18:00"],
+            ],
+            "Read me": [["of this workbook"], ["remarks"]],
+        },
+    )
+    found = read_site(book, starts_at="2027-03-01T08:00")
+    (robot,), (first, second) = found.mission.robots, found.mission.tasks
+    assert (robot.id, robot.skills, robot.available_until_s) == ("r1", ("a", "b"), 36000)
+    assert (first.id, first.duration_s, first.window_s, first.deadline_s) == ("1", 900, ((7200, None),), 32400)
+    assert (second.id, second.duration_s) == ("2", 300)
+    assert f"{book}, Read me: passed over, it has no places" in found.notes
+
+
+def test_a_cell_of_a_workbook_is_named_by_sheet_and_row(tmp_path):
+    book = tmp_path / "site.xlsx"
+    writers.write_workbook(book, {"Robots": [["id", "x", "y", "speed"], ["r", 0, 0, "fast"]]})
+    with pytest.raises(MissionError, match=r"site.xlsx:2: sheet Robots, speed: fast; expected a number in m/s, km/h"):
+        read_site(book)
+
+
+@pytest.mark.parametrize(("module", "extra"), [("python_calamine", "sites"), ("pymap3d", "map")])
+def test_without_a_library_the_extra_is_named(tmp_path, robots, monkeypatch, module, extra):
+    book = tmp_path / "site.xlsx"
+    writers.write_workbook(book, {"Tasks": [["id", "lat", "lon"], ["a", 47, 8]]})
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(MissingExtraError, match=rf"muster-robotics\[{extra}\]"):
+        read_site(book, robots=robots)
+
+
+def test_robots_are_asked_for(tmp_path):
+    file = tmp_path / "panels.csv"
+    file.write_text(writers.CSV, encoding="utf-8")
+    with pytest.raises(MissionError, match=r"panels.csv: robots: missing; expected .*--robots FILE"):
+        load(file)
+
+
+def test_metres_beside_degrees_need_an_origin(tmp_path, robots):
+    with pytest.raises(MissionError, match="a place in degrees; expected --origin LAT,LON"):
+        read(tmp_path, robots, "id,x,y\na,3,4\n")
+    assert read(tmp_path, robots, "id,x,y\na,3,4\n", origin=(47.3768, 8.5416)).mission.tasks[0].position == (3, 4)
+
+
+def test_heights(tmp_path, robots):
+    found = read(tmp_path, robots, "id,lat,lon,height\na,47.3768,8.5416,12\n")
+    assert (found.mission.tasks[0].position[2], found.mission.robots[0].position[2]) == (12, 0)
+    assert any("taken on the ground" in note for note in found.notes)
+    found = read(tmp_path, robots, "id,lat,lon,altitude\na,47.3768,8.5416,412\n")
+    assert found.mission.dimensions == 2
+    assert any("heights left out" in note for note in found.notes)
+    assert read(tmp_path, robots, "id,lat,lon,height\na,47,8,12\n", flat=True, origin=(47, 8)).mission.dimensions == 2
