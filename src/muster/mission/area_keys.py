@@ -16,9 +16,7 @@ HOLES_IN_DEGREES = (
 )
 WITH_AREA: JsonSchema = {
     "required": ["action"],
-    "properties": {
-        "action": {"type": "object", "anyOf": [{"required": ["area"]}, {"required": [AREA_IN_DEGREES[0]]}]}
-    },
+    "properties": {"action": {"type": "object", "anyOf": [{"required": ["area"]}, {"required": [AREA_IN_DEGREES[0]]}]}},
 }
 """Of a task that may be without a position: its area has a middle."""
 

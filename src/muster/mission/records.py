@@ -348,7 +348,10 @@ def _unknown_key(key: str, value: object, at: Path, known: Iterable[str]) -> Fau
 
 def findings(faults: Iterable[Fault], source: Source) -> list[Finding]:
     """Faults as findings: with file and line, in the order of the files."""
-    found = [Finding(*source.place(fault.path), path_text(source.path(fault.path)), fault.value, fault.expected) for fault in faults]
+    found = [
+        Finding(*source.place(fault.path), path_text(source.path(fault.path)), fault.value, fault.expected)
+        for fault in faults
+    ]
     return sorted(found, key=lambda finding: (finding.file, finding.line or 0))
 
 

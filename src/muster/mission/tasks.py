@@ -32,7 +32,6 @@ from muster.mission.value_types import (
     shown,
 )
 
-
 _ABSENT = (None, (), False)
 """Values of keys that an action does not have."""
 
@@ -120,7 +119,10 @@ class Action(Checked):
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         name, extra = values["name"], values.get("extra", {})
         keys = ACTION_KEYS[name]
-        given = {*extra, *(key for key, value in values.items() if value not in _ABSENT and key not in ("name", "extra"))}
+        given = {
+            *extra,
+            *(key for key, value in values.items() if value not in _ABSENT and key not in ("name", "extra")),
+        }
         for key in keys.needed:
             if key not in given:
                 yield Fault((key,), "missing", f"a value: {name} needs {', '.join(keys.needed)}")

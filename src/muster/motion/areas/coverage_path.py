@@ -129,18 +129,16 @@ class _Direction:
 
 
 def _directions(region: Region) -> Sequence[float]:
-    """The directions of the longest edges, and of the longest side of the smallest rectangle around: in [0, pi)."""
+    """The directions of the longest edges, and of the longest side of the smallest rectangle around: in [0, pi).
+
+    Edges that differ by a degree or so count together, in the direction of the longest of them.
+    """
     import shapely
 
     box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(region.seen))
     steps = np.vstack([region.edges, np.diff(box, axis=0)])
-    angles = np.arctan2(steps[:, 1], steps[:, 0]) % math.pi
-    lengths: dict[int, float] = {}
-    for angle, length in zip(angles, np.linalg.norm(steps, axis=1), strict=True):
-        bin_of = int(round(angle / _SAME_RAD)) % int(round(math.pi / _SAME_RAD))
-        lengths[bin_of] = lengths.get(bin_of, 0.0) + float(length)
-    longest = sorted(lengths, key=lambda k: (-lengths[k], k))[:_MOST_DIRECTIONS]
-    # of each bin the direction of its longest edge, so that lanes are exactly along it
-    bins = np.round(angles / _SAME_RAD).astype(int) % int(round(math.pi / _SAME_RAD))
-    sizes = np.linalg.norm(steps, axis=1)
-    return [float(angles[np.flatnonzero(bins == k)[np.argmax(sizes[bins == k])]]) for k in longest]
+    angles, lengths = np.arctan2(steps[:, 1], steps[:, 0]) % math.pi, np.linalg.norm(steps, axis=1)
+    groups = np.round(angles / _SAME_RAD).astype(int) % round(math.pi / _SAME_RAD)
+    whole = np.bincount(groups, weights=lengths)
+    longest = np.argsort(-whole, kind="stable")[: min(_MOST_DIRECTIONS, len(np.unique(groups)))]
+    return [float(angles[np.argmax(np.where(groups == group, lengths, -1.0))]) for group in longest]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -55,7 +56,7 @@ def _nearest(between: Floats, first: int) -> list[int]:
 def _best_ways(between: Floats, order: Sequence[int]) -> tuple[float, list[int]]:
     """The length of the ways between cells in an order, and the corners from which that is least."""
     costs, chosen = np.zeros(WAYS), []
-    for here, there in zip(order[:-1], order[1:], strict=True):
+    for here, there in pairwise(order):
         whole = costs[:, None] + between[here, :, there, :]
         chosen.append(whole.argmin(axis=0))
         costs = whole.min(axis=0)

@@ -143,4 +143,3 @@ class Transit:
 def _cross(a: Floats, b: Floats) -> Floats:
     found: Floats = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     return found
-
