@@ -24,11 +24,16 @@ _NOTHING = 1e-9
 
 def parts_of(path: CoveragePath, count: int) -> list[Floats]:
     """The lanes (n, 2, 2) of each of so many parts, in order; metres in the map frame."""
-    way = _Way.along(path)
+    way = _Way.along(path, path.lanes)
     within, whole = way.least_m(count, whole=False), way.least_m(count, whole=True)
     ends_at_lanes = whole <= _LONGER * within
     parts = list(way.cut(whole if ends_at_lanes else within, whole=ends_at_lanes))
     return parts + [parts[-1][:0]] * (count - len(parts))
+
+
+def way_m(path: CoveragePath, lanes: Floats) -> float:
+    """Metres along lanes (n, 2, 2) of a path, the ways between them included."""
+    return _Way.along(path, lanes).total_m
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,10 +45,9 @@ class _Way:
     links: Floats
 
     @classmethod
-    def along(cls, path: CoveragePath) -> _Way:
-        lanes = path.lanes
+    def along(cls, path: CoveragePath, lanes: Floats) -> _Way:
         links = [path.link_m(*ends) for ends in zip(lanes[:-1, 1], lanes[1:, 0], strict=True)]
-        return cls(lanes, np.linalg.norm(lanes[:, 1] - lanes[:, 0], axis=1), np.array([0.0, *links]))
+        return cls(lanes, np.linalg.norm(lanes[:, 1] - lanes[:, 0], axis=1), np.array([0.0, *links])[: len(lanes)])
 
     @property
     def total_m(self) -> float:
