@@ -93,7 +93,7 @@ def test_what_is_wrong_with_an_area(keys, at, message, tmp_path):
 def test_faults_in_degrees_are_told_in_degrees(tmp_path):
     corners = "[47.4, 8.5], [47.401, 8.501], [47.401, 8.5], [47.4, 8.501]"
     found = complaints(field(f"area_lat_lon: [{corners}], width_m: 1"), tmp_path=tmp_path)
-    assert [(line, at) for line, at, _ in found] == [(7, "tasks[0].action.area")]
+    assert [(line, at) for line, at, _ in found] == [(7, "tasks[0].action.area_lat_lon")]
     assert "crosses itself" in found[0][2]
     found = complaints(field(f"area_lat_lon: [{corners}, [47.4, 200]], width_m: 1"), tmp_path=tmp_path)
     assert [at for _, at, _ in found] == ["tasks[0].action.area_lat_lon[4][1]"]

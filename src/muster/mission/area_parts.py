@@ -63,7 +63,7 @@ def _named(names: Sequence[str], parts: Parts) -> tuple[str, ...]:
 
 
 def _events_of(event: Event, parts: Parts) -> Iterator[Event]:
-    if event.cancel_task in parts:
+    if event.cancel_task is not None and event.cancel_task in parts:
         yield from (replace(event, cancel_task=name) for name in parts[event.cancel_task])
     elif event.delay_task is not None and event.delay_task.task in parts:
         delay = event.delay_task

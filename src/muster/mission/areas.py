@@ -16,7 +16,7 @@ from muster.mission.polygons import SIMPLE, trouble
 from muster.mission.raw_records import robots_in, tasks_in
 from muster.mission.site import Point
 from muster.mission.tasks import Action, Task, Work
-from muster.mission.value_types import Fault, Path, shown
+from muster.mission.value_types import INVALID, Fault, Path, shown
 
 Ring = tuple[Point, ...]
 
@@ -32,8 +32,12 @@ def put_in_positions(data: object) -> None:
     for _, task in tasks_in(data):
         action = task.get("action")
         area = action.get("area") if isinstance(action, dict) else None
-        if "position" not in task and isinstance(area, list) and area and all(map(_is_place, area)):
+        if area is None or "position" in task:
+            continue
+        if isinstance(area, list) and area and all(map(_is_place, area)):
             task["position"] = [*_middle([corner[:2] for corner in area]), *([0.0] if spatial else [])]
+        else:
+            task["position"] = INVALID  # the area is wrong, and the reader says so
 
 
 def _is_place(value: Any) -> bool:
@@ -123,7 +127,8 @@ def _wrong_rings(area: Ring, holes: tuple[Ring, ...]) -> Iterator[tuple[Path, st
 def _wrong_holes(area: Ring, holes: tuple[Ring, ...], cross_holes: bool) -> Iterator[tuple[Path, str, str]]:
     import shapely
 
-    whole, left = shapely.Polygon(area), shapely.Polygon(area)
+    whole = shapely.Polygon(area)
+    left: shapely.Polygon | shapely.MultiPolygon = whole
     for k, hole in enumerate(map(shapely.Polygon, holes)):
         beyond = shapely.difference(hole, whole)
         if beyond.area > _TOUCHES * whole.area:

@@ -56,18 +56,39 @@ def degrees_to_metres(data: object, faults: list[Fault]) -> Mapping[Path, InDegr
             place.record[str(place.metres_at[-1])] = metres
         else:
             place.record[int(place.metres_at[-1])] = metres
+    if any(isinstance(place.record, list) for place in found):
+        _set_wrong_rings_aside(data)
     return {place.metres_at: place for place in found}
+
+
+def _set_wrong_rings_aside(data: object) -> None:
+    """An area with a wrong corner, of which a fault tells, is no area at all."""
+    for _, record in _records(data):
+        for own in _IN_RINGS.values():
+            rings = record.get(own)
+            rows = rings if isinstance(rings, list) else ()
+            if any(row is INVALID or (isinstance(row, list) and INVALID in row) for row in rows):
+                record[own] = INVALID
 
 
 def in_degrees(fault: Fault, places: Mapping[Path, InDegrees]) -> Fault:
     """A fault of a place that was given in degrees, in the words of the file."""
     place = places.get(fault.path)
     if place is None:
-        return fault
+        return _of_ring_in_degrees(fault, places)
     expected = fault.expected
     for metres, degrees in _WORDS:
         expected = expected.replace(metres, degrees)
     return replace(fault, path=place.at, value=shown(place.value), expected=expected)
+
+
+def _of_ring_in_degrees(fault: Fault, places: Mapping[Path, InDegrees]) -> Fault:
+    """A fault of an area or of holes by the name of the key in the file; places in it are metres of the map frame."""
+    for corner in ((0,), (0, 0)):
+        place = places.get((*fault.path, *corner))
+        if place is not None and isinstance(place.record, list):
+            return replace(fault, path=place.at[: -len(corner)])
+    return fault
 
 
 def _places(data: object, faults: list[Fault]) -> Iterator[InDegrees]:

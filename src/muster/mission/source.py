@@ -46,7 +46,7 @@ class Source:
 
     def renumbered(self, numbers: Mapping[str, Sequence[int]]) -> Source:
         """The source of a mission whose lists have other records: for each its number in the list of before."""
-        before = {group: [self.path((group, k))[1] for k in of] for group, of in numbers.items()}
+        before = {group: [int(self.path((group, k))[1]) for k in of] for group, of in numbers.items()}
         return replace(self, numbers={**self.numbers, **before})
 
 

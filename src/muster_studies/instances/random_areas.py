@@ -23,7 +23,8 @@ def random_area(seed: int) -> tuple[Ring, tuple[Ring, ...], float]:
     area = _star(draw, (0.0, 0.0), 0.35 * size, size, draw.randint(3, 14))
     while area.area < 0.05 * size**2:
         area = _star(draw, (0.0, 0.0), 0.35 * size, size, draw.randint(3, 14))
-    inner, holes = area.buffer(-0.003 * size), []
+    inner = area.buffer(-0.003 * size)
+    holes: list[shapely.Polygon] = []
     for _ in range(draw.randint(1, 30)):
         place = (draw.uniform(-size, size), draw.uniform(-size, size))
         hole = _star(draw, place, 0.01 * size, draw.uniform(0.02, 0.2) * size, draw.randint(3, 8))

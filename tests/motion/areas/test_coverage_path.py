@@ -1,6 +1,7 @@
 """Ways over areas: every place is seen, no way leaves the area or crosses a hole; checked by Shapely."""
 
 import math
+import os
 from itertools import pairwise
 
 import numpy as np
@@ -10,8 +11,8 @@ import shapely
 from muster.motion.areas.coverage_path import MOST_LANES, TooManyLanesError, coverage_path
 from muster_studies.instances.random_areas import random_area, surface
 
-SEEDS = 24
-"""By default; `make campaign-coverage` has 200."""
+SEEDS = int(os.environ.get("MUSTER_AREAS", "24"))
+"""`make campaign-coverage` has 200."""
 SEEN = 1e-9
 """Of an area: what may be left, by rounding."""
 

@@ -47,7 +47,7 @@ class Region:
         import shapely
 
         whole = shapely.Polygon(area)
-        seen = shapely.difference(whole, shapely.union_all([shapely.Polygon(hole) for hole in holes]))
+        seen: Surface = shapely.difference(whole, shapely.union_all([shapely.Polygon(hole) for hole in holes]))
         west, south, east, north = whole.bounds
         return cls(seen, whole if cross_holes else seen, _ROUNDING * math.hypot(east - west, north - south))
 

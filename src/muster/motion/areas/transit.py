@@ -1,7 +1,7 @@
 """Shortest ways between lanes inside a region, holes left out where these may not be crossed.
 
 A shortest way among polygons bends at corners that stick into the region alone; between the corners that see each other
-Dijkstra's algorithm finds it [lozanoperez1979].
+Dijkstra's algorithm finds it [lozano1979].
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Transit:
         found: list[npt.NDArray[np.bool_]] = []
         for k in range(0, len(begins), _MOST_PAIRS):
             lines = shapely.linestrings(np.stack([begins[k : k + _MOST_PAIRS], ends[k : k + _MOST_PAIRS]], axis=1))
-            found.append(shapely.covers(self._region.within, lines))
+            found.append(np.asarray(shapely.covers(self._region.within, lines)))
         return np.concatenate(found)
 
     def lengths(self, begins: Floats, ends: Floats) -> Floats:
