@@ -4,11 +4,13 @@ import json
 
 import numpy as np
 import pytest
+import shapely
 
 import muster
 from muster.exchange.export_request import QgcOptions
 from muster.exchange.files import plan_files
 from muster.mission.geodesy import wgs84_to_enu
+from muster.motion.actions import plan as motion_of
 
 ORIGIN = (47.4, 8.5, 400.0)
 REQUIRED = {
@@ -31,9 +33,10 @@ robots:
   - {id: d1, position: [5, 0, 0], kind: air, speed_mps: 4}
   - {id: rover, position: [9, 0, 0]}
 tasks:
-  - {id: field, action: {name: coverage, area: [[0, 5], [90, 5], [90, 65], [0, 65]], holes: [[[30, 30], [50, 30], [50, 40]]],
-     height_m: 20, fov_deg: 60, front_overlap: 0.5, heading_deg: 30, split: 2}, only_robots: [d0, d1]}
-  - {id: lawn, action: {name: coverage, area: [[0, -5], [20, -5], [20, -25], [0, -25]], width_m: 2}, only_robots: [rover]}
+  - {id: field, action: {name: coverage, area: [[0, 5], [90, 5], [90, 65], [0, 65]],
+     holes: [[[30, 30], [50, 30], [50, 40]]], height_m: 20, fov_deg: 60, front_overlap: 0.5, heading_deg: 30, split: 2}, only_robots: [d0, d1]}
+  - {id: lawn, only_robots: [rover], action: {name: coverage, width_m: 2,
+     area: [[0, -5], [20, -5], [20, -25], [0, -25]]}}
 """
 
 
@@ -79,8 +82,6 @@ def test_the_way_points_are_those_of_the_plan(case):
     for route in plan.routes[:2]:
         (survey,) = surveys(files[f"{route.robot}.plan"])
         inner = survey["TransectStyleComplexItem"]
-        from muster.motion.actions import plan as motion_of
-
         (name,) = route.tasks
         points = np.array(motion_of(tasks[name], robots[route.robot]).points)[:, :2]
         assert metres(inner["VisualTransectPoints"]) == pytest.approx(points, abs=0.01)
@@ -97,8 +98,6 @@ def test_pictures_are_taken_at_the_distance_of_the_front_overlap(case):
 
 
 def test_the_polygons_of_parts_cover_the_area_together(case):
-    import shapely
-
     _, _, files = case
     parts = [shapely.Polygon(metres(survey["polygon"])) for items in files.values() for survey in surveys(items)]
     area = shapely.box(0, 5, 90, 65)

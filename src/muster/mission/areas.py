@@ -128,7 +128,7 @@ def _wrong_holes(area: Ring, holes: tuple[Ring, ...], cross_holes: bool) -> Iter
     import shapely
 
     whole = shapely.Polygon(area)
-    left: shapely.Polygon | shapely.MultiPolygon = whole
+    left: Any = whole
     for k, hole in enumerate(map(shapely.Polygon, holes)):
         beyond = shapely.difference(hole, whole)
         if beyond.area > _TOUCHES * whole.area:

@@ -11,7 +11,7 @@ import shapely
 from muster.motion.areas.coverage_path import MOST_LANES, TooManyLanesError, coverage_path
 from muster_studies.instances.random_areas import random_area, surface
 
-SEEDS = int(os.environ.get("MUSTER_AREAS", "24"))
+SEEDS = int(os.environ.get("MUSTER_AREAS", "16"))
 """`make campaign-coverage` has 200."""
 SEEN = 1e-9
 """Of an area: what may be left, by rounding."""

@@ -13,7 +13,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -70,7 +70,7 @@ class Lanes:
         middles = south + (np.arange(count) + 0.5) * (north - south) / count
         rows, numbers = _rows(region, middles, west - width_m, east + width_m)
         side_by_side = max(width_m * _SEEN, (north - south) / count)
-        rest: Surface = shapely.difference(region.seen, shapely.union_all(swaths(rows, side_by_side)))
+        rest = cast("Surface", shapely.difference(region.seen, shapely.union_all(swaths(rows, side_by_side))))
         return cls(region, width_m, count, rows, numbers, rest)
 
     def short(self) -> Floats:

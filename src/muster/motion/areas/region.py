@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -47,7 +47,8 @@ class Region:
         import shapely
 
         whole = shapely.Polygon(area)
-        seen: Surface = shapely.difference(whole, shapely.union_all([shapely.Polygon(hole) for hole in holes]))
+        without = shapely.union_all([shapely.Polygon(hole) for hole in holes])
+        seen = cast("Surface", shapely.difference(whole, without))
         west, south, east, north = whole.bounds
         return cls(seen, whole if cross_holes else seen, _ROUNDING * math.hypot(east - west, north - south))
 
