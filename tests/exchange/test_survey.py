@@ -34,7 +34,8 @@ robots:
   - {id: rover, position: [9, 0, 0]}
 tasks:
   - {id: field, action: {name: coverage, area: [[0, 5], [90, 5], [90, 65], [0, 65]],
-     holes: [[[30, 30], [50, 30], [50, 40]]], height_m: 20, fov_deg: 60, front_overlap: 0.5, heading_deg: 30, split: 2}, only_robots: [d0, d1]}
+     holes: [[[30, 30], [50, 30], [50, 40]]], height_m: 20, fov_deg: 60, front_overlap: 0.5,
+     heading_deg: 30, split: 2}, only_robots: [d0, d1]}
   - {id: lawn, only_robots: [rover], action: {name: coverage, width_m: 2,
      area: [[0, -5], [20, -5], [20, -25], [0, -25]]}}
 """
