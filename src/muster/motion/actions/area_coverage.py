@@ -114,7 +114,11 @@ def _parts(
 
 
 def _passed(path: CoveragePath, lanes: Floats, swath: Swath) -> Iterator[tuple[Point, float | None]]:
-    """The places that the body passes, and its headings there; at bends between lanes as it arrives."""
+    """The places that the body passes, and its headings there; at bends between lanes as it arrives.
+
+    Where one lane begins at the end of another the place comes twice: an autopilot may turn to the heading of a way
+    point on the way to it, and has to keep that of its lane.
+    """
     ways = lanes[:, 1] - lanes[:, 0]
     headings = np.arctan2(ways[:, 1], ways[:, 0])
     ahead = np.column_stack([np.cos(headings), np.sin(headings)])
@@ -124,10 +128,8 @@ def _passed(path: CoveragePath, lanes: Floats, swath: Swath) -> Iterator[tuple[P
         if k:
             before = bodies[k - 1, 1]
             yield from ((_point(bend), None) for bend in path.bends(before, begin))
-        follows = k + 1 < len(bodies) and np.linalg.norm(bodies[k + 1, 0] - end) <= _SAME_M
         yield _point(begin), float(headings[k])
-        if not follows:
-            yield _point(end), float(headings[k])
+        yield _point(end), float(headings[k])
 
 
 def _blocked(action: Action, swath: Swath, places: list[Point]) -> str | None:
