@@ -9,6 +9,7 @@ from typing import Protocol
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster_studies.allocators import ALLOCATORS_STUDY
+from muster_studies.areas import AREAS
 from muster_studies.auction_5 import AUCTION_5
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure
@@ -81,6 +82,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     ROTORS,
     FLOWN,
     JAMS,
+    AREAS,
     NEGOTIATION,
 )
 

@@ -51,6 +51,7 @@ COUNTS = {  # robots, tasks
     "eil51-7-thesis": (7, 57),
     "eil76-7": (7, 75),
     "eil76-7-thesis": (7, 82),
+    "field-survey": (3, 5),
     "flood": (3, 60),
     "floor": (5, 23),
     "market-rescue": (3, 5),

@@ -124,6 +124,17 @@ def _route_properties(mission: Mission, itinerary: Itinerary, figures: RouteFigu
 
 
 def _areas(mission: Mission) -> list[tuple[str, str, list[tuple[float, ...]], Properties]]:
+    covered = dict.fromkeys((t.action.area, t.action.holes) for t in mission.tasks if t.action and t.action.area)
+    fields = [("area", f"area {k}", anticlockwise(area), Properties()) for k, (area, _) in enumerate(covered) if area]
+    fields += [
+        ("hole", f"hole {n} of area {k}", anticlockwise(hole), Properties())
+        for k, (_, holes) in enumerate(covered)
+        for n, hole in enumerate(holes)
+    ]
+    return [*_map_areas(mission), *fields]
+
+
+def _map_areas(mission: Mission) -> list[tuple[str, str, list[tuple[float, ...]], Properties]]:
     area = mission.map
     if area is None:
         return []

@@ -7,15 +7,18 @@ lands at the end of its route; one that returns to its start returns to launch.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import count, groupby
 from typing import Any
 
 from muster.exchange import qgc_format as qgc
 from muster.exchange.earth import Earth, Spot, anticlockwise
 from muster.exchange.fence import Fence
 from muster.exchange.itinerary import Itinerary, Passage
-from muster.mission.model import Mission, Point
+from muster.exchange.qgc_survey import survey_item
+from muster.mission.model import Mission, Point, Robot, Task
 
 Item = dict[str, Any]
 
@@ -52,7 +55,7 @@ class PlanFiles:
                 "firmwareType": qgc.FIRMWARE[self.firmware],
                 "globalPlanAltitudeMode": qgc.RELATIVE_TO_HOME,
                 "hoverSpeed": robot.speed_mps,
-                "items": [item | {"doJumpId": k} for k, item in enumerate(self._items(itinerary, home), 1)],
+                "items": _numbered(self._items(itinerary, home)),
                 "plannedHomePosition": [home.lat, home.lon, home.alt],
                 "vehicleType": qgc.QUADROTOR if robot.kind == "air" else qgc.GROUND_ROVER,
                 "version": 2,
@@ -68,9 +71,23 @@ class PlanFiles:
         if robot.kind == "air":
             yield _item(qgc.NAV_TAKEOFF, [0, 0, 0, None], home, _above(passed[0][1], home))
         yield _command(qgc.DO_CHANGE_SPEED, [qgc.GROUND_SPEED, robot.speed_mps, -1, 0])
-        for passage, spot in passed:
-            yield from self._way_point(passage, spot, home)
+        for name, group in groupby(passed, key=lambda pair: pair[0].task):
+            yield from self._stop(self.tasks.get(name or ""), robot, list(group), home)
         yield from self._ending(itinerary, spots[-1], home)
+
+    @cached_property
+    def tasks(self) -> dict[str, Task]:
+        """The tasks of the mission by id."""
+        return {task.id: task for task in self.mission.tasks}
+
+    def _stop(self, task: Task | None, robot: Robot, passed: list[tuple[Passage, Spot]], home: Spot) -> Iterator[Item]:
+        """The way points of one task, or between tasks; those of a drone over an area as a survey."""
+        items = [item for passage, spot in passed for item in self._way_point(passage, spot, home)]
+        if robot.kind == "air" and task is not None and task.action is not None and task.action.area is not None:
+            passages = [passage for passage, _ in passed]
+            yield survey_item(task, robot, items, passages, _above(passed[0][1], home), self.earth)
+        else:
+            yield from items
 
     def _way_point(self, passage: Passage, spot: Spot, home: Spot) -> Iterator[Item]:
         yaw = None if passage.heading is None else _compass_deg(passage.heading)
@@ -105,6 +122,19 @@ class PlanFiles:
         starts = dict.fromkeys(other.start.place for other in self.team if other.robot.kind == "air")
         height = _above(self.earth.spot(itinerary.passages[1].place), home)
         return [[spot.lat, spot.lon, height] for spot in self.earth.spots(starts)]
+
+
+def _numbered(items: Iterable[Item]) -> list[Item]:
+    """The items with their numbers from 1; of a survey the items in it have them."""
+    found, number = [], count(1)
+    for item in items:
+        if item["type"] == "SimpleItem":
+            found.append(item | {"doJumpId": next(number)})
+            continue
+        inner = item["TransectStyleComplexItem"]
+        own = [one | {"doJumpId": next(number)} for one in inner["Items"]]
+        found.append(item | {"TransectStyleComplexItem": inner | {"Items": own}})
+    return found
 
 
 def _item(command: int, params: Sequence[float | None], spot: Spot, height_m: float) -> Item:

@@ -122,10 +122,12 @@ def _natural(name: str) -> list[tuple[int, int, str]]:
 
 
 def _items(lines: Iterable[str], group: str) -> int:
-    """How many items the list `group` has, where each stands on a line of its own."""
+    """How many items the list `group` has, where each stands on a line of its own; a split task is several."""
     count, inside = 0, False
     for line in lines:
         if not line.startswith((" ", "#")):
             inside = line.startswith(f"{group}:")
-        count += inside and line.startswith("  - ")
+        if inside and line.startswith("  - "):
+            split = re.search(r"\bsplit: (\d+)", line)
+            count += 1 if split is None else int(split[1])
     return count

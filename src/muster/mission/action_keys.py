@@ -41,6 +41,21 @@ class ActionKeys:
 GO_TO_GOAL = ActionKeys(has_geometry=False)
 STATIONARY_OBSERVATION = ActionKeys(needed=("width_m",), optional=("heading_deg",))
 RASTER_SEARCH = ActionKeys(needed=("side_m", "height_m"), optional=("spacing_m", "overlap"))
+COVERAGE = ActionKeys(
+    needed=("area",),
+    optional=(
+        "holes",
+        "cross_holes",
+        "height_m",
+        "fov_deg",
+        "width_m",
+        "overlap",
+        "front_overlap",
+        "heading_deg",
+        "split",
+        "part",
+    ),
+)
 GROUND_PATROL = ActionKeys(needed=("side_m",))
 DELIVERY = ActionKeys(needed=("pickup",))
 SENSOR_ACTIVATION = ActionKeys(needed=("duration_s",), has_geometry=False)
@@ -49,6 +64,7 @@ _SHIPPED = {
     "go-to-goal": "GO_TO_GOAL",
     "stationary-observation": "STATIONARY_OBSERVATION",
     "raster-search": "RASTER_SEARCH",
+    "coverage": "COVERAGE",
     "ground-patrol": "GROUND_PATROL",
     "delivery": "DELIVERY",
     "sensor-activation": "SENSOR_ACTIVATION",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from muster.mission.areas import area_faults
 from muster.mission.deliveries import goods_faults
 from muster.mission.doors import doors_of
 from muster.mission.mission_data import MissionData
@@ -27,6 +28,7 @@ def inconsistencies(mission: MissionData) -> Iterator[Fault]:
     yield from goods_faults(mission)
     yield from _ids_of_stations(mission)
     yield from _locks(mission)
+    yield from area_faults(mission)
     yield from _suitability(mission)
     yield from _dimensions(mission)
     yield from _travel(mission)

@@ -9,7 +9,7 @@ from muster.mission.records import Checked, Record, record, spec, specified
 from muster.mission.robots import Robot
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.tasks import Task
-from muster.mission.value_types import Fault, JsonSchema, Number, Position, Text
+from muster.mission.value_types import Fault, JsonSchema, Number, Position, Text, shown
 
 
 @record
@@ -54,6 +54,10 @@ class Event(Checked):
         given = [name for name in names if values.get(name) is not None]
         if len(given) != 1:
             yield Fault((), ", ".join(given) or "no happening", f"exactly one of {', '.join(names)}")
+        action = None if values.get("new_task") is None else values["new_task"].action
+        if action is not None and action.split is not None and action.part is None:
+            expected = "part beside it: what comes later is one task"
+            yield Fault(("new_task", "action", "split"), shown(action.split), expected)
 
     @classmethod
     def schema_extra(cls) -> JsonSchema:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from muster.mission.area_parts import with_parts
+from muster.mission.areas import put_in_positions
 from muster.mission.clock_times import clock_times_to_seconds
 from muster.mission.consistency import inconsistencies
 from muster.mission.degrees import degrees_to_metres, in_degrees
@@ -46,6 +48,7 @@ def mission_from(
     """
     places = degrees_to_metres(data, faults)
     clock_times_to_seconds(data, faults)
+    put_in_positions(data)
     mission: Mission = Record(Mission, "a mission").read(data, (), faults)
     object.__setattr__(mission, "source", source)
     if mission.travel_rule == "matrix" and mission.travel:
@@ -61,6 +64,8 @@ def mission_from(
     )
     if faults:
         raise MissionError(findings(faults, source))
+    for name, value in with_parts(mission).items():
+        object.__setattr__(mission, name, value)
     return mission
 
 

@@ -68,7 +68,9 @@ def _definition(of: type[Any]) -> JsonSchema:
 def _one_of(f: Field[Any], key: str) -> JsonSchema:
     """Exactly one of a required field and the key in its place; at most one, where the field is not required."""
     if required(f):
-        return {"oneOf": [{"required": [f.name]}, {"required": [key]}]}
+        given: list[JsonSchema] = [{"required": [f.name]}, {"required": [key]}]
+        neither = [{"not": {"anyOf": list(given)}} | f.metadata["unless"]] if "unless" in f.metadata else []
+        return {"oneOf": given + neither}
     return {"not": {"required": [f.name, key]}}
 
 
@@ -86,7 +88,24 @@ def _form(name: str, keys: ActionKeys) -> JsonSchema:
         else:
             kind = fields[key].metadata["kind"].schema()
             properties[key] = (kind if key in keys.needed else _or_null(kind)) | _described(fields[key])
-    return _object(properties, ["name", *keys.needed])
+    need = [key for key in keys.needed if not _has_instead(key, fields)]
+    return _object(properties, ["name", *need]) | _choices(keys, fields, properties)
+
+
+def _has_instead(key: str, fields: dict[str, Field[Any]]) -> bool:
+    return key in fields and "instead" in fields[key].metadata
+
+
+def _choices(keys: ActionKeys, fields: dict[str, Field[Any]], properties: dict[str, JsonSchema]) -> JsonSchema:
+    """Keys that stand for fields of an action: added to its properties, and one of each pair at most."""
+    rules: list[JsonSchema] = []
+    for name in keys.names:
+        if _has_instead(name, fields):
+            key, kind, doc = fields[name].metadata["instead"]
+            properties[key] = kind.schema() | {"description": doc}
+            pair: list[JsonSchema] = [{"required": [name]}, {"required": [key]}]
+            rules.append({"oneOf": pair} if name in keys.needed else {"not": {"required": [name, key]}})
+    return {"allOf": rules} if rules else {}
 
 
 def _object(properties: dict[str, JsonSchema], need: list[str]) -> JsonSchema:

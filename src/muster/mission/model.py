@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from muster.mission.area_parts import with_parts
 from muster.mission.consistency import inconsistencies
 from muster.mission.cooperation import Lag, TeamPart
 from muster.mission.data_frames import frame_of_records
@@ -75,6 +76,8 @@ class Mission(MissionData):
         faults = list(inconsistencies(self))
         if faults:
             raise MissionError(findings(faults, self.source))
+        for name, value in with_parts(self).items():
+            object.__setattr__(self, name, value)
 
     def __repr__(self) -> str:
         return f"<Mission {self.name}: {self._counts}, {self.rules.objective}>"

@@ -46,6 +46,7 @@ def spec(
     default: Any = MISSING,
     unit: str = "",
     instead: tuple[str, Kind, str] | None = None,
+    unless: JsonSchema | None = None,
     if_used: bool = False,
     key: str = "",
 ) -> Any:
@@ -58,6 +59,9 @@ def spec(
     instead
         a key of files, its kind and description, that may stand for the field: places in degrees, clock times. They are
         replaced before; `Record` never gets to read the key.
+    unless
+        the JSON Schema of records of which files may leave the field out, though it is required: it follows from others
+        and is put in before.
     if_used
         whether tables show it only where some record has it.
     key
@@ -66,6 +70,7 @@ def spec(
     metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit, "if_used": if_used}
     metadata |= {"key": key} if key else {}
     metadata |= {"instead": instead} if instead else {}
+    metadata |= {"unless": unless} if unless else {}
     hashed = False if isinstance(kind, Table) else None  # a mapping has no hash
     if default is MISSING:
         return field(metadata=metadata, hash=hashed)
@@ -352,7 +357,10 @@ def findings(faults: Iterable[Fault], source: Source) -> list[Finding]:
     """Faults as findings: with file and line, in the order of the files."""
     found = [
         Finding(
-            *source.place(fault.path), source.field(fault.path) or path_text(fault.path), fault.value, fault.expected
+            *source.place(fault.path),
+            source.name_in_file(fault.path) or path_text(source.path(fault.path)),
+            fault.value,
+            fault.expected,
         )
         for fault in faults
     ]

@@ -52,6 +52,7 @@ def _bound(mission: Mission) -> float:
     points += [] if mission.lanes is None else mission.lanes.nodes.values()
     sizes = [(t.action.side_m, t.action.spacing_m, t.action.height_m, t.action.width_m) for t in tasks if t.action]
     points += [tuple(size for size in row if size is not None) for row in sizes]
+    points += [corner for t in tasks if t.action is not None for corner in t.action.area or ()]
     points += [point for t in tasks if t.action is not None for point in t.action.places.values()]
     far = max(abs(c) for point in points if point is not None for c in point)
     stretch = _STRETCH if any(t.action is not None and t.action.has_geometry for t in tasks) else 1.0
@@ -83,7 +84,9 @@ def _portals(task: Task) -> tuple[Point, ...]:
 
 
 def _lanes(action: Action) -> float:
-    """At most so many, or one less; as many as there may be where they follow from a camera."""
+    """At most so many, or one less; as many as there may be where they follow from a camera or an area."""
+    if action.area is not None:
+        return _MOST_LANES
     if action.side_m is None or action.height_m is None:
         return 1.0
     return _MOST_LANES if action.spacing_m is None else action.side_m / action.spacing_m

@@ -7,6 +7,7 @@ from dataclasses import field, replace
 from typing import Any, Self
 
 from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.area_keys import AREA_IN_DEGREES, HOLES_IN_DEGREES, WITH_AREA, coverage_faults
 from muster.mission.clock_times import DEADLINE, DUE, WINDOW
 from muster.mission.cooperation import Lag, Prerequisite, PrerequisiteOrId, TeamPart
 from muster.mission.errors import MissionError
@@ -19,6 +20,7 @@ from muster.mission.time_types import Window, Windows
 from muster.mission.value_types import (
     Choice,
     Fault,
+    Flag,
     Key,
     Many,
     Number,
@@ -30,26 +32,55 @@ from muster.mission.value_types import (
     shown,
 )
 
+_ABSENT = (None, (), False)
+"""Values of keys that an action does not have."""
+
 
 @record
 class Action(Checked):
     """What a robot does at a task."""
 
     name: str = spec(Choice(ACTION_KEYS.keys()), "which action")
-    width_m: float | None = spec(Number(above=0), "stationary-observation: width in view", default=None)
-    heading_deg: float | None = spec(Number(), "stationary-observation: direction of view, 0 if absent", default=None)
+    area: tuple[Point, ...] | None = spec(
+        Many(Position(planar=True), minimum=3), "coverage: corners in order", default=None, instead=AREA_IN_DEGREES
+    )
+    holes: tuple[tuple[Point, ...], ...] = spec(
+        Many(Many(Position(planar=True), minimum=3)),
+        "coverage: parts of the area that need not be seen, each by its corners",
+        default=(),
+        instead=HOLES_IN_DEGREES,
+    )
+    cross_holes: bool = spec(Flag(), "coverage: whether a robot may cross holes", default=False)
+    width_m: float | None = spec(
+        Number(above=0), "stationary-observation: width in view; coverage: width of the tool", default=None
+    )
+    fov_deg: float | None = spec(
+        Number(above=0, below=180),
+        "coverage: field of view across the lanes, straight down, in place of the robot's camera",
+        default=None,
+    )
+    heading_deg: float | None = spec(
+        Number(),
+        "stationary-observation: direction of view, 0 if absent; coverage: of the lanes, the best if absent",
+        default=None,
+    )
     side_m: float | None = spec(Number(above=0), "raster-search, ground-patrol: side of the square", default=None)
-    height_m: float | None = spec(Number(above=0), "raster-search: height of flight", default=None)
+    height_m: float | None = spec(Number(above=0), "raster-search, coverage: height of flight", default=None)
     spacing_m: float | None = spec(
         Number(above=0), "raster-search: distance between lanes; without it from the camera's footprint", default=None
     )
     overlap: float | None = spec(
         Number(minimum=0, below=1),
-        "raster-search: share of what the camera sees that lanes share, 0.1 if absent",
+        "raster-search, coverage: share of what is seen that lanes share, 0.1 if absent; of a tool 0",
         default=None,
+    )
+    front_overlap: float | None = spec(
+        Number(minimum=0, below=1), "coverage: share of a picture that the next one shares, for exports", default=None
     )
     pickup: Point | None = spec(Place(), "delivery: where the load is taken up", default=None)
     duration_s: float | None = spec(Number(minimum=0), "sensor-activation: time it takes", default=None)
+    split: int | None = spec(Whole(minimum=1, maximum=1000), "coverage: into how many tasks it is split", default=None)
+    part: int | None = spec(Whole(minimum=1), "coverage: which part of a split area, from 1", default=None)
 
     extra: Mapping[str, Any] = field(default_factory=dict, hash=False)
     """Values of the keys that a package gives an action of its own; in files they stand beside the others."""
@@ -88,10 +119,15 @@ class Action(Checked):
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         name, extra = values["name"], values.get("extra", {})
         keys = ACTION_KEYS[name]
-        given = {*extra, *(key for key, value in values.items() if value is not None and key not in ("name", "extra"))}
+        given = {
+            *extra,
+            *(key for key, value in values.items() if value not in _ABSENT and key not in ("name", "extra")),
+        }
         for key in keys.needed:
             if key not in given:
                 yield Fault((key,), "missing", f"a value: {name} needs {', '.join(keys.needed)}")
+        if name == "coverage":
+            yield from coverage_faults(values)
         if name == "raster-search" and {"spacing_m", "overlap"} <= given:
             yield Fault(("overlap",), shown(values["overlap"]), "spacing_m or overlap, not both")
         for key in sorted(given.difference(keys.names)):
@@ -243,7 +279,7 @@ class _Placed(Checked):
     """What comes first of a task."""
 
     id: str = spec(Text(), "unique among the tasks")
-    position: Point = spec(Position(), "where it is", instead=IN_DEGREES)
+    position: Point = spec(Position(), "where it is", instead=IN_DEGREES, unless=WITH_AREA)
 
 
 @record

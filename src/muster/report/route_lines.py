@@ -27,8 +27,8 @@ class RobotLines:
     `travel` runs from the start through tasks and stations, from exit to entry, over a map along the paths that are
     driven.
     `work` runs along the way points of a task's action, else from its entry through its position to its exit, where
-    these differ. Both are polylines, separated by rows of NaN. `end` is the leg from the last stop to where the route
-    must end; it has no rows where the route may end anywhere.
+    these differ; `lanes` is the work that covers areas. All three are polylines, separated by rows of NaN. `end` is the
+    leg from the last stop to where the route must end; it has no rows where the route may end anywhere.
     """
 
     index: int
@@ -38,7 +38,15 @@ class RobotLines:
     positions: Places
     travel: Places
     work: Places
+    lanes: Places
     end: Places
+
+    @property
+    def all_work(self) -> Places:
+        """`work` and `lanes` as one."""
+        gap = np.full((1, self.work.shape[1]), np.nan)
+        parts = [part for part in (self.work, self.lanes) if len(part)]
+        return np.vstack([parts[0], gap, parts[1]]) if len(parts) > 1 else parts[0] if parts else self.work
 
 
 PathFunction = Callable[[Robot, Point, Point], Sequence[Point]]
@@ -82,13 +90,15 @@ def _lines_of(
     dimensions: int,
     path: PathFunction,
 ) -> RobotLines:
-    travel, work, here = [[robot.position]], [], robot.position
+    travel, here = [[robot.position]], robot.position
+    work: list[list[Point]] = []
+    lanes: list[list[Point]] = []
     for stop in route:
         points = (stop.position,) if isinstance(stop, Station) else work_points(stop, robot)
         travel[-1] += path(robot, here, points[0])[1:]
         if len(points) > 1:
             legs = [path(robot, start, goal) for start, goal in pairwise(points)] if _is_moving(stop) else [points]
-            work.append([points[0], *(point for leg in legs for point in leg[1:])])
+            (lanes if has_area(stop) else work).append([points[0], *(point for leg in legs for point in leg[1:])])
         here = points[-1]
         if points[0] != here:
             travel.append([here])
@@ -98,9 +108,10 @@ def _lines_of(
         robot=robot,
         figures=figures,
         tasks=tasks,
-        positions=places((task.position for task in tasks), dimensions),
+        positions=places((marked_place(task, robot) for task in tasks), dimensions),
         travel=_polylines(travel, dimensions),
         work=_polylines(work, dimensions),
+        lanes=_polylines(lanes, dimensions),
         end=places(path(robot, here, end) if end is not None and route else [], dimensions),
     )
 
@@ -109,6 +120,32 @@ def work_points(task: Task, robot: Robot) -> Sequence[Point]:
     """The points that a robot passes at a task; the task's position for a robot that cannot do it."""
     doing = plan(task, robot)
     return (task.position,) if isinstance(doing, Impossible) else doing.points
+
+
+def has_area(stop: Task | Station) -> bool:
+    """Whether a stop is a task over an area."""
+    return isinstance(stop, Task) and stop.action is not None and stop.action.area is not None
+
+
+def marked_place(task: Task, robot: Robot) -> Point:
+    """Where a task bears its mark: its position; over an area the middle of a lane in the midst of its lanes."""
+    if not has_area(task):
+        return task.position
+    passed = np.array([point[: len(task.position)] for point in work_points(task, robot)])
+    if len(passed) < 2:
+        return task.position
+    points = (passed[1:] + passed[:-1]) / 2
+    nearest = np.linalg.norm(points - points.mean(axis=0), axis=1).argmin()
+    return tuple(points[nearest].tolist())
+
+
+def marks_of(mission: Mission, drawn: Iterable[RobotLines]) -> dict[str, Point]:
+    """Where each task bears its mark, by id; one over an area that nobody does at its position."""
+    areas = {task.id for task in mission.tasks if has_area(task)}
+    done = {
+        task.id: tuple(at) for lines in drawn for task, at in zip(lines.tasks, lines.positions.tolist(), strict=True)
+    }
+    return {task.id: done[task.id] if task.id in areas & done.keys() else task.position for task in mission.tasks}
 
 
 def _is_moving(stop: Task | Station) -> bool:

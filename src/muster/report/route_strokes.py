@@ -58,6 +58,8 @@ def draw_lines(ax: Any, lines: RobotLines, detail: Detail) -> None:
         ax.plot(*lines.travel.T, gid=f"travel-{name}", zorder=2, solid_joinstyle="round", **stroke)
     if len(lines.work):
         ax.plot(*lines.work.T, gid=f"work-{name}", linestyle=(0, (1, 1)), **thin)
+    if len(lines.lanes):
+        ax.plot(*lines.lanes.T, gid=f"lanes-{name}", solid_joinstyle="round", **thin)
     if len(lines.end):
         ax.plot(*lines.end.T, gid=f"end-{name}", linestyle=DASHED, **thin)
         if lines.robot.end_position is not None:

@@ -11,6 +11,7 @@ import numpy as np
 from muster.mission.model import Mission, Point, Task
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
+from muster.report.area_marks import area_corners, draw_areas
 from muster.report.canvas import (
     add_legend,
     add_title,
@@ -38,7 +39,7 @@ from muster.report.route_ground import (
     drawn_prerequisites,
     drawn_transports,
 )
-from muster.report.route_lines import Places, RobotLines, left_out, places, robot_lines
+from muster.report.route_lines import Places, RobotLines, left_out, marks_of, places, robot_lines
 from muster.report.route_strokes import Detail, detail_for, draw_lines, draw_tasks, stroke_of
 from muster.report.station_marks import draw_stations, station_names
 from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
@@ -118,6 +119,8 @@ class _Scene:
     """Robots that are not named, as many have nothing to do."""
     image: Grid | None
     """The cells of a map that is an image."""
+    marks: dict[str, Point]
+    """Where each task bears its mark."""
 
     def places(self, points: Sequence[Point]) -> Places:
         return places(points, self.dimensions)
@@ -136,6 +139,7 @@ def _scene(mission: Mission, verdict: Verdict, spatial: bool, image: Grid | None
         names=Names(mission),
         idle=frozenset(idle if len(idle) > MOST_IDLE else ()),
         image=image,
+        marks=marks_of(mission, drawn),
     )
 
 
@@ -153,9 +157,10 @@ def _all_points(scene: _Scene) -> list[Point]:
     points += [robot.end_position for robot in mission.robots if robot.end_position is not None]
     points += [station.position for station in mission.stations]
     for task in mission.tasks:
-        points += [task.position, task.entry or task.position, task.exit or task.position]
+        points += [scene.marks[task.id], task.entry or task.position, task.exit or task.position]
     for lines in scene.lines:
-        points += [tuple(point) for point in lines.work[~np.isnan(lines.work).any(axis=1)].tolist()]
+        points += [tuple(point) for point in lines.all_work[~np.isnan(lines.all_work).any(axis=1)].tolist()]
+    points += area_corners(mission)
     if mission.map is not None:
         points += map_corners(mission.map, scene.image)
     return points
@@ -178,12 +183,14 @@ def _own_axes(scene: _Scene) -> Axes:
 def _draw_ground(ax: Any, scene: _Scene) -> list[tuple[Any, str]]:
     mission, spatial = scene.mission, scene.dimensions == 3
     if spatial and scene.detail.ids:
-        tops = scene.places([task.position for task in mission.tasks])
+        tops = scene.places(list(scene.marks.values()))
         draw_stems(ax, tops, float(ax.get_zlim()[0]))
-    place_of = {task.id: scene.places([task.position])[0] for task in mission.tasks}
+    place_of = {name: scene.places([at])[0] for name, at in scene.marks.items()}
     gap = scene.detail.mark / 2 + 1
     arrows = [*draw_prerequisites(ax, mission, place_of, gap), *draw_transports(ax, mission, place_of, gap)]
-    return [*arrows, *(draw_map(ax, mission.map, scene.image, spatial=spatial) if mission.map is not None else ())]
+    areas = draw_areas(ax, mission, spatial=spatial)
+    walls = draw_map(ax, mission.map, scene.image, spatial=spatial) if mission.map is not None else []
+    return [*arrows, *areas, *walls]
 
 
 def _draw_left_out(ax: Any, scene: _Scene) -> None:
@@ -260,6 +267,8 @@ def _mark_entries(scene: _Scene) -> list[tuple[Any, str]]:
         entries.append(entry(label, linestyle=DASHED, linewidth=1.3))
     if any(len(lines.work) for lines in scene.lines):
         entries.append(entry("work", linestyle=(0, (1, 1)), linewidth=1.3))
+    if any(len(lines.lanes) for lines in scene.lines):
+        entries.append(entry("lanes", linestyle="-", linewidth=0.9))
     return entries
 
 
@@ -277,7 +286,7 @@ def _name_places(ax: Any, scene: _Scene) -> None:
     if scene.detail.ids:
         look = {"fontsize": 6.5, "color": QUIET_TEXT, "zorder": 4}
         names += [
-            (task.position, scene.names.task(task.id), {**look, "gid": f"name-{task.id}"})
+            (scene.marks[task.id], scene.names.task(task.id), {**look, "gid": f"name-{task.id}"})
             for task in scene.mission.tasks
         ]
     if not names:
@@ -300,13 +309,12 @@ def _group_name(scene: _Scene, group: list[int]) -> str:
 def _obstacles(ax: Any, scene: _Scene) -> Places:
     """Collect what names should not cover: routes, marks of tasks, starts, the outlines of walls and zones."""
     radius = scene.detail.mark / 2
-    tasks = to_points(ax, scene.places([task.position for task in scene.mission.tasks]))
+    tasks = to_points(ax, scene.places(list(scene.marks.values())))
     others = [*(robot.position for robot in scene.mission.robots), *(one.position for one in scene.mission.stations)]
     starts = to_points(ax, scene.places(others))
-    lines = [line for lines in scene.lines for line in (lines.travel, lines.work, lines.end) if len(line)]
-    at = {task.id: task.position for task in scene.mission.tasks}
+    lines = [line for lines in scene.lines for line in (lines.travel, lines.all_work, lines.end) if len(line)]
     lines += [
-        scene.places([at[before], at[after]])
+        scene.places([scene.marks[before], scene.marks[after]])
         for before, after in (*drawn_prerequisites(scene.mission.tasks), *drawn_transports(scene.mission.tasks))
     ]
     if scene.mission.map is not None:

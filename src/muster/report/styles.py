@@ -30,6 +30,8 @@ SERVICE, SERVICE_EDGE = "#C9E8B5", "#3F7D20"
 """What robots do at stations, whatever the robot's own colour, and the mark of a station."""
 LEVEL = "#2E2E2E"
 """The level of a battery."""
+AREA, AREA_EDGE = "#F4F1E4", "#B5A979"
+"""The ground of an area that is covered, and its outline."""
 TRANSPORT = "#8064A2"
 """From where something is taken on board to where it is put down."""
 

@@ -62,7 +62,7 @@ def test_a_name_is_taken_once(there):
 
 def test_keys_must_be_those_of_missions():
     with pytest.raises(
-        ParameterError, match="action there-and-back: key sides; expected keys of duration_s, heading_deg"
+        ParameterError, match="action there-and-back: key sides; expected keys of area, cross_holes, duration_s"
     ):
         register(There(keys=ActionKeys(needed=("sides",))))
     assert "there-and-back" not in ACTIONS

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from muster.mission.errors import MissingExtraError
 
 
-def require_map_extra() -> None:
+def require_map_extra(purpose: str = "a map") -> None:
     """Raise MissingExtraError where Pillow, SciPy or Shapely is not installed."""
     if not all(find_spec(name) for name in ("PIL", "scipy", "shapely")):
-        raise MissingExtraError("map", "a map")
+        raise MissingExtraError("map", purpose)

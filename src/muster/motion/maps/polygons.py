@@ -7,13 +7,13 @@ the way around one of them is longer than the arc by at most tan(h) / h - 1 < 0.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from muster.mission.model import Point
+from muster.mission.polygons import SIMPLE, trouble
 from muster.mission.value_types import Fault, Path
 from muster.motion.grid import Floats
 from muster.motion.maps.narrow_places import without_pinches
@@ -37,24 +37,11 @@ def read_polygon(corners: Sequence[Point], at: Path, faults: list[Fault]) -> sha
         faults.append(Fault(at, f"a polygon that reaches {far:g} m", f"coordinates up to {FARTHEST_M:g} m"))
         return None
     polygon = shapely.Polygon(corners)
-    if polygon.is_valid and polygon.area > 0:
+    wrong = trouble(polygon)
+    if wrong is None:
         return polygon
-    faults.append(Fault(at, _trouble(polygon), "a polygon whose sides meet at its corners alone"))
+    faults.append(Fault(at, wrong, SIMPLE))
     return None
-
-
-def _trouble(polygon: shapely.Polygon) -> str:
-    """What is wrong with a polygon, and where."""
-    import shapely
-
-    reason = str(shapely.is_valid_reason(polygon))
-    where = re.fullmatch(r"(?P<what>.*)\[(?P<x>\S+) (?P<y>\S+)\]", reason)
-    if polygon.area == 0 and (where is None or polygon.minimum_rotated_rectangle.area == 0):
-        return "corners on one line"
-    if where is None:
-        return reason
-    what = "touches itself" if where["what"].startswith("Ring") else "crosses itself"
-    return f"{what} at ({float(where['x']):g}, {float(where['y']):g})"
 
 
 def grown(polygon: shapely.Polygon, radius_m: float) -> shapely.Polygon:

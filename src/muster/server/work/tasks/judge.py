@@ -45,7 +45,7 @@ def lines(mission: Mission, verdict: Verdict) -> dict[str, dict[str, list[list[l
 
 
 def _lines(lines: RobotLines) -> dict[str, list[list[list[float]]]]:
-    parts = {"travel": lines.travel, "work": lines.work, "end": lines.end}
+    parts = {"travel": lines.travel, "work": lines.all_work, "end": lines.end}
     return {name: list(_polylines(places)) for name, places in parts.items()}
 
 
