@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     )
     from muster.mission.model import (
         Action,
+        Battery,
         Camera,
         Event,
         Found,
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
         Origin,
         Robot,
         Rules,
+        Station,
         Tag,
         Task,
         TeamPart,
@@ -68,6 +70,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Action",
+    "Battery",
     "Camera",
     "Comparison",
     "Event",
@@ -99,6 +102,7 @@ __all__ = [
     "Route",
     "Rules",
     "Simulation",
+    "Station",
     "Tag",
     "Task",
     "TeamPart",
@@ -123,6 +127,7 @@ __all__ = [
 
 _LOADED_AT_FIRST_USE = {
     "Action": "muster.mission.model",
+    "Battery": "muster.mission.model",
     "Camera": "muster.mission.model",
     "Comparison": "muster.comparison.comparison",
     "Event": "muster.mission.model",
@@ -154,6 +159,7 @@ _LOADED_AT_FIRST_USE = {
     "Route": "muster.mission.plan",
     "Rules": "muster.mission.model",
     "Simulation": "muster.running.simulation",
+    "Station": "muster.mission.model",
     "Tag": "muster.mission.model",
     "Task": "muster.mission.model",
     "TeamPart": "muster.mission.model",

@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 import muster
-from muster.exchange.export_request import QgcOptions
+from muster.exchange.export_request import ExportOptions
 from muster.exchange.files import plan_files
 from muster.mission.geodesy import wgs84_to_enu
 from muster.motion.actions import plan as motion_of
@@ -49,7 +49,7 @@ def case(tmp_path_factory):
     plan = muster.solve(mission, iterations=200, seed=1)
     verdict = muster.verify(mission, plan)
     assert verdict.valid
-    texts = plan_files(mission, verdict, QgcOptions(firmware="px4")).texts
+    texts = plan_files(mission, verdict, ExportOptions(firmware="px4")).texts
     return mission, plan, {name: json.loads(text)["mission"]["items"] for name, text in texts.items()}
 
 

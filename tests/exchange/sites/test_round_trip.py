@@ -15,7 +15,7 @@ from tests.mission.strategies import examples
 
 from muster.exchange.antimeridian import cut_ring
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import QgcOptions
+from muster.exchange.export_request import ExportOptions
 from muster.exchange.files import exported
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.model import Map, Mission, Origin, Robot, Rules, Station, Task, Zone
@@ -66,7 +66,7 @@ def there_and_back(mission, form):
     plan = Plan(routes=(Route("r_0", tuple(task.id for task in mission.tasks)), Route("r_1", ())))
     verdict = verify(mission, plan)
     assume(verdict.valid)
-    (text,) = exported(mission, verdict, form, QgcOptions()).texts.values()
+    (text,) = exported(mission, verdict, form, ExportOptions()).texts.values()
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"site.{form}"
         file.write_text(text, encoding="utf-8")
