@@ -1,10 +1,13 @@
-"""On Windows: what needs POSIX is refused in one line, all else is there. Simulated: what Windows lacks is taken away."""
+"""On Windows: what needs POSIX is refused in one line, all else is there. What Windows lacks is taken away here."""
 
 import subprocess
 import sys
 
 import pytest
 
+pytest.importorskip("scipy")
+pytest.importorskip("msgpack")
+pytest.importorskip("cryptography")
 from muster.cli.main import VERBS
 
 pytestmark = pytest.mark.usefixtures("folder")
@@ -46,6 +49,7 @@ def on_windows(*arguments):
     [
         (["serve"], "mission control"),
         (["db", "info"], "mission control"),
+        (["bench"], "muster bench"),
         (["auction", "yard.yaml"], "a team of processes, one a robot,"),
     ],
 )

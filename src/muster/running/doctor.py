@@ -21,7 +21,6 @@ MODULES: Mapping[str, str] = MappingProxyType(
         "opencv-python-headless": "cv2",
         "pillow": "PIL",
         "prometheus-client": "prometheus_client",
-        "pupil-apriltags": "pupil_apriltags",
         "pyserial": "serial",
         "python-multipart": "python_multipart",
         "pyvroom": "vroom",
