@@ -13,6 +13,7 @@ import click
 from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.near_matches import did_you_mean
+from muster.mission.platforms import require_posix
 from muster.mission.value_types import shown
 from muster_studies import study_verb
 from muster_studies.benches import BENCHES, bench_named
@@ -57,6 +58,7 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
 
     if ctx.invoked_subcommand is not None:
         return
+    require_posix("muster bench")
     names = list(BENCHES) if only is None else [name.strip() for name in only.split(",")]
     for name in names:
         if name not in BENCHES:

@@ -10,6 +10,7 @@ from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.charges import Charge, Drains
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
+from muster.mission.model import Battery, Mission, Robot
 from muster.running.simulation import Simulation
 
 
@@ -72,3 +73,10 @@ def test_the_rest_of_a_mission_is_sold_by_measured_charges():
 
     assert doer({"a": 0.5, "b": 1.0}) == "b"
     assert doer({"a": 1.0, "b": 0.5}) == "a"
+
+
+def test_robots_with_batteries_and_no_task():
+    robots = tuple(Robot(id=f"r{k}", position=(k, 0), battery=Battery(capacity=5)) for k in range(3))
+    mission = Mission(robots=robots, tasks=())
+    assert Problem.compile(mission).usage_with_calls.shape == (3, 0)
+    assert muster.check(mission).impossible == ()

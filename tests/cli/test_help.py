@@ -1,5 +1,7 @@
 """What the command says of itself."""
 
+import re
+
 import pytest
 from tests.cli.yard import table_rows
 
@@ -30,10 +32,10 @@ def test_no_verb_shows_help(muster):
     assert err.startswith("Usage: muster [OPTIONS] COMMAND")
 
 
-def test_version(muster):
+def test_version_and_how_the_core_was_built(muster):
     code, out, err = muster("--version")
     assert (code, err) == (0, "")
-    assert out.split()[0] == "muster"
+    assert re.fullmatch(r"muster \d\S* \(core: .*; Python \d\S*\)\n", out)
 
 
 def test_unknown_verb(muster):

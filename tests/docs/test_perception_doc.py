@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("pupil_apriltags")
+pytest.importorskip("apriltag")
 pytest.importorskip("cv2")
 pytest.importorskip("scipy")
 

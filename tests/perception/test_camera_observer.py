@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-pytest.importorskip("pupil_apriltags")
+pytest.importorskip("apriltag")
 pytest.importorskip("cv2")
 from muster.motion.frames import transform
 from muster.perception.camera import RB5_MOUNT, mount_of

@@ -10,7 +10,7 @@ assert not [name for name in sys.modules if name.startswith("muster.perception")
 from muster.perception import calibration, camera, clusters, detection, images
 from muster.perception import camera_observer, localisation, matching, points_of_interest, tags
 loaded = {name.split(".")[0] for name in sys.modules}
-print(*sorted(loaded & {"cv2", "pupil_apriltags", "scipy", "mujoco", "matplotlib"}))
+print(*sorted(loaded & {"cv2", "apriltag", "scipy", "mujoco", "matplotlib"}))
 """
 
 

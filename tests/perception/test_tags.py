@@ -5,7 +5,7 @@ import pytest
 
 from muster.mission.errors import MissingExtraError, ParameterError
 
-pytest.importorskip("pupil_apriltags")
+pytest.importorskip("apriltag")
 pytest.importorskip("cv2")
 from muster.perception import tags
 from muster.perception.detection import TagDetector
@@ -74,7 +74,7 @@ def test_a_cell_has_a_pixel_at_least():
         tags.tag_image(3, 0)
 
 
-@pytest.mark.parametrize("module", ["cv2", "pupil_apriltags"])
+@pytest.mark.parametrize("module", ["cv2", "apriltag"])
 def test_without_the_extra_one_line_says_what_to_install(module, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, module, None)
     with pytest.raises(MissingExtraError) as caught:

@@ -148,12 +148,12 @@ def _backend(server: str | None, token_file: Path | None, *, verbose: bool) -> I
     from muster.client import Client
     from muster.client.backend import ServerBackend
 
-    with Client(server, _token(token_file)) as client:
+    with Client(server, token_from(token_file)) as client:
         client.about()
         yield ServerBackend(client, say, note)
 
 
-def _token(file: Path | None) -> str | None:
+def token_from(file: Path | None) -> str | None:
     where = TOKEN_VARIABLE if file is None else file
     text = os.environ.get(TOKEN_VARIABLE, "") if file is None else file.read_text(encoding="latin-1")
     token = text.strip()

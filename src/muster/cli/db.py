@@ -11,6 +11,7 @@ import click
 
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, format_option, quiet_option
+from muster.mission.platforms import require_posix
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path, dir_okay=False)
@@ -39,6 +40,7 @@ def command() -> None:
 
     All of them work while a server runs.
     """
+    require_posix("mission control")
 
 
 @command.command("info")

@@ -48,6 +48,9 @@ VERBS: Mapping[str, str] = MappingProxyType(
         "db": "Manage the database of mission control: backups, deletion of old runs.",
         "replay": "Show a record of a mission that was carried out.",
         "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
+        "doctor": "Say what is installed, what works, and what was found of the system.",
+        "completion": "Print what a shell needs to complete the command.",
+        "man": "Print the manual page.",
     }
 )
 """The verbs of this package, each in the module of its name, with their summaries in the order of `--help`."""
@@ -132,9 +135,9 @@ def _summary(found: EntryPoint) -> str:
 
 def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if asked and not ctx.resilient_parsing:
-        from importlib.metadata import version
+        from muster.mission.installation import version_line
 
-        click.echo(f"muster {version('muster-robotics')}")
+        click.echo(version_line())
         ctx.exit()
 
 
@@ -149,7 +152,12 @@ A MISSION is a file (YAML, CSV, GeoJSON, KML, TSPLIB, ...) or the name of a miss
 
 @click.group(cls=_Verbs, help=_HELP, context_settings={"help_option_names": ["-h", "--help"]})
 @click.option(
-    "--version", is_flag=True, expose_value=False, is_eager=True, callback=_print_version, help="Print the version."
+    "--version",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_print_version,
+    help="Print the version, and how the core was built.",
 )
 def muster() -> None:
     """Plan missions of robot teams."""
@@ -160,8 +168,11 @@ def run(arguments: list[str], began_s: float | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a character that the terminal lacks is no reason to stop
             stream.reconfigure(errors="backslashreplace")
+    colour = (
+        True if os.environ.get("FORCE_COLOR") else None
+    )  # as Rich takes it; NO_COLOR leaves bold, which is no colour
     try:
-        result = muster.main(arguments, prog_name="muster", standalone_mode=False, obj=began_s)
+        result = muster.main(arguments, prog_name="muster", standalone_mode=False, obj=began_s, color=colour)
         sys.stdout.flush()
     except click.exceptions.Exit as stop:
         return stop.exit_code

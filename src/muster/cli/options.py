@@ -19,6 +19,8 @@ from muster.motion.avoidance_names import AUTO, AVOIDANCE
 from muster.traffic.names import DEFAULT, TRAFFIC
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from muster.verification import Verdict
 
 
@@ -85,6 +87,12 @@ def optional_mission_argument(verb: Verb) -> Verb:
     return _with_mission(verb, required=False)
 
 
+def _complete_mission(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    from muster.cli.completion import missions
+
+    return missions(context, parameter, incomplete)
+
+
 def _with_mission(verb: Verb, *, required: bool) -> Verb:
     @wraps(verb)
     def with_mission(*, mission: str | None, **given: Any) -> Any:
@@ -95,7 +103,7 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
         return verb(mission=MissionFile(name=mission, **flags), **given)
 
     options = (
-        click.argument("mission", required=required),
+        click.argument("mission", required=required, shell_complete=_complete_mission),
         click.option("--robots", type=_FILE, metavar="FILE", help="Robots of a task list or a site."),
         click.option("--suitability", type=_FILE, metavar="CSV", help="Suitability of a task list or a site."),
         click.option(

@@ -15,6 +15,7 @@ from muster.cli.exits import DONE
 from muster.cli.options import quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.near_matches import did_you_mean
+from muster.mission.platforms import require_posix
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -114,6 +115,7 @@ def command(
 
     With a MISSION its page is the first. Ctrl-C ends the server; missions under way go on when it is started again.
     """
+    require_posix("mission control")
     _require_extra()
     if new_token is not None:
         return _print_token(new_token, role or "watch", asked["tokens"])

@@ -13,6 +13,7 @@
     │   └── FrameTreeError       what was to be added would be no tree
     ├── NetworkError          the network cannot be used as asked: a port in use, a host that nobody knows
     ├── RenderingError        nothing here can draw pictures of the physics world
+    ├── PlatformError         what is asked for works on other systems
     └── MissingExtraError     an optional part of the installation is absent
 
 Outcomes that are to be expected (nobody can do a task, no admissible plan) are values, not exceptions.
@@ -108,6 +109,10 @@ class NetworkError(MusterError):
 
 class RenderingError(MusterError):
     """Nothing here can draw pictures of the physics world; the message says what to install."""
+
+
+class PlatformError(MusterError):
+    """What is asked for does not work on this operating system; the message says on which it does."""
 
 
 class MissingExtraError(MusterError, ImportError):

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 CTRL_C = (signal.SIGINT,)
-TO_END = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+TO_END = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 """What a terminal that is closed, a service manager and a container send, too."""
 
 
@@ -39,7 +39,13 @@ def ctrl_c_halts(signals: Iterable[signal.Signals] = CTRL_C) -> Iterator[threadi
 
 @contextmanager
 def ctrl_c_held_back() -> Iterator[None]:
-    """Keep Ctrl-C for later. Processes started here never see it, not even before their first line of Python."""
+    """Keep Ctrl-C for later. Processes started here never see it, not even before their first line of Python.
+
+    Windows has no signals that can be kept: there they see it.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

@@ -16,6 +16,7 @@ from types import TracebackType
 
 from muster.mission.errors import MusterError
 from muster.mission.interrupts import ctrl_c_held_back
+from muster.mission.platforms import require_posix
 from muster.negotiation.members import Timeouts
 from muster.negotiation.optional_parts import require_net
 from muster.negotiation.process_reports import (
@@ -52,6 +53,8 @@ class Team:
 
     Raises
     ------
+    PlatformError
+        on Windows.
     MissingExtraError
         if the extra `net` is not installed.
     MusterError
@@ -59,6 +62,7 @@ class Team:
     """
 
     def __init__(self, setup: TeamSetup, on_report: Callable[[str, object], None] = lambda robot, report: None) -> None:
+        require_posix("a team of processes, one a robot,")
         require_net("cryptography", "msgpack", *(("zenoh",) if setup.transport == "zenoh" else ()))
         self.robots = [robot.id for robot in setup.problem.mission.robots]
         self.progress: dict[str, Progress] = {}

@@ -1,4 +1,4 @@
-"""AprilTags in an image: family 36h11, by the detector of its authors [wang2016] in pupil-apriltags.
+"""AprilTags in an image: family 36h11, by the detector of its authors [wang2016] in apriltag-python.
 
 [tcf-thesis] (4.3.2) uses the centre of a tag's bounding box. Here the centre is where the diagonals of the tag's own
 four corners cross, which is the image of the tag's middle from every side; the box's centre is not.
@@ -7,6 +7,7 @@ four corners cross, which is the image of the tag's middle from every side; the 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +18,6 @@ from muster.mission.errors import ParameterError
 from muster.perception.apriltag import new_detector
 from muster.perception.camera import Intrinsics
 from muster.perception.images import Image, grey
-from muster.perception.optional_parts import require_physics
 
 Floats = npt.NDArray[np.float64]
 
@@ -93,16 +93,16 @@ class TagDetector:
     Raises
     ------
     MissingExtraError
-        when made, if pupil-apriltags or OpenCV is not installed.
+        when made, if apriltag-python or OpenCV is not installed.
     """
 
     def __init__(self, parameters: DetectorParameters | None = None) -> None:
-        require_physics("detecting tags", "cv2")
         self._parameters = parameters or DetectorParameters()
         self._detector = new_detector(
             "detecting tags",
-            quad_decimate=self._parameters.decimate,
-            quad_sigma=self._parameters.blur_px,
+            decimate=self._parameters.decimate,
+            blur_px=self._parameters.blur_px,
+            most_corrected=self._parameters.most_corrected,
         )
 
     def detect(self, image: Image, intrinsics: Intrinsics | None = None) -> Sightings:
@@ -114,8 +114,8 @@ class TagDetector:
             if it is no image, or not of the size that the intrinsics say, where they are given.
         """
         found = self._detector.detect(np.ascontiguousarray(grey(image, intrinsics)))
-        sure = [f for f in found if self._counts(f.hamming, f.decision_margin)]
-        seen = [_sighting(f) for f in sorted(sure, key=lambda f: (f.tag_id, *f.center))]
+        sure = [f for f in found if self._counts(f["hamming"], f["margin"])]
+        seen = [_sighting(f) for f in sorted(sure, key=lambda f: (f["id"], *f["center"]))]
         times = Counter(sighting.tag for sighting in seen)
         return Sightings(tuple(seen), tuple(tag for tag, count in times.items() if count > 1))
 
@@ -123,8 +123,8 @@ class TagDetector:
         return corrected <= self._parameters.most_corrected and margin >= self._parameters.least_margin
 
 
-def _sighting(found: Any) -> Sighting:
+def _sighting(found: Mapping[str, Any]) -> Sighting:
     """The detector's corners begin lower left and go against the clock; ours begin upper left and go with it."""
-    corners = np.asarray(found.corners, dtype=np.float64)[::-1]
-    centre = np.asarray(found.center, dtype=np.float64)
-    return Sighting(found.tag_id, centre, corners, found.hamming, float(found.decision_margin))
+    corners = np.asarray(found["lb-rb-rt-lt"], dtype=np.float64)[::-1]
+    centre = np.asarray(found["center"], dtype=np.float64)
+    return Sighting(found["id"], centre, corners, found["hamming"], float(found["margin"]))

@@ -1,10 +1,8 @@
-"""Pictures of AprilTags of the family 36h11, drawn from the codes that the detector itself goes by.
+"""Pictures of AprilTags of the family 36h11.
 
 A tag is 8 x 8 cells, black around 6 x 6 cells of code; a white margin, one cell wide, belongs to it. The size of a tag
 is the side of its black square, 0.8 of the side of the picture. The tag's frame has its origin in the middle, x to the
 right of the picture, y down and z into it, as the image frame of a camera before which it hangs upright.
-
-OpenCV's dictionary `DICT_APRILTAG_36h11` has the same tags half a turn about: their corners come out in another order.
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.motion.frames import pose_transform
-from muster.perception.apriltag import FAMILY, new_detector
+from muster.perception.apriltag import FAMILY, black_squares
 
 CELLS, CELLS_OF_PICTURE = 8, 10
 """Across the black square; across the picture, with the margin."""
@@ -32,7 +30,7 @@ def tag_count() -> int:
     Raises
     ------
     MissingExtraError
-        if pupil-apriltags is not installed.
+        if OpenCV is not installed.
     """
     return len(_cells())
 
@@ -45,7 +43,7 @@ def tag_image(tag: int, cell_px: int = 8) -> npt.NDArray[np.uint8]:
     ParameterError
         if the family has no such tag, or a cell has no pixel.
     MissingExtraError
-        if pupil-apriltags is not installed.
+        if OpenCV is not installed.
     """
     if not 0 <= tag < tag_count():
         raise ParameterError(f"tag: {tag}; expected 0 to {tag_count() - 1}, the ids of {FAMILY}")
@@ -62,13 +60,5 @@ def tag_pose(position: npt.ArrayLike, heading: float) -> npt.NDArray[np.float64]
 
 @cache
 def _cells() -> npt.NDArray[np.uint8]:
-    """All tags (n, 10, 10): 1 where a cell is white. Bits are in order from the highest."""
-    detector = new_detector("a picture of a tag")  # frees the family when it goes
-    family = detector.tag_families[FAMILY].contents
-    codes = np.array(family.codes[: family.ncodes], dtype=np.uint64)
-    places = np.arange(family.nbits - 1, -1, -1, dtype=np.uint64)
-    cells = np.zeros((family.ncodes, CELLS_OF_PICTURE, CELLS_OF_PICTURE), dtype=np.uint8)
-    cells[:, [0, -1], :] = cells[:, :, [0, -1]] = 1
-    rows, columns = family.bit_y[: family.nbits], family.bit_x[: family.nbits]
-    cells[:, np.array(rows) + 1, np.array(columns) + 1] = (codes[:, None] >> places) & np.uint64(1)
-    return cells
+    """All tags (n, 10, 10): 1 where a cell is white."""
+    return np.pad(black_squares(), ((0, 0), (1, 1), (1, 1)), constant_values=1)

@@ -47,7 +47,7 @@ _LEGEND = (
 
 def _check(effort: Effort) -> None:
     """Check for the parts that cameras need, before the first flight."""
-    require_physics("drones with cameras", "mujoco", "cv2", "pupil_apriltags", "scipy")
+    require_physics("drones with cameras", "mujoco", "cv2", "apriltag", "scipy")
 
 
 THESIS_6_1 = Repetition(

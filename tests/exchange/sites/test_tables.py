@@ -189,6 +189,13 @@ def test_ids_from_names_rows_and_numbers(tmp_path, robots):
     assert [task.id for task in found.mission.tasks] == ["panels-1", "panels-2"]
 
 
+def test_what_a_row_is_of_is_its_name_where_no_other_column_is(tmp_path, robots):
+    found = read(tmp_path, robots, "Panel,lat,lon\nA1,47,8\nA2,47,8\n", origin=(47, 8))
+    assert [task.id for task in found.mission.tasks] == ["A1", "A2"]
+    found = read(tmp_path, robots, "Panel,name,lat,lon\n7,A1,47,8\n8,A2,47,8\n", origin=(47, 8))
+    assert [task.id for task in found.mission.tasks] == ["A1", "A2"]
+
+
 def test_a_workbook_with_robots_on_a_second_sheet(tmp_path):
     book = tmp_path / "site.xlsx"
     writers.write_workbook(

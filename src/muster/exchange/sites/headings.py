@@ -33,7 +33,7 @@ _SUBJECTS = frozenset(
         "start",
     )
 )
-"""Words before a name that say of what it is: `Panel name`."""
+"""Words before a name that say of what it is: `Panel name`; alone, where no other column has names, the name: `Panel`."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,11 @@ def columns_of(layer: Layer, role: str, given: Mapping[str, str], findings: list
                 )
             else:
                 found[column.key.name] = column
+    if found.keys().isdisjoint(("id", "name")) and "name" in keys:
+        subject = next((heading for heading in unread if heading.strip().casefold() in _SUBJECTS), None)
+        if subject is not None:
+            unread.remove(subject)
+            found["name"] = Column(subject, keys["name"], 1.0)
     return Columns(found, tuple(dict.fromkeys(unread)))
 
 

@@ -1,0 +1,60 @@
+"""`muster completion`: what a shell needs to complete verbs, options, names of shipped missions and files."""
+
+from __future__ import annotations
+
+import click
+from click.shell_completion import BashComplete, CompletionItem, add_completion_class, get_completion_class
+
+from muster.cli.options import quiet_option
+
+_SHELLS = ("bash", "zsh", "fish")
+_VARIABLE = "_MUSTER_COMPLETE"
+
+
+class _Bash(BashComplete):
+    """Completes names and files at once: click's own script has either."""
+
+    source_template = """\
+%(complete_func)s() {
+    local IFS=$'\\n' line
+    COMPREPLY=()
+    while read -r line; do
+        case "${line%%%%,*}" in
+            dir) compopt -o filenames; COMPREPLY+=($(compgen -d -- "${line#*,}")) ;;
+            file) compopt -o filenames; COMPREPLY+=($(compgen -f -- "${line#*,}")) ;;
+            *) COMPREPLY+=("${line#*,}") ;;
+        esac
+    done < <(COMP_WORDS="${COMP_WORDS[*]}" COMP_CWORD=$COMP_CWORD %(complete_var)s=bash_complete "$1")
+}
+complete -o nosort -F %(complete_func)s %(prog_name)s
+"""
+
+
+add_completion_class(_Bash, "bash")
+
+
+@click.command()
+@click.argument("shell", type=click.Choice(_SHELLS))
+@quiet_option
+def command(shell: str, quiet: bool, verbose: bool) -> None:
+    r"""Print the script with which SHELL completes verbs, options, missions and files.
+
+    \b
+      bash: eval "$(muster completion bash)"       in ~/.bashrc
+      zsh:  eval "$(muster completion zsh)"        in ~/.zshrc, after compinit
+      fish: muster completion fish > ~/.config/fish/completions/muster.fish
+    """
+    from muster.cli.main import muster
+
+    kind = get_completion_class(shell)
+    assert kind is not None
+    script = kind(muster, {}, "muster", _VARIABLE)
+    click.echo(script.source_template % script.source_vars())  # `source` would run the shell to see its version
+
+
+def missions(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Names of shipped missions, and files."""
+    from muster.library import missions as shipped
+
+    named = [m for m in shipped() if m.name.startswith(incomplete)] if "/" not in incomplete else []
+    return [CompletionItem(incomplete, type="file"), *(CompletionItem(m.name, help=m.description) for m in named)]

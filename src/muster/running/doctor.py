@@ -1,0 +1,80 @@
+"""Whether what is installed works: every optional package is imported in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from muster.mission.installation import Part
+
+_LONGEST_IMPORT_S = 120.0
+MODULES: Mapping[str, str] = MappingProxyType(
+    {
+        "apriltag-python": "apriltag",
+        "eclipse-zenoh": "zenoh",
+        "foxglove-sdk": "foxglove",
+        "opencv-python-headless": "cv2",
+        "pillow": "PIL",
+        "prometheus-client": "prometheus_client",
+        "pyserial": "serial",
+        "python-multipart": "python_multipart",
+        "pyvroom": "vroom",
+        "pyyaml": "yaml",
+    }
+)
+"""Packages whose module has another name."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExtraHealth:
+    """One extra: what it needs, what of it is missing, and for packages that cannot be imported the reason."""
+
+    name: str
+    parts: tuple[Part, ...]
+    faults: Mapping[str, str]
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        return tuple(part.name for part in self.parts if part.version is None)
+
+    @property
+    def state(self) -> str:
+        """`broken`, `absent` (nothing of its own is there), `incomplete` or `works`."""
+        if self.faults:
+            return "broken"
+        if not self.missing:
+            return "works"
+        return "absent" if len(self.missing) == len(self.parts) else "incomplete"
+
+
+def health(extras: Mapping[str, tuple[Part, ...]]) -> tuple[ExtraHealth, ...]:
+    """The state of each extra; `extras` as `muster.mission.installation.extras` gives them."""
+    faults = import_faults({p.name for parts in extras.values() for p in parts if p.version is not None})
+    return tuple(
+        ExtraHealth(name=name, parts=parts, faults={p.name: faults[p.name] for p in parts if p.name in faults})
+        for name, parts in extras.items()
+    )
+
+
+def import_faults(packages: Iterable[str]) -> dict[str, str]:
+    """Why packages cannot be imported, of those that cannot; one crashing takes no other with it."""
+    names = sorted(packages)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return {name: fault for name, fault in zip(names, pool.map(_fault, names), strict=True) if fault}
+
+
+def _fault(package: str) -> str | None:
+    command = [sys.executable, "-c", f"import {MODULES.get(package, package)}"]
+    try:
+        ended = subprocess.run(command, capture_output=True, timeout=_LONGEST_IMPORT_S, stdin=subprocess.DEVNULL)
+    except subprocess.TimeoutExpired:
+        return f"not imported within {_LONGEST_IMPORT_S:g} s"
+    said = ended.stderr.decode(errors="replace").strip().splitlines()
+    if ended.returncode == 0:
+        return None
+    return said[-1] if said and ended.returncode > 0 else f"crashes when imported (exit code {ended.returncode})"

@@ -1,0 +1,63 @@
+"""What shells complete: by the scripts that are printed, in a real bash, and by what the command answers them."""
+
+import shutil
+import subprocess
+import sys
+
+import pytest
+from click.shell_completion import get_completion_class
+
+from muster.cli.main import VERBS
+from muster.cli.main import muster as root
+from muster.library import missions
+
+pytestmark = pytest.mark.usefixtures("folder")
+
+
+def completed(arguments, typed):
+    kind = get_completion_class("bash")
+    found = kind(root, {}, "muster", "_MUSTER_COMPLETE").get_completions(arguments, typed)
+    return [(item.type, item.value) for item in found]
+
+
+def test_verbs():
+    assert [value for _, value in completed([], "s")] == [verb for verb in (*VERBS, "study") if verb[0] == "s"]
+
+
+def test_options():
+    assert ("plain", "--allocator") in completed(["solve", "yard.yaml"], "--al")
+
+
+def test_missions_by_name_and_files():
+    shipped = [m.name for m in missions() if m.name.startswith("31T")]
+    assert len(shipped) > 1
+    assert completed(["solve"], "31T") == [("file", "31T"), *(("plain", name) for name in shipped)]
+
+
+def test_paths_have_no_missions_in_them():
+    assert completed(["solve"], "plans/") == [("file", "plans/")]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_script_for_each_shell(shell, muster):
+    code, out, err = muster("completion", shell)
+    assert (code, err) == (0, "")
+    assert f"_MUSTER_COMPLETE={shell}_complete" in out
+
+
+def test_another_shell_is_refused(muster):
+    code, out, err = muster("completion", "csh")
+    assert (code, out) == (2, "")
+    assert "'csh' is not one of 'bash', 'zsh', 'fish'" in err
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash")
+def test_bash_completes_names_and_files(tmp_path, muster):
+    script = muster("completion", "bash")[1]
+    (tmp_path / "31T-of-mine.yaml").touch()
+    words = "COMP_WORDS=(muster solve 31T); COMP_CWORD=2; compopt() { :; }\n"  # which only a shell at a terminal has
+    words += f'muster() {{ "{sys.executable}" -m muster.cli; }}\n'
+    asked = f'{script}\n{words}_muster_completion muster solve 31T\nprintf "%s\\n" "${{COMPREPLY[@]}}"'
+    ended = subprocess.run(["bash", "-c", asked], capture_output=True, encoding="utf-8", check=True)
+    assert "31T-of-mine.yaml" in ended.stdout.splitlines()
+    assert "31T-6R50" in ended.stdout.splitlines()
