@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import click
-from click.shell_completion import BashComplete, CompletionItem, add_completion_class, get_completion_class
+from click.shell_completion import BashComplete, add_completion_class, get_completion_class
 
 from muster.cli.options import quiet_option
 
@@ -50,11 +50,3 @@ def command(shell: str, quiet: bool, verbose: bool) -> None:
     assert kind is not None
     script = kind(muster, {}, "muster", _VARIABLE)
     click.echo(script.source_template % script.source_vars())  # `source` would run the shell to see its version
-
-
-def missions(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Names of shipped missions, and files."""
-    from muster.library import missions as shipped
-
-    named = [m for m in shipped() if m.name.startswith(incomplete)] if "/" not in incomplete else []
-    return [CompletionItem(incomplete, type="file"), *(CompletionItem(m.name, help=m.description) for m in named)]

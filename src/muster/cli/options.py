@@ -88,7 +88,7 @@ def optional_mission_argument(verb: Verb) -> Verb:
 
 
 def _complete_mission(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    from muster.cli.completion import missions
+    from muster.cli.mission_names import missions
 
     return missions(context, parameter, incomplete)
 

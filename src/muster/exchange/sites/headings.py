@@ -33,7 +33,7 @@ _SUBJECTS = frozenset(
         "start",
     )
 )
-"""Words before a name that say of what it is: `Panel name`; alone, where no other column has names, the name: `Panel`."""
+"""Words before a name that say of what it is: `Panel name`. Where no other column has names, one alone is the name."""
 
 
 @dataclass(frozen=True)
