@@ -1,5 +1,7 @@
 """What `muster doctor` finds: extras that work or do not, and the limits of a control group."""
 
+import importlib.util
+
 import pytest
 
 from muster.mission.installation import Part, extras
@@ -31,9 +33,23 @@ def test_the_state_of_an_extra(versions, faults, state):
     assert doctor.ExtraHealth(name="x", parts=parts, faults=faults).state == state
 
 
-def test_modules_are_named_for_packages_that_muster_needs():
-    needed = {part.name for parts in extras().values() for part in parts} | {"pyyaml"}
-    assert set(doctor.MODULES) <= needed
+@pytest.mark.parametrize(
+    ("package", "module"),
+    [
+        ("click", "click"),
+        ("numpy", "numpy"),
+        ("pyyaml", "yaml"),
+        ("muster.core", "muster.core"),
+        ("no-such", "no-such"),
+    ],
+)
+def test_the_module_of_a_package(package, module):
+    assert doctor.module_of(package) == module
+
+
+def test_every_package_that_is_installed_has_a_module():
+    there = [part.name for parts in extras().values() for part in parts if part.version is not None]
+    assert [name for name in there if importlib.util.find_spec(doctor.module_of(name)) is None] == []
 
 
 @pytest.mark.parametrize(

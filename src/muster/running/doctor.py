@@ -8,26 +8,12 @@ import sys
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from types import MappingProxyType
+from functools import cache
+from importlib.metadata import packages_distributions
 
 from muster.mission.installation import Part
 
 _LONGEST_IMPORT_S = 120.0
-MODULES: Mapping[str, str] = MappingProxyType(
-    {
-        "apriltag-python": "apriltag",
-        "eclipse-zenoh": "zenoh",
-        "foxglove-sdk": "foxglove",
-        "opencv-python-headless": "cv2",
-        "pillow": "PIL",
-        "prometheus-client": "prometheus_client",
-        "pyserial": "serial",
-        "python-multipart": "python_multipart",
-        "pyvroom": "vroom",
-        "pyyaml": "yaml",
-    }
-)
-"""Packages whose module has another name."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +55,7 @@ def import_faults(packages: Iterable[str]) -> dict[str, str]:
 
 
 def _fault(package: str) -> str | None:
-    command = [sys.executable, "-c", f"import {MODULES.get(package, package)}"]
+    command = [sys.executable, "-c", f"import {module_of(package)}"]
     try:
         ended = subprocess.run(command, capture_output=True, timeout=_LONGEST_IMPORT_S, stdin=subprocess.DEVNULL)
     except subprocess.TimeoutExpired:
@@ -78,3 +64,24 @@ def _fault(package: str) -> str | None:
     if ended.returncode == 0:
         return None
     return said[-1] if said and ended.returncode > 0 else f"crashes when imported (exit code {ended.returncode})"
+
+
+def module_of(package: str) -> str:
+    """The module of an installed package: of the public ones that it brings that whose name is most of its own."""
+    own = _as_name(package)
+    public = sorted(module for module in _modules().get(own, ()) if not module.startswith("_"))
+    return max(public, key=lambda module: len(module) * (module.lower() in own), default=package)
+
+
+@cache
+def _modules() -> Mapping[str, list[str]]:
+    """The modules of each installed package."""
+    found: dict[str, list[str]] = {}
+    for module, packages in packages_distributions().items():
+        for package in packages:
+            found.setdefault(_as_name(package), []).append(module)
+    return found
+
+
+def _as_name(package: str) -> str:
+    return package.lower().replace("-", "_").replace(".", "_")
