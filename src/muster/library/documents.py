@@ -9,8 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path, PurePosixPath
+
+import muster
 
 INDEX = "docs/index.md"
 _SECTION = re.compile(r"^## (.+)$", re.MULTILINE)
@@ -62,9 +63,10 @@ def _entry(kind: str, row: str) -> Entry:
 
 
 def documents_root() -> Path | None:
-    """The folder that holds `README.md` and `docs`; None where the documents were not installed."""
-    package = Path(str(files("muster")))
-    return next((root for root in (package / "documents", package.parents[1]) if (root / INDEX).is_file()), None)
+    """The folder that holds `README.md` and `docs`, a clone before what is installed; None where there are none."""
+    homes = [Path(home) for home in muster.__path__]
+    roots = [*(home.parents[1] for home in homes), *(home / "documents" for home in homes)]
+    return next((root for root in roots if (root / INDEX).is_file()), None)
 
 
 def documents() -> tuple[Entry, ...]:

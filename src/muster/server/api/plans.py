@@ -162,8 +162,8 @@ async def export(
         float | None, Query(ge=0, le=1e4, description="Each drone flies so many m higher than the one before.")
     ] = None,
     altitudes: Annotated[
-        list[Annotated[str, Query(max_length=10_000)]] | None,
-        Query(max_length=1000, description="Of single drones, in m: r_0=30,r_1=40."),
+        list[Annotated[str, Query(max_length=1000)]] | None,  # what a line of HTTP has room for, however it is quoted
+        Query(max_length=4, description="Of single drones, in m: r_0=30,r_1=40."),
     ] = None,
     clearance: Annotated[float | None, Query(ge=0, le=1e5, description="Warn of bodies that near, in m.")] = None,
     tolerance: Annotated[float | None, Query(ge=0, le=1e3, description="qgc: bends thinned out, in m.")] = None,
