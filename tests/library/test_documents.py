@@ -80,7 +80,7 @@ def installed(tmp_path, monkeypatch):
     (package / "documents" / "docs" / "tutorials").mkdir(parents=True)
     (package / "documents" / "docs" / "index.md").write_text(INDEX, encoding="utf-8")
     (package / "documents" / "docs" / "tutorials" / "first.md").write_text("# First\n", encoding="utf-8")
-    monkeypatch.setattr(documents, "files", lambda _: package)
+    monkeypatch.setattr(documents, "package_folders", lambda: [package])
     return package / "documents"
 
 
@@ -96,7 +96,7 @@ def test_an_installed_package_has_its_own_pages(installed):
 
 
 def test_an_installation_without_documents_has_none(tmp_path, monkeypatch):
-    monkeypatch.setattr(documents, "files", lambda _: tmp_path / "site-packages" / "muster")
+    monkeypatch.setattr(documents, "package_folders", lambda: [tmp_path / "site-packages" / "muster"])
     assert documents.documents() == ()
     assert site_page() is None
     with pytest.raises(FileNotFoundError):

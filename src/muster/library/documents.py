@@ -9,9 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
-
-import muster
 
 INDEX = "docs/index.md"
 _SECTION = re.compile(r"^## (.+)$", re.MULTILINE)
@@ -62,9 +61,15 @@ def _entry(kind: str, row: str) -> Entry:
     return Entry(kind, found["purpose"], found["words"], path)
 
 
+def package_folders() -> list[Path]:
+    """The folders of the package: of one that is installed editable those in the clone and among the packages."""
+    spec = find_spec("muster")
+    return [Path(home) for home in (spec.submodule_search_locations or ())] if spec is not None else []
+
+
 def documents_root() -> Path | None:
     """The folder that holds `README.md` and `docs`, a clone before what is installed; None where there are none."""
-    homes = [Path(home) for home in muster.__path__]
+    homes = package_folders()
     roots = [*(home.parents[1] for home in homes), *(home / "documents" for home in homes)]
     return next((root for root in roots if (root / INDEX).is_file()), None)
 

@@ -42,4 +42,4 @@ def black_squares() -> npt.NDArray[np.uint8]:
     family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
     side = family.markerSize + 2
     pictures = [family.generateImageMarker(tag, side) for tag in range(len(family.bytesList))]
-    return np.asarray(np.rot90(np.array(pictures), 2, axes=(1, 2)) // np.uint8(255), dtype=np.uint8)
+    return (np.rot90(np.array(pictures), 2, axes=(1, 2)) > 0).astype(np.uint8)
