@@ -27,7 +27,15 @@ extensions = [
     "tools.docs_site.tutorials",
     "tools.docs_site.finish",
 ]
-include_patterns = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "CODE_OF_CONDUCT.md", "SECURITY.md", "docs/*.md", "docs/tutorials/*.md"]
+include_patterns = [
+    "README.md",
+    "CONTRIBUTING.md",
+    "CHANGELOG.md",
+    "CODE_OF_CONDUCT.md",
+    "SECURITY.md",
+    "docs/*.md",
+    "docs/tutorials/*.md",
+]
 exclude_patterns = [".venv", "build", "src", "tests", ".git"]  # not even looked through
 root_doc = "docs/index"
 nitpicky = True
