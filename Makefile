@@ -139,7 +139,7 @@ bench: $(VENV)/developed
 # with what builds the documentation site besides.
 
 $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
-	@echo "Building Muster; this takes less than a minute ..."
+	@echo "Building Muster; this takes two to four minutes ..."
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable '.[plot,record]'
 	@touch $@
 
