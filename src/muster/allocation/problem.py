@@ -451,8 +451,7 @@ class Problem:
         Nothing else is looked at: no capacities, times, loads.
         """
         others = tuple(rule for rule in IGNORABLE if rule != "battery")
-        found = core.usage_with_calls(replace(self, ignored=others, fixed=()).core, pickups(self))
-        return found.reshape(len(self.robots), len(self.tasks))
+        return core.usage_with_calls(replace(self, ignored=others, fixed=()).core, pickups(self))
 
     def value(self, routes: Sequence[Sequence[int]]) -> tuple[float, float]:
         """Weight completed and objective of routes, which need not be admissible.

@@ -6,14 +6,13 @@ from muster.allocation.allocator import Allocator
 from muster.allocation.capabilities import offer
 from muster.allocation.function_allocator import AllocatingFunction, allocator_from
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry
+from muster.mission.plugins import Registry, require_own_name
 from muster.mission.value_types import shown
 
 
 def _checked(name: str, found: object) -> Allocator:
     allocator = found if isinstance(found, Allocator) else allocator_from(found, name)
-    if allocator.name != name:
-        raise ParameterError(f"it is called {allocator.name}; expected the name of its entry point")
+    require_own_name(name, allocator.name)
     return allocator
 
 

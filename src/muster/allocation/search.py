@@ -15,7 +15,6 @@ no cycle of waiting can arise.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
@@ -36,6 +35,7 @@ from muster.allocation.side_by_side import SideBySide, rank_of
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Threads, Workers
 from muster.mission.errors import ParameterError
+from muster.mission.platforms import usable_processors
 
 _Search = core.Search | core.ScheduleSearch
 
@@ -123,13 +123,8 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
 
 def _workers(params: Parameters) -> AbstractContextManager[Workers]:
     if params.ray == "none":
-        return nullcontext(Threads(max(params.threads, _processors())))
+        return nullcontext(Threads(max(params.threads, usable_processors())))
     return joined(params.ray)
-
-
-def _processors() -> int:
-    """The processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes) -> Routes:
@@ -157,7 +152,7 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
 def _side_by_side(
     problem: Problem, stop: Stop, seed: int, params: Parameters, first: Routes, oversubscribed: bool
 ) -> SideBySide[_Search]:
-    threads = params.threads or (_processors() if stop.is_a_time_alone else 1)
+    threads = params.threads or (usable_processors() if stop.is_a_time_alone else 1)
     random = Random(seed)
     opening = _search(problem, first, seed, params, oversubscribed)
 

@@ -30,9 +30,9 @@ class _Families(click.Group):
         return list(GENERATORS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
-        from muster.generation.registry import generator_named
+        from muster.generation.registry import GENERATORS
 
-        return _command_of(generator_named(cmd_name))
+        return _command_of(GENERATORS.named(cmd_name))
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         from muster.generation.registry import GENERATORS

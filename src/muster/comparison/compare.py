@@ -14,8 +14,9 @@ from muster.comparison.results_file import ResultsFile, require_results_place
 from muster.comparison.run import Run
 from muster.comparison.settings import Settings
 from muster.comparison.statistics import require_scipy
-from muster.comparison.workers import Lost, in_processes, usual_jobs
+from muster.comparison.workers import Lost, in_processes
 from muster.mission.errors import ParameterError
+from muster.mission.platforms import usable_processors
 from muster.mission.value_types import shown
 
 DEFAULT_SEEDS = 10
@@ -176,7 +177,7 @@ def _seeds(given: int | Iterable[int]) -> list[int]:
 
 
 def _jobs(given: int | None) -> int:
-    jobs = usual_jobs() if given is None else given
+    jobs = usable_processors() if given is None else given
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
         raise ParameterError(f"jobs: {shown(given)}; expected a whole number of at least 1")
     return jobs

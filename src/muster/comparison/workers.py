@@ -47,11 +47,6 @@ class Raised:
     error: BaseException
 
 
-def usual_jobs() -> int:
-    """As many processes as this one may use processors."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def in_processes(
     do: Callable[[Job], Found], jobs: Sequence[Job], workers: int, give_up_s: float | None = None
 ) -> Iterator[tuple[Job, Found | Lost]]:

@@ -22,22 +22,22 @@ inline std::vector<Point> points_of(const PointArray& array) {
   return points;
 }
 
-inline Table table_of(std::vector<double> values, std::size_t columns) {
+inline Table table_of(std::vector<double> values, std::size_t rows, std::size_t columns) {
   auto* kept = new std::vector<double>(std::move(values));
   const nanobind::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-  return Table(kept->data(), {columns == 0 ? 0 : kept->size() / columns, columns}, owner);
+  return Table(kept->data(), {rows, columns}, owner);
 }
 
 inline Table table_of(const std::vector<Point>& points) {
   std::vector<double> values;
   for (const Point p : points) values.insert(values.end(), {p.x, p.y});
-  return table_of(std::move(values), 2);
+  return table_of(std::move(values), points.size(), 2);
 }
 
 inline Table table_of(const std::vector<Spot>& spots) {
   std::vector<double> values;
   for (const Spot p : spots) values.insert(values.end(), {p.x, p.y, p.z});
-  return table_of(std::move(values), 3);
+  return table_of(std::move(values), spots.size(), 3);
 }
 
 }  // namespace muster

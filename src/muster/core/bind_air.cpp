@@ -51,7 +51,7 @@ Table lengths(const AirWays& ways, const PointArray& places, int first, int last
     const nb::gil_scoped_release unlocked;
     values = ways.lengths(spots, first, last, threads, hear_signals);
   }
-  return table_of(std::move(values), spots.size());
+  return table_of(std::move(values), static_cast<std::size_t>(last - first), spots.size());
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ void bind_station_calls(nb::module_& m) {
           const nb::gil_scoped_release release;
           usages = usage_with_calls(problem, pickups);
         }
-        return table_of(std::move(usages), static_cast<std::size_t>(problem.tasks()));
+        return table_of(std::move(usages), static_cast<std::size_t>(problem.robots()),
+                        static_cast<std::size_t>(problem.tasks()));
       },
       "problem"_a, "pickups"_a,
       "(m, n) what a route with one task uses with its calls at stations, and with the task whose load it delivers "

@@ -38,7 +38,7 @@ Table lengths(const Ways& ways, const PointArray& exits, const PointArray& entri
     const nb::gil_scoped_release unlocked;
     values = ways.lengths(from, to, mutual, first, last, threads);
   }
-  return table_of(std::move(values), to.size());
+  return table_of(std::move(values), static_cast<std::size_t>(last - first), to.size());
 }
 
 std::optional<Table> lengths_alone(const Ways& ways, const PointArray& exits, const PointArray& entries, bool mutual) {
@@ -50,7 +50,7 @@ std::optional<Table> lengths_alone(const Ways& ways, const PointArray& exits, co
     values = ways.lengths_alone(from, to, mutual, hear_signals);
   }
   if (!values) return std::nullopt;
-  return table_of(std::move(*values), to.size());
+  return table_of(std::move(*values), from.size(), to.size());
 }
 
 }  // namespace

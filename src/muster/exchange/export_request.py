@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, TypedDict
 
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry
+from muster.mission.plugins import Registry, function_expected
 from muster.mission.value_types import shown
 
 FIRMWARES = ("px4", "ardupilot")
@@ -159,12 +159,6 @@ Exporter = Callable[..., "str | bytes | Files"]
 """Writes an admissible plan, from mission and verdict, as the text or the bytes of one file, or as several files."""
 
 
-def _checked(name: str, found: object) -> Exporter:
-    if not callable(found):
-        raise ParameterError(f"it is a {type(found).__name__}; expected a function of a mission and a verdict")
-    return found
-
-
 FORMATS: Registry[Exporter] = Registry(
     "format",
     "muster.formats",
@@ -180,7 +174,7 @@ FORMATS: Registry[Exporter] = Registry(
         "xlsx": "muster.exchange.sheets.workbook:workbook_file",
         "ics": "muster.exchange.sheets.appointments:calendar_files",
     },
-    _checked,
+    function_expected("a function of a mission and a verdict"),
 )
 """By name, those of installed packages included."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from muster.generation.generator import require_seed
-from muster.generation.registry import generator_named
+from muster.generation.registry import GENERATORS
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.value_types import shown
@@ -34,7 +34,7 @@ def generate(family: str, count: int = 1, seed: int = 0, **parameters: Any) -> l
     ParameterError
         for a family or parameter that there is not, or a value out of range.
     """
-    generator = generator_named(family)
+    generator = GENERATORS.named(family)
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_MISSIONS:
         raise ParameterError(f"count: {shown(count)}; expected a whole number from 1 to {MOST_MISSIONS}")
     require_seed(seed)

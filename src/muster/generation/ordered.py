@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 
 from muster.generation.generator import MOST_ROBOTS, MOST_TASKS, Generator
-from muster.generation.places import random_place
+from muster.generation.places import random_ground
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Whole
@@ -26,11 +26,11 @@ class Ordered(Checked):
 def ordered_mission(tasks: int, robots: int, seed: int, most: int = 2, reach: int = 100) -> Mission:
     """Tasks that each wait for at most so many of as many before them as `reach` says."""
     draw = Random(seed)
-    team = tuple(Robot(id=f"r{k}", position=_place(draw)) for k in range(robots))
+    team = tuple(Robot(id=f"r{k}", position=random_ground(draw, _SIDE_M)) for k in range(robots))
     work = tuple(
         Task(
             id=f"t{k}",
-            position=_place(draw),
+            position=random_ground(draw, _SIDE_M),
             actuation_cost=draw.choice((0.0, 2.0, 8.0, 20.0)),
             prerequisites=_before(draw, k, most, reach),
         )
@@ -42,10 +42,6 @@ def ordered_mission(tasks: int, robots: int, seed: int, most: int = 2, reach: in
 def _before(draw: Random, task: int, most: int, reach: int) -> tuple[str, ...]:
     count = min(task, reach, draw.randint(0, most))
     return tuple(f"t{j}" for j in draw.sample(range(max(0, task - reach), task), count))
-
-
-def _place(draw: Random) -> tuple[float, float, float]:
-    return (*random_place(draw, _SIDE_M), 0.0)
 
 
 ORDERED = Generator(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from random import Random
 
 from muster.generation.generator import MOST_ROBOTS, MOST_TASKS, Generator
-from muster.generation.places import random_place
+from muster.generation.places import random_ground
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Choice, Whole
@@ -91,13 +91,13 @@ def precedence_mission(shape: str, tasks: int, robots: int, seed: int = 0) -> Mi
     team = tuple(
         Robot(
             id=f"r{k}",
-            position=_place(draw),
+            position=random_ground(draw, _SIDE_M),
             speed_mps=draw.choice(_SPEEDS_MPS),
             skills=(_SKILLS[k % 3],) if on_pieces else (_SKILLS[k % 3], _SKILLS[(k + 1) % 3]),
         )
         for k in range(robots)
     )
-    places = [_place(draw) for _ in range(0, tasks, each)]
+    places = [random_ground(draw, _SIDE_M) for _ in range(0, tasks, each)]
     work = tuple(
         Task(
             id=f"t{k}",
@@ -110,10 +110,6 @@ def precedence_mission(shape: str, tasks: int, robots: int, seed: int = 0) -> Mi
     )
     rules = Rules(objective="makespan", return_to_start=returns, makespan_includes_return=returns)
     return Mission(name=f"waiting-{shape}-{tasks}-{robots}-{seed}", rules=rules, robots=team, tasks=work)
-
-
-def _place(draw: Random) -> tuple[float, float, float]:
-    return (*random_place(draw, _SIDE_M), 0.0)
 
 
 PRECEDENCE = Generator(

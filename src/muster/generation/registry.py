@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from muster.generation.generator import Generator
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry
+from muster.mission.plugins import Registry, require_own_name
 
 
 def _checked(name: str, found: object) -> Generator:
     if not isinstance(found, Generator):
         raise ParameterError(f"it is a {type(found).__name__}; expected a Generator")
-    if found.name != name:
-        raise ParameterError(f"it is called {found.name}; expected the name of its entry point")
+    require_own_name(name, found.name)
     return found
 
 
@@ -38,16 +37,3 @@ GENERATORS: Registry[Generator] = Registry(
     },
     _checked,
 )
-
-
-def generator_named(name: str) -> Generator:
-    """The generator of that name.
-
-    Raises
-    ------
-    ParameterError
-        if there is none.
-    PluginError
-        if its package cannot be loaded.
-    """
-    return GENERATORS.named(name)

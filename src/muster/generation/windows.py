@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 
 from muster.generation.generator import MOST_ROBOTS, MOST_TASKS, Generator
-from muster.generation.places import random_place
+from muster.generation.places import random_ground
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Number, Whole
@@ -40,20 +40,18 @@ def windows_mission(seed: int, robots: int | None = None, tasks: int | None = No
     """
     draw = Random(seed)
     drawn = draw.randint(3, 10)
-    team = tuple(Robot(id=f"r{k}", position=_place(draw)) for k in range(drawn if robots is None else robots))
+    team = tuple(
+        Robot(id=f"r{k}", position=random_ground(draw, _SIDE_M)) for k in range(drawn if robots is None else robots)
+    )
     drawn = draw.randint(9, 60)
     work = []
     for k in range(drawn if tasks is None else tasks):
         opens = draw.uniform(0, 400)
         before = tuple(f"t{j}" for j in range(k) if draw.random() < ordered)
         window = ((opens, opens + draw.uniform(30, 1600)),)
-        place, work_s = _place(draw), draw.uniform(20, 40)
+        place, work_s = random_ground(draw, _SIDE_M), draw.uniform(20, 40)
         work.append(Task(id=f"t{k}", position=place, duration_s=work_s, window_s=window, prerequisites=before))
     return Mission(name=f"windows-{seed}", rules=Rules(objective="makespan"), robots=team, tasks=tuple(work))
-
-
-def _place(draw: Random) -> tuple[float, float, float]:
-    return (*random_place(draw, _SIDE_M), 0.0)
 
 
 WINDOWS = Generator(

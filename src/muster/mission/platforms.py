@@ -1,7 +1,8 @@
-"""What works on POSIX systems alone, and is refused elsewhere in one line."""
+"""What depends on the operating system: what is refused outside POSIX, and how many processors there are."""
 
 from __future__ import annotations
 
+import os
 import sys
 
 from muster.mission.errors import PlatformError
@@ -17,3 +18,8 @@ def require_posix(purpose: str) -> None:
     """
     if sys.platform == "win32":
         raise PlatformError(f"{purpose} does not work on {sys.platform}; expected Linux, macOS, or WSL on Windows")
+
+
+def usable_processors() -> int:
+    """The processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

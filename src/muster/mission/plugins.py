@@ -1,7 +1,8 @@
 """Implementations of an interface by name: those that ship, and those that installed packages register.
 
 Each interface has a group of entry points (`muster.allocators`, `muster.actions`, `muster.worlds`, `muster.fleets`,
-`muster.formats`). What ships is declared as an entry point too. Nothing is imported before it is looked up by name.
+`muster.generators`, `muster.formats`, `muster.readers`). What ships is declared as an entry point too.
+Nothing is imported before it is looked up by name.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import MusterError, ParameterError, PluginError
 from muster.mission.near_matches import did_you_mean
@@ -140,3 +141,25 @@ class Registry(Mapping[str, T], Generic[T]):
 
 def _package(entry: EntryPoint) -> str:
     return _OWN_PACKAGE if entry.dist is None else f"{entry.dist.name} {entry.dist.version}"
+
+
+def function_expected(expected: str) -> Callable[[str, object], Any]:
+    """What checks implementations that are functions or classes; `expected` says in messages what they should be."""
+
+    def checked(name: str, found: object) -> Any:
+        if not callable(found):
+            raise ParameterError(f"it is a {type(found).__name__}; expected {expected}")
+        return found
+
+    return checked
+
+
+def require_own_name(name: str, own: str) -> None:
+    """Refuse an implementation that is called otherwise than its entry point.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if own != name:
+        raise ParameterError(f"it is called {own}; expected the name of its entry point")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from collections.abc import Iterable, Mapping
@@ -12,6 +11,7 @@ from functools import cache
 from importlib.metadata import packages_distributions
 
 from muster.mission.installation import Part
+from muster.mission.platforms import usable_processors
 
 _LONGEST_IMPORT_S = 120.0
 
@@ -50,7 +50,7 @@ def health(extras: Mapping[str, tuple[Part, ...]]) -> tuple[ExtraHealth, ...]:
 def import_faults(packages: Iterable[str]) -> dict[str, str]:
     """Why packages cannot be imported, of those that cannot; one crashing takes no other with it."""
     names = sorted(packages)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(usable_processors()) as pool:
         return {name: fault for name, fault in zip(names, pool.map(_fault, names), strict=True) if fault}
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from muster.bridges.fleet import Fleet
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.plugins import Registry
+from muster.mission.plugins import Registry, function_expected
 from muster.running.live import wait_for_robots
 
 _WAIT_S = 10.0
@@ -24,17 +24,11 @@ OpenFleet = Callable[[Mission, Mapping[str, Any], threading.Event, bool], Opened
 """Opens a fleet: the mission, the settings of the run, an event that ends waiting, whether the run goes on."""
 
 
-def _checked(name: str, found: object) -> OpenFleet:
-    if not callable(found):
-        raise ParameterError(f"it is a {type(found).__name__}; expected a function that opens a fleet")
-    return found
-
-
 FLEETS: Registry[OpenFleet] = Registry(
     "fleet",
     "muster.fleets",
     {name: f"{__name__}:open_{name}" for name in ("ros1", "ros2", "mavlink")},
-    _checked,
+    function_expected("a function that opens a fleet"),
 )
 
 

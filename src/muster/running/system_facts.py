@@ -12,6 +12,8 @@ from ctypes.util import find_library
 from dataclasses import dataclass
 from pathlib import Path
 
+from muster.mission.platforms import usable_processors
+
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -45,9 +47,7 @@ def python() -> str:
 
 def processors() -> Processors:
     """How many processors there are."""
-    machine = os.cpu_count() or 1
-    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else machine
-    return Processors(machine=machine, usable=usable, group_limit=group_limit())
+    return Processors(machine=os.cpu_count() or 1, usable=usable_processors(), group_limit=group_limit())
 
 
 def group_limit(root: Path = Path("/")) -> float | None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry
+from muster.mission.plugins import Registry, function_expected
 
 if TYPE_CHECKING:
     from muster.simulation import SimulatedWorld
@@ -16,17 +15,11 @@ MakeWorld = Callable[..., "SimulatedWorld"]
 `law=` where it is not `profile`, and `wind=`, `batteries=`, `drain=`, `rotor_level=` where they are asked for."""
 
 
-def _checked(name: str, found: object) -> MakeWorld:
-    if not callable(found):
-        raise ParameterError(f"it is a {type(found).__name__}; expected a class or function that makes a world")
-    return found
-
-
 WORLDS: Registry[MakeWorld] = Registry(
     "world",
     "muster.worlds",
     {"kinematic": "muster.simulation:KinematicWorld", "physics": "muster.simulation.physics:PhysicsWorld"},
-    _checked,
+    function_expected("a class or function that makes a world"),
 )
 
 

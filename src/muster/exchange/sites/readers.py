@@ -6,20 +6,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from muster.mission.errors import Finding, MissionError, ParameterError
-from muster.mission.plugins import Registry
+from muster.mission.errors import Finding, MissionError
+from muster.mission.plugins import Registry, function_expected
 
 if TYPE_CHECKING:
     from muster.exchange.sites.features import Layer
 
 Reader = Callable[[Path], "Sequence[Layer]"]
 """Reads a file as layers of features; raises MissionError for one that it cannot read."""
-
-
-def _checked(name: str, found: object) -> Reader:
-    if not callable(found):
-        raise ParameterError(f"it is a {type(found).__name__}; expected a function of a path")
-    return found
 
 
 _HERE = "muster.exchange.sites"
@@ -37,7 +31,7 @@ READERS: Registry[Reader] = Registry(
         "gpx": f"{_HERE}.gpx_reader:read_gpx_layers",
         "gpkg": f"{_HERE}.geopackage_reader:read_geopackage_layers",
     },
-    _checked,
+    function_expected("a function of a path"),
 )
 """By the suffix of their files without the dot, those of installed packages included."""
 
