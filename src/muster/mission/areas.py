@@ -12,7 +12,7 @@ from typing import Any
 from muster.mission.errors import MissingExtraError
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_work, rules_of_tags
-from muster.mission.polygons import SIMPLE, trouble
+from muster.mission.polygons import polygon_fault
 from muster.mission.raw_records import robots_in, tasks_in
 from muster.mission.site import Point
 from muster.mission.tasks import Action, Task, Work
@@ -113,15 +113,10 @@ def _polygon_faults(
 
 
 def _wrong_rings(area: Ring, holes: tuple[Ring, ...]) -> Iterator[tuple[Path, str, str]]:
-    import shapely
-
     rings: list[tuple[Path, Ring]] = [(("area",), area), *((("holes", k), hole) for k, hole in enumerate(holes))]
     for at, ring in rings:
-        far = max(abs(c) for corner in ring for c in corner)
-        if far > FARTHEST_M:
-            yield at, f"a polygon that reaches {far:g} m", f"coordinates up to {FARTHEST_M:g} m"
-        elif (wrong := trouble(shapely.Polygon(ring))) is not None:
-            yield at, wrong, SIMPLE
+        if (wrong := polygon_fault(ring, FARTHEST_M)) is not None:
+            yield at, *wrong
 
 
 def _wrong_holes(area: Ring, holes: tuple[Ring, ...], cross_holes: bool) -> Iterator[tuple[Path, str, str]]:

@@ -75,8 +75,9 @@ def load_noted(
     from muster.mission.instance_files import TSPLIB, instance_form
 
     path = _found(path_or_name)
-    suffix, form = path.suffix.lower(), None if _is_site(path) else instance_form(path)
-    kind = _kind(path, Path(str(robots)) if robots is not None else None, form)
+    suffix, is_site = path.suffix.lower(), _is_site(path)
+    form = None if is_site else instance_form(path)
+    kind = _kind(path, None if robots is None else Path(robots), form, is_site=is_site)
     given = {"robots": robots, "suitability": suitability, "salesmen": salesmen, "depot": depot, "columns": columns}
     _check_flags(path_or_name, kind, **given)
     if kind == _SITE:
@@ -95,7 +96,7 @@ def load_noted(
         from muster.exchange.qgc_reader import read_plan_files
 
         return Noted(read_plan_files(path))
-    if suffix not in (*_YAML, *_SUFFIXES):
+    if suffix not in _OTHERS and suffix not in _SUFFIXES:
         from muster.exchange.sites.readers import unknown_file
 
         raise unknown_file(path)
@@ -133,19 +134,18 @@ def _is_site(path: Path) -> bool:
     return is_site(path)
 
 
-def _kind(path: Path, robots: Path | None, form: object) -> str:
+def _kind(path: Path, robots: Path | None, form: object, *, is_site: bool) -> str:
     """What kind of file it is, as its flags are known by."""
     from muster.mission.instance_files import TSPLIB
 
     if form is not None:
         return _TSPLIB if form == TSPLIB else _VEHICLES
-    if not _is_site(path):
-        return path.suffix.lower()
-    if path.suffix.lower() == _TASK_LIST:
+    suffix = path.suffix.lower()
+    if is_site and suffix == _TASK_LIST:
         from muster.mission.thesis_csv import is_task_list
 
         return _TASK_LIST if is_task_list(path, robots) else _SITE
-    return _SITE
+    return _SITE if is_site else suffix
 
 
 def _found(path_or_name: str | Path) -> Path:
@@ -160,9 +160,10 @@ def _found(path_or_name: str | Path) -> Path:
     return shipped
 
 
-_YAML = (".yaml", ".yml", ".json", ".txt", "")
 _SUFFIXES = (".yaml", ".yml", ".tsp", ".atsp", ".vrp", ".txt", ".plan")
 """Suffixes of missions by themselves."""
+_OTHERS = (".json", "")
+"""Suffixes of files that may be missions in YAML, of which JSON is a part."""
 _TASK_LIST, _SITE, _TSPLIB, _VEHICLES = ".csv", "site", ".tsp", "vehicles"
 _FLAGS = {
     _TASK_LIST: ("robots", "suitability"),

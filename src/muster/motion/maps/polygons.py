@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.mission.model import Point
-from muster.mission.polygons import SIMPLE, trouble
+from muster.mission.polygons import polygon_fault
 from muster.mission.value_types import Fault, Path
 from muster.motion.grid import Floats
 from muster.motion.maps.narrow_places import without_pinches
@@ -32,16 +32,11 @@ def read_polygon(corners: Sequence[Point], at: Path, faults: list[Fault]) -> sha
     """The polygon with these corners; None where it is none, which is appended to `faults`."""
     import shapely
 
-    far = max(abs(c) for corner in corners for c in corner)
-    if far > FARTHEST_M:
-        faults.append(Fault(at, f"a polygon that reaches {far:g} m", f"coordinates up to {FARTHEST_M:g} m"))
+    wrong = polygon_fault(corners, FARTHEST_M)
+    if wrong is not None:
+        faults.append(Fault(at, *wrong))
         return None
-    polygon = shapely.Polygon(corners)
-    wrong = trouble(polygon)
-    if wrong is None:
-        return polygon
-    faults.append(Fault(at, wrong, SIMPLE))
-    return None
+    return shapely.Polygon(corners)
 
 
 def grown(polygon: shapely.Polygon, radius_m: float) -> shapely.Polygon:
