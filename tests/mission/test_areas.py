@@ -92,19 +92,23 @@ def test_what_is_wrong_with_an_area(keys, at, message, tmp_path):
 
 def test_faults_in_degrees_are_told_in_degrees(tmp_path):
     corners = "[47.4, 8.5], [47.401, 8.501], [47.401, 8.5], [47.4, 8.501]"
-    found = complaints(field(f"area_lat_lon: [{corners}], width_m: 1"), tmp_path=tmp_path)
-    assert [(line, at) for line, at, _ in found] == [(7, "tasks[0].action.area_lat_lon")]
+    found = complaints(field(f"area: {{lat_lon: [{corners}]}}, width_m: 1"), tmp_path=tmp_path)
+    assert [(line, at) for line, at, _ in found] == [(7, "tasks[0].action.area")]
     assert "crosses itself" in found[0][2]
-    found = complaints(field(f"area_lat_lon: [{corners}, [47.4, 200]], width_m: 1"), tmp_path=tmp_path)
-    assert [at for _, at, _ in found] == ["tasks[0].action.area_lat_lon[4][1]"]
-    both = complaints(field(f"{FIELD}, area_lat_lon: [{corners}]"), tmp_path=tmp_path)
-    assert [told for _, _, told in both] == [f"{both[0][2].split(';')[0]}; expected area or area_lat_lon, not both"]
+    found = complaints(field(f"area: {{lat_lon: [{corners}, [47.4, 200]]}}, width_m: 1"), tmp_path=tmp_path)
+    assert [at for _, at, _ in found] == ["tasks[0].action.area.lat_lon[4][1]"]
+    hole = "{lat_lon: [[47.4, 8.5], [91, 8.5], [47.4, 8.501]]}"
+    found = complaints(field(f"{FIELD}, holes: [{hole}]"), tmp_path=tmp_path)
+    assert [at for _, at, _ in found] == ["tasks[0].action.holes[0].lat_lon[1][0]"]
+    found = complaints(field("area: {lat_lon: [[47.4, 8.5]]}, width_m: 1"), tmp_path=tmp_path)
+    assert [at for _, at, _ in found] == ["tasks[0].action.area"]
 
 
 def test_an_area_in_degrees_is_the_one_in_metres(tmp_path):
     corners = "[47.4, 8.5], [47.4, 8.501], [47.401, 8.501], [47.401, 8.5]"
     hole = "[47.4004, 8.5004], [47.4004, 8.5006], [47.4006, 8.5006]"
-    found = mission(field(f"area_lat_lon: [{corners}], holes_lat_lon: [[{hole}]], width_m: 5"), tmp_path=tmp_path)
+    keys = f"area: {{lat_lon: [{corners}]}}, holes: [{{lat_lon: [{hole}]}}], width_m: 5"
+    found = mission(field(keys), tmp_path=tmp_path)
     action = found.tasks[0].action
     assert action.area[0] == pytest.approx((0, 0), abs=1e-6)
     assert action.area[2] == pytest.approx((75.5, 111.2), abs=0.3)

@@ -1,22 +1,15 @@
-"""The keys of an action over an area: in degrees too, and which of them go together."""
+"""The keys of an action over an area: which of them go together."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from muster.mission.place_types import LatLon
-from muster.mission.value_types import Fault, JsonSchema, Many, shown
+from muster.mission.value_types import Fault, JsonSchema, shown
 
-AREA_IN_DEGREES = ("area_lat_lon", Many(LatLon(), minimum=3), "in place of area, beside origin_wgs84")
-HOLES_IN_DEGREES = (
-    "holes_lat_lon",
-    Many(Many(LatLon(), minimum=3)),
-    "in place of holes, beside origin_wgs84",
-)
 WITH_AREA: JsonSchema = {
     "required": ["action"],
-    "properties": {"action": {"type": "object", "anyOf": [{"required": ["area"]}, {"required": [AREA_IN_DEGREES[0]]}]}},
+    "properties": {"action": {"type": "object", "required": ["area"]}},
 }
 """Of a task that may be without a position: its area has a middle."""
 

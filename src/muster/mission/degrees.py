@@ -1,9 +1,9 @@
 """Converts places that a file gives in degrees to metres in the map frame, before the mission is read.
 
 A robot, a task, a tag and a `move_task` may have `lat_lon` in place of `position`; `end_position`, `entry`, `exit`,
-`pickup` and the nodes of lanes may be `{lat_lon: [lat, lon]}`, the boundary of a map and the polygon of a zone
-`{lat_lon: [[lat, lon], ...]}`. With an altitude a place has three coordinates, without it two: it is taken at the
-altitude of the origin, and its height over the plane of the map frame is dropped.
+`pickup` and the nodes of lanes may be `{lat_lon: [lat, lon]}`; the boundary of a map, the polygon of a zone, an area
+and each of its holes `{lat_lon: [[lat, lon], ...]}`. With an altitude a place has three coordinates, without it two: it
+is taken at the altitude of the origin, and its height over the plane of the map frame is dropped.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from muster.mission.tasks import Action
 from muster.mission.value_types import INVALID, Fault, Path, is_list, shown
 
 _OTHER_PLACES = ("end_position", "entry", "exit", "pickup")
-_IN_RINGS = {"area_lat_lon": "area", "holes_lat_lon": "holes"}
 _WORDS = (("x, y, z", "lat, lon, alt"), ("x, y", "lat, lon"))
 
 
@@ -55,56 +54,39 @@ def degrees_to_metres(data: object, faults: list[Fault]) -> Mapping[Path, InDegr
     MissingExtraError
         if there are such places and pymap3d is not installed.
     """
-    found = list(_places(data, faults))
+    found = list(_places(data))
     if not found:
         return {}
     origin = _origin(data, found[0], faults)
     read = [_read(place, faults) for place in found]
     for place, metres in zip(found, _metres(read, origin), strict=True):
         place.put(metres)
-    if any(isinstance(place.record, list) for place in found):
-        _set_wrong_rings_aside(data)
     return {place.metres_at: place for place in found}
-
-
-def _set_wrong_rings_aside(data: object) -> None:
-    """An area with a wrong corner, of which a fault tells, is no area at all."""
-    for _, record in _records(data):
-        for own in _IN_RINGS.values():
-            rings = record.get(own)
-            rows = rings if isinstance(rings, list) else ()
-            if any(row is INVALID or (isinstance(row, list) and INVALID in row) for row in rows):
-                record[own] = INVALID
 
 
 def in_degrees(fault: Fault, places: Mapping[Path, InDegrees]) -> Fault:
     """A fault of a place that was given in degrees, in the words of the file."""
     place = places.get(fault.path)
     if place is None:
-        return _of_ring_in_degrees(fault, places)
+        return fault
     expected = fault.expected
     for metres, degrees in _WORDS:
         expected = expected.replace(metres, degrees)
     return replace(fault, path=place.at, value=shown(place.value), expected=expected)
 
 
-def _of_ring_in_degrees(fault: Fault, places: Mapping[Path, InDegrees]) -> Fault:
-    """A fault of an area or of holes by the name of the key in the file; places in it are metres of the map frame."""
-    for corner in ((0,), (0, 0)):
-        place = places.get((*fault.path, *corner))
-        if place is not None and isinstance(place.record, list):
-            return replace(fault, path=place.at[: -len(corner)])
-    return fault
-
-
-def _places(data: object, faults: list[Fault]) -> Iterator[InDegrees]:
+def _places(data: object) -> Iterator[InDegrees]:
     for at, record in _records(data):
         if "lat_lon" in record:
             yield InDegrees(record["lat_lon"], (*at, "lat_lon"), (*at, "position"), record)
         if dict in map(type, record.values()):
             yield from _by_key(at, record, (*_OTHER_PLACES, *_own_places(record)))
-        if not _IN_RINGS.keys().isdisjoint(record):
-            yield from _in_rings(at, record, faults)
+        if "area" in record:
+            yield from _corners(at, record, "area")
+        if is_list(record.get("holes")):
+            record["holes"] = holes = list(record["holes"])
+            for k in range(len(holes)):
+                yield from _corners((*at, "holes"), holes, k)
     lanes = data.get("lanes") if isinstance(data, dict) else None
     nodes = lanes.get("nodes") if isinstance(lanes, dict) else None
     if isinstance(nodes, dict):
@@ -116,9 +98,9 @@ def _places(data: object, faults: list[Fault]) -> Iterator[InDegrees]:
             yield from _corners(("map", *at), zone, "polygon")
 
 
-def _corners(at: Path, record: dict[str, Any], key: str) -> Iterator[InDegrees]:
-    """The corners of an area, each a place; a list of metres takes the place of their mapping."""
-    value = record.get(key)
+def _corners(at: Path, record: Any, key: str | int) -> Iterator[InDegrees]:
+    """The corners of a polygon, each a place; a list of metres takes the place of their mapping."""
+    value = record[key] if isinstance(key, int) else record.get(key)
     given = value["lat_lon"] if isinstance(value, dict) and list(value) == ["lat_lon"] else None
     if is_list(given) and len(given) >= Corners().minimum:
         metres: list[Any] = [INVALID] * len(given)
@@ -133,29 +115,6 @@ def _by_key(at: Path, record: dict[str, Any], keys: Iterable[str], *, planar: bo
         value = record.get(key)
         if isinstance(value, dict) and list(value) == ["lat_lon"]:
             yield InDegrees(value["lat_lon"], (*at, key, "lat_lon"), (*at, key), record, planar)
-
-
-def _in_rings(at: Path, record: dict[str, Any], faults: list[Fault]) -> Iterator[InDegrees]:
-    """The corners of areas and holes; what is no list of these is left to the reader of metres."""
-    for key in [key for key in _IN_RINGS if key in record]:
-        own, rings = _IN_RINGS[key], record.pop(key)
-        if own in record:
-            faults.append(Fault((*at, key), shown(rings), f"{own} or {key}, not both"))
-            continue
-        record[own] = metres = list(rings) if isinstance(rings, list) else rings
-        if own == "area":
-            yield from _of_ring(metres, (*at, key), (*at, own))
-            continue
-        for k, ring in enumerate(metres if isinstance(metres, list) else ()):
-            metres[k] = list(ring) if isinstance(ring, list) else ring
-            yield from _of_ring(metres[k], (*at, key, k), (*at, own, k))
-
-
-def _of_ring(corners: object, at: Path, metres_at: Path) -> Iterator[InDegrees]:
-    if isinstance(corners, list):
-        yield from (
-            InDegrees(value, (*at, k), (*metres_at, k), corners, planar=True) for k, value in enumerate(corners)
-        )
 
 
 def _own_places(record: Mapping[str, Any]) -> list[str]:

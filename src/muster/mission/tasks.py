@@ -7,12 +7,12 @@ from dataclasses import field, replace
 from typing import Any, Self
 
 from muster.mission.action_keys import ACTION_KEYS
-from muster.mission.area_keys import AREA_IN_DEGREES, HOLES_IN_DEGREES, WITH_AREA, coverage_faults
+from muster.mission.area_keys import WITH_AREA, coverage_faults
 from muster.mission.clock_times import DEADLINE, DUE, WINDOW
 from muster.mission.cooperation import Lag, Prerequisite, PrerequisiteOrId, TeamPart
 from muster.mission.errors import MissionError
 from muster.mission.goods import Amount, Amounts
-from muster.mission.place_types import Place
+from muster.mission.place_types import Corners, Place
 from muster.mission.records import Checked, Record, findings, record, spec
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.source import IN_PYTHON
@@ -41,14 +41,9 @@ class Action(Checked):
     """What a robot does at a task."""
 
     name: str = spec(Choice(ACTION_KEYS.keys()), "which action")
-    area: tuple[Point, ...] | None = spec(
-        Many(Position(planar=True), minimum=3), "coverage: corners in order", default=None, instead=AREA_IN_DEGREES
-    )
+    area: tuple[Point, ...] | None = spec(Corners(), "coverage: corners in order", default=None)
     holes: tuple[tuple[Point, ...], ...] = spec(
-        Many(Many(Position(planar=True), minimum=3)),
-        "coverage: parts of the area that need not be seen, each by its corners",
-        default=(),
-        instead=HOLES_IN_DEGREES,
+        Many(Corners()), "coverage: parts of the area that need not be seen, each by its corners", default=()
     )
     cross_holes: bool = spec(Flag(), "coverage: whether a robot may cross holes", default=False)
     width_m: float | None = spec(
