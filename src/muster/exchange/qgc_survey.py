@@ -44,13 +44,13 @@ def survey_item(
     assert action is not None
     swath = swath_of(action, robot)
     assert not isinstance(swath, Impossible)  # its way points are there
-    front_m, every_m = pictures_m(action, robot)
+    every_m = picture_distance_m(action, robot)
     spots = earth.spots(passage.place for passage in passed)
     polygon = earth.spots(anticlockwise(_polygon(action, swath.width_m))[::-1])
     return {
         "TransectStyleComplexItem": {
             "CameraCalc": {
-                "AdjustedFootprintFrontal": front_m or swath.width_m,
+                "AdjustedFootprintFrontal": every_m or 0.0,
                 "AdjustedFootprintSide": swath.width_m,
                 "CameraName": _NO_CAMERA,
                 "DistanceMode": qgc.RELATIVE_TO_HOME,
@@ -77,18 +77,23 @@ def survey_item(
     }
 
 
-def pictures_m(action: Action, robot: Robot) -> tuple[float | None, float | None]:
-    """How far ahead a picture reaches, and metres from one to the next by `front_overlap`; None where there is none."""
+def picture_distance_m(action: Action, robot: Robot) -> float | None:
+    """Metres from one picture to the next, by `front_overlap`; None where no pictures are taken."""
+    front_m = _ahead_m(action, robot)
+    return None if front_m is None or action.front_overlap is None else (1 - action.front_overlap) * front_m
+
+
+def _ahead_m(action: Action, robot: Robot) -> float | None:
+    """How far a picture reaches along a lane."""
     if action.width_m is not None or action.height_m is None:
-        return None, None
-    front: float | None = None
+        return None
     if action.fov_deg is not None:
         camera = robot.camera or Camera(fov_deg=action.fov_deg)
         wide = 2 * action.height_m * math.tan(math.radians(action.fov_deg) / 2)
-        front = wide * camera.height_px / camera.width_px
-    elif robot.camera is not None and isinstance(seen := footprint_of(robot.camera, action.height_m), Footprint):
-        front = 2 * (seen.middle_m - seen.near_m)
-    return front, None if front is None or action.front_overlap is None else (1 - action.front_overlap) * front
+        return wide * camera.height_px / camera.width_px
+    if robot.camera is not None and isinstance(seen := footprint_of(robot.camera, action.height_m), Footprint):
+        return 2 * (seen.middle_m - seen.near_m)
+    return None
 
 
 def _polygon(action: Action, width_m: float) -> tuple[Point, ...]:

@@ -15,6 +15,9 @@ from muster.mission.site import IN_DEGREES, Point
 from muster.mission.stations import Battery
 from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Table, Text, Whole, shown
 
+MOST_PIXELS = (1920, 1440)
+"""Of a simulated camera's picture: width and height."""
+
 
 @record
 class Camera(Checked):
@@ -23,8 +26,8 @@ class Camera(Checked):
     fov_deg: float = spec(Number(above=0, below=180), "field of view, horizontal")
     tilt_deg: float = spec(Number(minimum=-90, maximum=90), "downward tilt", default=0.0)
     mount: Point = spec(Position(), "place on the body, body frame", default=(0.0, 0.0, 0.0))
-    width_px: int = spec(Whole(minimum=1, maximum=1920), "width of its picture", default=640)
-    height_px: int = spec(Whole(minimum=1, maximum=1440), "height of its picture", default=480)
+    width_px: int = spec(Whole(minimum=1, maximum=MOST_PIXELS[0]), "width of its picture", default=640)
+    height_px: int = spec(Whole(minimum=1, maximum=MOST_PIXELS[1]), "height of its picture", default=480)
     rate_hz: float = spec(Number(above=0, maximum=100), "pictures a second", default=2.0)
 
 
