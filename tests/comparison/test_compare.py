@@ -11,7 +11,9 @@ import pytest
 
 import muster
 from muster.comparison.compare import begun
+from muster.comparison.results_file import ResultsFile
 from muster.comparison.settings import Settings
+from muster.mission.errors import InputError
 
 
 def in_order(problem):
@@ -120,6 +122,25 @@ def test_results_made_otherwise_are_refused(tmp_path):
     file.write_text("a,b\n1,2\n")
     with pytest.raises(muster.InputError, match=r"r.csv:1: a,b; expected results of muster compare"):
         muster.compare(small(), "greedy", seeds=1, iterations=20, jobs=1, results=file)
+
+
+def test_a_file_of_results_is_written_by_one_comparison_at_once(tmp_path):
+    file = tmp_path / "r.csv"
+    said = []
+
+    def beside(run, made, total):
+        with pytest.raises(InputError) as error:
+            muster.compare(small(), "greedy", seeds=3, iterations=20, jobs=1, results=file)
+        said.append(str(error.value))
+
+    with ResultsFile(file):
+        pass  # the columns
+    muster.compare(small(1), "greedy", seeds=1, iterations=20, jobs=1, results=file, on_run=beside)
+    assert said == [f"{file}: written by another comparison; expected a file of its own for each, or to wait"]
+    early = ResultsFile(file)
+    muster.compare(small(), "greedy", seeds=1, iterations=20, jobs=1, results=file)
+    with pytest.raises(InputError, match="added meanwhile; expected begun again"), early:
+        pass
 
 
 def test_an_interruption_keeps_what_there_is(tmp_path):

@@ -5,11 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import os
+import sys
 from collections.abc import Iterable
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, TextIO
 
 from muster.comparison.performer import Trial
 from muster.comparison.run import Run
@@ -34,19 +35,27 @@ class ResultsFile:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._runs = _read(path) if path.exists() and path.stat().st_size else []
+        self._size = path.stat().st_size if path.exists() else 0
+        self._runs = _read(path) if self._size else []
 
     def __enter__(self) -> ResultsFile:
-        begins = not self._path.exists() or self._path.stat().st_size == 0
-        if not begins:
-            _drop_broken_line(self._path)
         self._file = self._path.open("a", encoding="utf-8", newline="")
-        if begins:
+        try:
+            _lock(self._file, self._path)
+            if self._path.stat().st_size != self._size:
+                raise _in_use(self._path, "results that were added meanwhile", "begun again: it goes on from them")
+        except InputError:
+            self._file.close()
+            raise
+        if self._size:
+            _drop_broken_line(self._path)
+        else:
             self._write(COLUMNS)
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self._file.close()
+        self._size = self._path.stat().st_size
 
     def known(self, blanks: Iterable[Run]) -> dict[Trial, Run]:
         """The runs that the file has of those asked for.
@@ -115,6 +124,22 @@ def _run(path: Path, line: int, cells: list[str]) -> Run:
 
 def _text(value: object) -> str:
     return "" if value is None else repr(value) if isinstance(value, float) else str(value)
+
+
+def _lock(file: TextIO, path: Path) -> None:
+    """Keep other comparisons from the file, until it is closed; Windows has no such locks."""
+    if sys.platform == "win32":
+        return
+    import fcntl
+
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        raise _in_use(path, "written by another comparison", "a file of its own for each, or to wait") from None
+
+
+def _in_use(path: Path, what: str, expected: str) -> InputError:
+    return InputError([Finding(str(path), None, "", what, expected)])
 
 
 def _drop_broken_line(path: Path) -> None:
