@@ -3,18 +3,20 @@
 No way is shorter than the area divided by the width of a lane, but for one width. On a map of cells twice as wide as a
 lane the spanning tree of [gabriely2001] has a closed way of just that length, and [kapoutsis2017] (DARP) gives each of
 n robots one n-th of it where a division into connected parts of equal size exists. These are known without running it.
+For twenty regions two planners' ways are published [apostolidis2022], with the share of each region that they see.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from muster.mission.model import Mission
 from muster.planning.judging import verify
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
+from muster_studies.areas.regions import PublishedWay, regions
 from muster_studies.areas.shapes import GRIDS, SHAPES, Field, field_of_grid, random_field
 from muster_studies.effort import Effort
 from muster_studies.instances.random_areas import surface
@@ -183,6 +185,44 @@ class Grids:
 
 
 @dataclass(frozen=True)
+class Regions:
+    """A row for each region over which others' ways are published, and one for the means."""
+
+    number: str = "regions"
+    columns: tuple[str, ...] = (
+        *("region", "lanes", "bound m", "way m", "STC m", "STC sees %", "way / STC"),
+        *("boustrophedon m", "boustrophedon sees %", "way / boustrophedon"),
+    )
+
+    def jobs(self, effort: Effort) -> Iterator[Job]:
+        yield from (Job(region.field) for region in regions())
+
+    def table(self, effort: Effort, found: Mapping[Job, Found]) -> Table:
+        rows: list[tuple[Cell, ...]] = []
+        for region in regions():
+            one = found[Job(region.field)]
+            beside = [_beside(one, way) for way in (region.stc, region.boustrophedon)]
+            rows.append((region.name, one.lanes, one.bound_m, one.way_m, *beside[0], *beside[1]))
+        means = [_mean([row[k] for row in rows]) for k in range(1, len(self.columns))]
+        unseen = max(found[job].unseen for job in self.jobs(effort))
+        notes = (
+            "Published ways of [apostolidis2022]: STC is closed, the others are open. sees %: as printed; "
+            f"ours see all, but for {unseen:.0e}. A way shorter than the bound does not. Means: of what is there.",
+        )
+        rows.append(("mean", *means))
+        return Table(self.number, "Regions with published ways", self.columns, tuple(rows), notes, decimals=3)
+
+
+def _mean(cells: Sequence[Cell]) -> float | None:
+    numbers = [float(cell) for cell in cells if isinstance(cell, int | float)]
+    return sum(numbers) / len(numbers) if numbers else None
+
+
+def _beside(one: Found, way: PublishedWay | None) -> tuple[Cell, Cell, Cell]:
+    return (None, None, None) if way is None else (way.way_m, way.seen_percent, one.way_m / way.way_m)
+
+
+@dataclass(frozen=True)
 class Teams:
     """A row for each team that does the shipped survey."""
 
@@ -219,12 +259,12 @@ def _survey_field() -> Field:
     return Field(action.area, action.holes, swath.width_m)
 
 
-_TABLES: tuple[Reproduction[Job, Found], ...] = (Shapes(), Drawn(), Grids(), Teams())
+_TABLES: tuple[Reproduction[Job, Found], ...] = (Shapes(), Drawn(), Grids(), Regions(), Teams())
 
 AREAS = Repetition(
     name="areas",
-    summary="ways over areas beside a lower bound and spanning trees, shared among 1 to 5 robots",
-    document="lower bounds; the lengths that Gabriely and Rimon (2001) and Kapoutsis et al. (2017) prove for grid maps",
+    summary="ways over areas beside a lower bound, spanning trees and published ways, shared among 1 to 5 robots",
+    document="lower bounds; lengths by Gabriely and Rimon (2001), Kapoutsis et al. (2017), Apostolidis et al. (2022)",
     reproductions=_TABLES,
     perform=one_by_one(perform),
     seeds=lambda effort: None,

@@ -35,8 +35,12 @@ def check(area, holes, width, cross_holes=False, heading=None):
     path = coverage_path(area, holes, width, heading, cross_holes=cross_holes)
     left = surface(area, holes).difference(seen_from(path, width))
     assert left.area <= SEEN * surface(area, holes).area
-    free = shapely.Polygon(area) if cross_holes else surface(area, holes)
-    assert free.buffer(1e-6 * math.sqrt(free.area)).covers(whole_way(path))
+    rounding = 1e-6 * math.sqrt(shapely.Polygon(area).area)
+    grown = shapely.Polygon(area).buffer(max(rounding, 1.001e-3 * width), join_style="mitre")
+    assert grown.covers(whole_way(path))
+    if not cross_holes:
+        inside = shapely.union_all([shapely.Polygon(hole) for hole in holes]).buffer(-rounding)
+        assert whole_way(path).intersection(inside).length == 0
     assert whole_way(path).length == pytest.approx(path.length_m)
     assert path.length_m >= surface(area, holes).area / width - width
     return path
@@ -100,6 +104,11 @@ def test_a_rectangle_is_covered_along_its_longer_side():
     assert len(path.lanes) == 5
     assert path.heading % math.pi == pytest.approx(0, abs=1e-9)
     assert path.length_m == pytest.approx(5 * 40 + 4 * 2)
+
+
+def test_a_rectangle_that_rounding_made_slanted_has_no_lanes_more():
+    path = check(((0, 0), (563.41, 0.02), (563.35, 769.26), (0, 769.24)), (), 40.0)
+    assert len(path.lanes) == 20
 
 
 def test_a_given_heading_is_kept():

@@ -90,7 +90,7 @@ def coverage_path(
     TooManyLanesError
         if there would be more than `MOST_LANES`.
     """
-    whole = Region.of(area, holes, cross_holes=cross_holes)
+    whole = Region.of(area, holes, width_m, cross_holes=cross_holes)
     middle = whole.middle
     region = whole.moved(-middle)
     transit = Transit(region)

@@ -4,14 +4,15 @@ The region is cut into strips of one height, no higher than what is seen across 
 each strip where that is inside the region, and sees the rectangle around it. What no lane sees lies in half a strip, at
 slanted edges and in corners. A piece of it is seen from one short lane between two of its corners, else from the
 longest side of each triangle of a triangulation: the height of a triangle over its longest side is no more than its
-extent in any direction, and that is half a strip at most. So every way along lanes stays inside the region.
+extent in any direction, and that is half a strip at most. So every way along lanes stays inside the region; but lanes
+go on over the border by as much as ways may, where that spares a short lane along a sliver.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, cast
 
@@ -70,8 +71,30 @@ class Lanes:
         middles = south + (np.arange(count) + 0.5) * (north - south) / count
         rows, numbers = _rows(region, middles, west - width_m, east + width_m)
         side_by_side = max(width_m * _SEEN, (north - south) / count)
-        rest = cast("Surface", shapely.difference(region.seen, shapely.union_all(swaths(rows, side_by_side))))
-        return cls(region, width_m, count, rows, numbers, rest)
+
+        def unseen(rows: Floats) -> Surface:
+            return cast("Surface", shapely.difference(region.seen, shapely.union_all(swaths(rows, side_by_side))))
+
+        lanes = cls(region, width_m, count, rows, numbers, unseen(rows))
+        rows = lanes._over_slivers()
+        return replace(lanes, rows=rows, rest=unseen(rows))
+
+    def _over_slivers(self) -> Floats:
+        """The rows, longer by slivers at their ends."""
+        _, south, _, north = self.region.seen.bounds
+        rows = self.rows.copy()
+        for piece in _pieces(self.rest, self.region, self.strips, self.width_m):
+            west, low, east, high = piece.bounds
+            if east - west > self.region.over_m:
+                continue
+            strip = math.floor(((low + high) / 2 - south) / (north - south) * self.strips)
+            for k in np.flatnonzero(self.numbers == strip):
+                (begin, _), (end, _) = self.rows[k]
+                if abs(end - west) <= self.region.over_m:
+                    rows[k, 1, 0] = max(rows[k, 1, 0], east)
+                if abs(begin - east) <= self.region.over_m:
+                    rows[k, 0, 0] = min(rows[k, 0, 0], west)
+        return rows
 
     def short(self) -> Floats:
         """(m, 2, 2) the ends of short lanes from which the rest is seen."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, cast
 
@@ -20,7 +20,9 @@ Floats = npt.NDArray[np.float64]
 Ring = tuple[tuple[float, ...], ...]
 
 _ROUNDING = 1e-7
-"""Of the size of an area: by so much a way may lie outside it."""
+"""Of the size of an area."""
+_OVER = 1e-3
+"""Of the width of a lane: by so much a way may lie outside the border, so that slivers at its ends cost no lanes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,34 +36,43 @@ class Region:
     free
         where a robot may move: the same, or with the holes where these may be crossed.
     rounding_m
-        by how much a way may lie outside, metres.
+        by how much a way may lie in a hole, metres.
+    over_m
+        by how much it may lie outside the border, metres.
     """
 
     seen: Surface
     free: Surface
     rounding_m: float
+    over_m: float
 
     @classmethod
-    def of(cls, area: Ring, holes: Sequence[Ring], *, cross_holes: bool) -> Region:
-        """The region of an area and its holes, which are simple polygons; metres in the map frame."""
+    def of(cls, area: Ring, holes: Sequence[Ring], width_m: float, *, cross_holes: bool) -> Region:
+        """The region of an area and its holes, which are simple polygons, for lanes of a width; metres, map frame."""
         import shapely
 
         whole = shapely.Polygon(area)
         without = shapely.union_all([shapely.Polygon(hole) for hole in holes])
         seen = cast("Surface", shapely.difference(whole, without))
         west, south, east, north = whole.bounds
-        return cls(seen, whole if cross_holes else seen, _ROUNDING * math.hypot(east - west, north - south))
+        rounding_m = _ROUNDING * math.hypot(east - west, north - south)
+        return cls(seen, whole if cross_holes else seen, rounding_m, max(rounding_m, _OVER * width_m))
 
     def turned(self, radians: float) -> Region:
         """The same region, turned about the origin."""
-        return Region(turned(self.seen, radians), turned(self.free, radians), self.rounding_m)
+        return replace(self, seen=turned(self.seen, radians), free=turned(self.free, radians))
 
     @cached_property
     def within(self) -> Surface:
-        """Where ways may lie: the free region, grown by rounding; prepared for many questions."""
+        """Where ways may lie: the free region, a little over its borders; prepared for many questions."""
         import shapely
 
-        found: Surface = shapely.buffer(self.free, self.rounding_m, join_style="mitre", quad_segs=1)
+        parts = shapely.get_parts(self.free)
+        inside = [shapely.Polygon(shapely.get_exterior_ring(part)) for part in parts]
+        holes = [shapely.Polygon(ring) for part in parts for ring in part.interiors]
+        grown = shapely.union_all(shapely.buffer(inside, self.over_m, join_style="mitre", quad_segs=1))
+        shrunk = shapely.union_all(shapely.buffer(holes, -self.rounding_m, join_style="mitre", quad_segs=1))
+        found = cast("Surface", shapely.difference(grown, shrunk))
         shapely.prepare(found)
         return found
 
@@ -79,7 +90,7 @@ class Region:
             found: Surface = shapely.transform(surface, lambda points: points + by)
             return found
 
-        return Region(shifted(self.seen), shifted(self.free), self.rounding_m)
+        return replace(self, seen=shifted(self.seen), free=shifted(self.free))
 
     @property
     def edges(self) -> Floats:
