@@ -15,6 +15,7 @@ import pytest
 import muster
 
 ROOT = Path(__file__).parents[2]
+PLANT = pytest.mark.xdist_group("plant")  # they share what the README's commands made
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
@@ -65,6 +66,7 @@ def test_a_researcher_compares_an_allocator_of_her_own(tmp_path):
     assert (tmp_path / "profile.png").read_bytes().startswith(b"\x89PNG")
 
 
+@PLANT
 def test_a_plant_is_inspected_within_its_windows(plant):
     mission, plan = muster.load(plant / "plant.yaml"), muster.read_plan(plant / "plan.json")
     assert len(mission.tasks) == 80 + 4 + 2
@@ -77,6 +79,7 @@ def test_a_plant_is_inspected_within_its_windows(plant):
     assert all(any(low <= report.starts_s[name] <= high for low, high in windows[name]) for name in windows)
 
 
+@PLANT
 def test_a_plant_gets_sheets_and_flights(plant):
     assert (plant / "sheets.pdf").read_bytes().startswith(b"%PDF")
     flights = [json.loads(file.read_text(encoding="utf-8")) for file in sorted((plant / "flights").iterdir())]
