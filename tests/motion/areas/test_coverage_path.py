@@ -89,8 +89,9 @@ def test_every_place_of_random_areas_is_seen(seed):
 )
 def test_awkward_areas(area, holes, width):
     check(area, holes, width)
-    check(area, holes, width, cross_holes=True)
     check(area, holes, width, heading=math.radians(37))
+    if holes:
+        check(area, holes, width, cross_holes=True)
 
 
 def test_an_area_of_10_square_kilometres_has_as_many_lanes_as_strips():
