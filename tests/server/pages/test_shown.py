@@ -9,7 +9,6 @@ import pytest
 
 from muster.exchange.mission_control import MissionVersion
 from muster.library.shipped import mission_path
-from muster.mission.errors import ParameterError
 from muster.mission.yaml_reader import read_yaml
 from muster.mission.yaml_writer import plain
 from muster.server.pages.map import scene_of
@@ -53,6 +52,7 @@ def test_a_floor_plan_is_found_among_the_files_of_the_mission() -> None:
     [
         (["robots.csv", "t.csv", "suitab.csv"], ("t.csv", {"robots": "robots.csv", "suitability": "suitab.csv"})),
         (["floor.png", "floor.yaml"], ("floor.yaml", {})),
+        (["panels.csv", "site.geojson", "team.yaml"], ("team.yaml", {})),
         (["robots.csv"], ("robots.csv", {})),
         (["eil51.tsp"], ("eil51.tsp", {})),
     ],
@@ -67,8 +67,7 @@ def test_files_in_capitals_are_uploaded_like_others() -> None:
     assert options_of("EIL51.TSP", {}, 4) == {"salesmen": 4, "depot": "1"}
     assert options_of("TASKS.CSV", {"robots": "ROBOTS.CSV"}, 4) == {"robots": "ROBOTS.CSV"}
     assert options_of("yard.YAML", {}, 4) == {}
-    with pytest.raises(ParameterError, match=r"^TASKS\.CSV: the robots are missing"):
-        options_of("TASKS.CSV", {}, 4)
+    assert options_of("A-N32.VRP", {"robots": "ROBOTS.CSV"}, 4) == {}
 
 
 def test_tasks_that_change_robot_are_told_with_both() -> None:
