@@ -31,6 +31,13 @@ def test_the_scene_of_a_floor_has_its_robots_tasks_and_zone() -> None:
     assert (scene["zones"][0]["partly"], scene["boundary"], scene["impossible"]) == (True, None, ["gate"])
 
 
+def test_an_area_is_in_the_scene_once_however_many_tasks_cover_it() -> None:
+    path = mission_path("field-survey")
+    assert path is not None
+    (area,) = scene_of(plain(read_yaml(path)))["areas"]
+    assert (len(area["corners"]), len(area["holes"])) == (7, 2)
+
+
 def test_tiles_are_drawn_only_where_the_earth_is_known() -> None:
     mission = {"robots": [], "tasks": []}
     assert scene_of(mission, tiles="/t")["tiles"] is None
