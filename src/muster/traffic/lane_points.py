@@ -8,8 +8,8 @@ distance at which two such robots do not touch:
 - between `apart` and twice that: two lanes, as far from the walls as they can be;
 - wider: a square lattice, shifted to where the most of its points are free.
 
-What is left and at least `apart` from all of them, and as far from the lattice as its own points are from each other, as
-corners of rooms, is filled with further points.
+What is left and at least `apart` from all of them, and as far from the lattice as its own points are from each other,
+as corners of rooms, is filled with further points.
 """
 
 from __future__ import annotations
