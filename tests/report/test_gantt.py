@@ -1,5 +1,6 @@
 import sys
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from muster.mission.errors import MissingExtraError, MusterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
 from muster.report import level_lines, plot_gantt, plot_routes
+from muster.report.canvas import new_axes
 from muster.report.styles import SERVICE, robot_style
 from muster.verification import verify
 
@@ -83,6 +85,20 @@ def test_every_task_is_named_inside_its_bar_or_beside_it(mission, plan, verdict,
     middle = ax.transData.transform((0, 0))[1]
     assert pixels[0][1] == pytest.approx(middle)  # two seconds have room for a letter
     assert pixels[1][1] > middle  # no time has none: above the stroke
+
+
+def test_names_beside_bars_stay_within_the_chart_and_off_each_other():
+    tasks = tuple(Task(id=f"east-field-{k}", position=(1.0 + 4 * k, 0.0), duration_s=1.0) for k in range(40))
+    mission = Mission(robots=(Robot(id="r", position=(0.0, 0.0)),), tasks=tasks)
+    ax = plot_gantt(
+        mission, verify(mission, Plan(routes=(Route("r", tuple(task.id for task in tasks)),))), ax=new_axes(5.0, 3.0)
+    )
+    ax.figure.canvas.draw()
+    boxes = [text.get_window_extent() for text in ax.texts if (text.get_gid() or "").startswith("name-")]
+    frame = ax.get_window_extent()
+    assert len(boxes) > 4
+    assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes)
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
 
 
 def test_tasks_done_at_one_moment_are_named_together(drawn):

@@ -14,6 +14,7 @@ from muster.motion.maps.distances import inflated
 from muster.motion.maps.polygons import free_region
 from muster.traffic.edge_conflicts import conflicts
 from muster.traffic.exact_ways import Network
+from muster.traffic.lane_network import network
 from muster.traffic.roadmap import Roadmap
 
 RADIUS = 0.3
@@ -181,6 +182,12 @@ def test_resting_points_of_open_space_are_out_of_each_others_way():
     assert len(straight) == 4
     assert all(roadmap.reached(k).tolist() == [roadmap.edges[k, 1]] for k in straight)
     assert roadmap.passable.all()
+
+
+def test_a_field_that_is_wide_for_its_robots_has_about_as_many_points_as_may_be():
+    space = GridSpace(Grid(np.zeros((200, 300), dtype=np.bool_), 0.5))
+    made = network(space, 1.0, np.array([[75.0, 50.0]]), 1000)
+    assert 900 < len(made.points) < 1200
 
 
 def test_the_nearest_point_of_a_place_is_its_own():

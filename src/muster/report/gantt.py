@@ -53,6 +53,7 @@ def plot_gantt(mission: Mission, verdict: Verdict, *, ax: Axes | None = None) ->
         facts = [f"makespan {duration(makespan_s)}", f"tasks {verdict.tasks_completed}/{verdict.tasks_total}"]
         add_title(ax, names.title(mission.name), facts, alarm_of(verdict))
         add_legend(ax, [*entries, *note_entries(names)])
+        chart.write_names(ax, names)
     return ax
 
 

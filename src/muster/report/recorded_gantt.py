@@ -47,6 +47,7 @@ def plot_flown_gantt(recording: Recording) -> Axes:
         facts = [duration(until_s), *outcome(recording)]
         add_title(ax, names.title(mission.name), facts, "" if recording.complete else "the record breaks off")
         add_legend(ax, [*entries, *note_entries(names)])
+        chart.write_names(ax, names)
     return ax
 
 

@@ -8,10 +8,11 @@ import numpy as np
 
 from muster.mission.model import Mission, Point
 from muster.motion.grid import Grid
+from muster.report.area_marks import draw_areas
 from muster.report.canvas import frame_of_map, limits, settle, to_points, write
 from muster.report.floor import draw_map
 from muster.report.labels import line_obstacles, mark_obstacles, place_labels, text_size
-from muster.report.route_lines import Places, RobotLines, places
+from muster.report.route_lines import Places, RobotLines, marks_of, places
 from muster.report.route_strokes import Detail, detail_for, draw_lines
 from muster.report.station_marks import draw_stations
 from muster.report.styles import TEXT, robot_style
@@ -43,6 +44,7 @@ def draw_robot_map(ax: Axes, mission: Mission, lines: RobotLines, image: Grid | 
     frame_of_map(ax, *limits(_points(lines, stops), 0.1, on_ground=False))
     if mission.map is not None:
         draw_map(ax, mission.map, image, spatial=False)
+    draw_areas(ax, mission, spatial=False)
     draw_stations(ax, places([station.position for station in mission.stations], 2))
     draw_lines(ax, lines, detail)
     style = robot_style(lines.index)
@@ -59,7 +61,7 @@ def draw_robot_map(ax: Axes, mission: Mission, lines: RobotLines, image: Grid | 
 
 def _stops(mission: Mission, lines: RobotLines) -> dict[Point, list[int]]:
     """For each place, in two dimensions, the numbers of the stops there."""
-    at = {task.id: task.position for task in mission.tasks} | {one.id: one.position for one in mission.stations}
+    at = marks_of(mission, [lines]) | {one.id: one.position for one in mission.stations}
     found: dict[Point, list[int]] = {}
     for order, stop in enumerate(lines.figures.stops, 1):
         found.setdefault(tuple(at[stop.name][:2]), []).append(order)
@@ -68,7 +70,7 @@ def _stops(mission: Mission, lines: RobotLines) -> dict[Point, list[int]]:
 
 def _points(lines: RobotLines, stops: dict[Point, list[int]]) -> Places:
     """All that the map has to hold."""
-    drawn = [line for line in (lines.travel, lines.work, lines.end) if len(line)]
+    drawn = [line for line in (lines.travel, lines.all_work, lines.end) if len(line)]
     points = np.vstack([places([lines.robot.position, *stops], 2), *drawn])
     kept: Places = points[~np.isnan(points).any(axis=1)]
     return kept
@@ -107,7 +109,7 @@ def _write_beside(ax: Any, lines: RobotLines, several: dict[Point, list[int]], w
     settle(ax)
     texts = [_told(orders) for orders in several.values()]
     anchors = places(several, 2)
-    drawn = [line_obstacles(to_points(ax, line)) for line in (lines.travel, lines.work, lines.end) if len(line)]
+    drawn = [line_obstacles(to_points(ax, line)) for line in (lines.travel, lines.all_work, lines.end) if len(line)]
     obstacles = np.vstack([mark_obstacles(to_points(ax, where), detail.mark / 2), *drawn])
     sizes = np.array([text_size(text, _FONT) for text in texts])
     bounds = ax.get_window_extent().get_points() * 72 / ax.figure.dpi

@@ -96,7 +96,7 @@ class TimeChart:
     lines: tuple[tuple[float, str], ...]
 
     def draw(self, ax: Any, names: Names) -> list[tuple[Any, str]]:
-        """Draw all but the title; the entries of a legend."""
+        """Draw all but the title and the names of bars (`write_names`); the entries of a legend."""
         self._frame(ax, names)
         for number, row in enumerate(self.rows):
             _draw_row(ax, number, row)
@@ -105,9 +105,13 @@ class TimeChart:
         _draw_arrows(ax, arrows)
         for (at_s, name), style in zip(self.lines, _LINES, strict=False):
             ax.axvline(at_s, color=QUIET_TEXT, linewidth=1.0, linestyle=style, zorder=1.5, gid=name)
-        if sum(len(row.work) + len(row.services) for row in self.rows) <= MOST_NAMES:
-            _name_tasks(ax, self.rows, names, {arrow.task for arrow in arrows if arrow.row < arrow.to_row})
         return [*self._entries(has_arrows=bool(arrows)), *levels]
+
+    def write_names(self, ax: Any, names: Names) -> None:
+        """Name the bars; to be called when all that takes room is drawn, the legend too."""
+        if sum(len(row.work) + len(row.services) for row in self.rows) <= MOST_NAMES:
+            arrows = self._arrows()
+            _name_tasks(ax, self.rows, names, {arrow.task for arrow in arrows if arrow.row < arrow.to_row})
 
     def _frame(self, ax: Any, names: Names) -> None:
         from matplotlib import rcParams
@@ -277,8 +281,10 @@ def _name_tasks(ax: Any, rows: Sequence[Row], names: Names, from_above: Set[str]
                 write(ax, (middle, number), name, color=bar.ink, fontweight="bold", **look)
                 continue
             x = middle * points_per_second
+            inwards = max(0.0, half - x + start * points_per_second) - max(0.0, x + half - end * points_per_second)
+            x += inwards
             for side in (-1, 1) if not from_above.isdisjoint(tasks) else (1, -1):
                 if until[side] < x - half - 2:
-                    write(ax, (middle, number), name, (0, side * beside), halo=True, color=TEXT, **look)
+                    write(ax, (middle, number), name, (inwards, side * beside), halo=True, color=TEXT, **look)
                     until[side] = x + half
                     break

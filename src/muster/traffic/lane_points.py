@@ -8,7 +8,8 @@ distance at which two such robots do not touch:
 - between `apart` and twice that: two lanes, as far from the walls as they can be;
 - wider: a square lattice, shifted to where the most of its points are free.
 
-What is left and at least `apart` from all of them, as corners of rooms, is filled with further points.
+What is left and at least `apart` from all of them, and as far from the lattice as its own points are from each other,
+as corners of rooms, is filled with further points.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ def lane_points(
     lanes = to_middle(np.reshape(ridge, (-1, 2)))
     pairs = taken.pack(_in_order(_two_lanes(room, apart), _away_from(room.free & ~room.narrow & ~room.double)))
     lattice = _lattice(room, taken, pitch, places)
-    taken.take_all(lattice)
+    taken.take_all(lattice, pitch)
     corners = taken.pack(_in_order(room.free & ~taken.cells, room.depth))
     return np.concatenate([np.reshape(some, (-1, 2)) for some in (on_lanes, lanes, pairs, lattice, corners)])
 
@@ -110,12 +111,12 @@ class Taken:
         self._padded[row : row + len(up), column : column + len(across)] |= near
         return point
 
-    def take_all(self, points: Floats) -> None:
-        """Choose many points; with the cells that may be too near, as points may be anywhere in theirs."""
+    def take_all(self, points: Floats, apart: float) -> None:
+        """Choose many points so far apart; with the cells that may be too near, as points may be anywhere in theirs."""
         there = np.zeros(self.cells.shape, dtype=np.bool_)
         column, row = points.astype(np.int64).T
         there[row, column] = True
-        self.cells[_away_from(there) < self._apart + _HALF_CELL] = True
+        self.cells[_away_from(there) < apart + _HALF_CELL] = True
 
     def pack(self, cells: Iterable[int]) -> list[Floats]:
         """Choose the middle of each cell (row * columns + column), in order, that is not taken yet."""

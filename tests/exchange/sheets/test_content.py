@@ -14,6 +14,7 @@ from muster.mission.model import Action, Task
 from muster.mission.plan_reader import plan_of
 from muster.verification import Stop
 
+FIELD = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0))
 STOP = Stop("a", False, 0.0, 1.0, 3.0)
 
 
@@ -129,6 +130,14 @@ def test_a_drone_with_a_height_is_no_lower_at_its_stops(tmp_path):
             "raster search, side 6 m, height 3 m, spacing 1.5 m",
         ),
         ({"action": Action(name="delivery", pickup=(1.0, 2.5))}, "delivery, pickup (1, 2.5)"),
+        (
+            {"action": Action(name="coverage", area=FIELD, holes=(FIELD[:3],), height_m=30.0, split=2, part=1)},
+            "coverage, part 1 of 2, area with 4 corners, 1 hole, height 30 m",
+        ),
+        (
+            {"action": Action(name="coverage", area=FIELD, cross_holes=True, width_m=2.5)},
+            "coverage, area with 4 corners, cross holes, width 2.5 m",
+        ),
         (
             {"action": Action(name="stationary-observation", width_m=4.0, heading_deg=30.0)},
             "stationary observation, width 4 m, heading 30°",

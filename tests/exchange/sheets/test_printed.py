@@ -140,3 +140,13 @@ def test_without_the_extra_it_is_named(form, library, tmp_path, monkeypatch):
     monkeypatch.delitem(sys.modules, "muster.exchange.sheets.paper", raising=False)
     with pytest.raises(MissingExtraError, match=r"needs an optional part: pip install 'muster-robotics\[sheets\]'"):
         printed(given, form)
+
+
+@pytest.mark.parametrize(
+    ("needed", "widths"),
+    [([10, 30], [20, 60]), ([10, 60, 30], [10, 40, 30]), ([10, 200, 100], [10, 35, 35]), ([50, 50], [40, 40])],
+)
+def test_columns_are_as_wide_as_they_need_as_far_as_there_is_room(needed, widths):
+    from muster.exchange.sheets.paper import fitted  # needs the extra
+
+    assert fitted(needed, 80) == widths

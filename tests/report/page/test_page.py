@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 from tests.report.page.conftest import MORE
 
 from muster.mission.errors import InputError
-from muster.mission.model import Mission, Robot, Task
+from muster.mission.model import Action, Mission, Robot, Task
 from muster.motion.grid import Grid
 from muster.report.activity_spans import Span, spans
 from muster.report.page import data as data_of_page
@@ -108,6 +109,15 @@ def test_a_record_without_steps(pair):
 def test_the_page_names_nothing_outside(recorded):
     text = page_text(recorded("31T-6R", more=MORE))
     assert re.findall(r"(?:https?:)?//[a-z]", text.replace("http://www.w3.org/2000/svg", "")) == []
+
+
+def test_an_area_is_there_once_however_many_tasks_cover_it(pair):
+    corners = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0))
+    hole = ((6.0, 2.0), (8.0, 2.0), (8.0, 4.0))
+    parts = [Action(name="coverage", area=corners, holes=(hole,), width_m=1.0, split=2, part=k) for k in (1, 2)]
+    tasks = [Task(id=str(action.part), position=(1, 1), action=action) for action in parts]
+    data = page_data(recording(replace(pair, tasks=tasks), np.zeros((1, 2, 3))))
+    assert data["areas"] == [[[[0, 0], [9000, 0], [9000, 9000]], [[6000, 2000], [8000, 2000], [8000, 4000]]]]
 
 
 def test_tasks_that_come_move_and_are_lost(recorded):

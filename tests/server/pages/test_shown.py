@@ -9,7 +9,6 @@ import pytest
 
 from muster.exchange.mission_control import MissionVersion
 from muster.library.shipped import mission_path
-from muster.mission.errors import ParameterError
 from muster.mission.yaml_reader import read_yaml
 from muster.mission.yaml_writer import plain
 from muster.server.pages.map import scene_of
@@ -30,6 +29,13 @@ def test_the_scene_of_a_floor_has_its_robots_tasks_and_zone() -> None:
     assert scene["tasks"][4] == {"id": "crate", "x": 12, "y": 8, "z": None, "type": "", "prerequisites": ["aisle4"]}
     assert scene["zones"][0]["label"] == "zone 1, closed to air robots"
     assert (scene["zones"][0]["partly"], scene["boundary"], scene["impossible"]) == (True, None, ["gate"])
+
+
+def test_an_area_is_in_the_scene_once_however_many_tasks_cover_it() -> None:
+    path = mission_path("field-survey")
+    assert path is not None
+    (area,) = scene_of(plain(read_yaml(path)))["areas"]
+    assert (len(area["corners"]), len(area["holes"])) == (7, 2)
 
 
 def test_tiles_are_drawn_only_where_the_earth_is_known() -> None:
@@ -53,6 +59,7 @@ def test_a_floor_plan_is_found_among_the_files_of_the_mission() -> None:
     [
         (["robots.csv", "t.csv", "suitab.csv"], ("t.csv", {"robots": "robots.csv", "suitability": "suitab.csv"})),
         (["floor.png", "floor.yaml"], ("floor.yaml", {})),
+        (["panels.csv", "site.geojson", "team.yaml"], ("team.yaml", {})),
         (["robots.csv"], ("robots.csv", {})),
         (["eil51.tsp"], ("eil51.tsp", {})),
     ],
@@ -67,8 +74,7 @@ def test_files_in_capitals_are_uploaded_like_others() -> None:
     assert options_of("EIL51.TSP", {}, 4) == {"salesmen": 4, "depot": "1"}
     assert options_of("TASKS.CSV", {"robots": "ROBOTS.CSV"}, 4) == {"robots": "ROBOTS.CSV"}
     assert options_of("yard.YAML", {}, 4) == {}
-    with pytest.raises(ParameterError, match=r"^TASKS\.CSV: the robots are missing"):
-        options_of("TASKS.CSV", {}, 4)
+    assert options_of("A-N32.VRP", {"robots": "ROBOTS.CSV"}, 4) == {}
 
 
 def test_tasks_that_change_robot_are_told_with_both() -> None:

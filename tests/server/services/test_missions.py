@@ -164,6 +164,11 @@ def test_uploads(missions, worker):
         assert worker.asked[-2] == ("convert", {"name": "t.csv", "files": files, "robots": "r.csv"})
         with_map = await missions.upload(ANN, "m.yaml", b"name: m", {"map.png": b"1"})
         assert dict(with_map.files) == {"map.png": b"1"}
+        named = await missions.upload(ANN, "n.yaml", b"name: n\ntravel: {ground: t.csv}", {"t.csv": b"1"})
+        assert dict(named.files) == {"t.csv": b"1"}
+        await missions.upload(ANN, "team.yaml", b"name: m", {"panels.csv": b""})
+        files = {"panels.csv": "", "team.yaml": "bmFtZTogbQ=="}
+        assert worker.asked[-2] == ("convert", {"name": "team.yaml", "files": files, "site": ["panels.csv"]})
         for name, data, words in (
             ("x.yaml", b"a\n\xff", r"x.yaml:2: byte 2 is not UTF-8"),
             ("x.exe", b"", "no mission; expected a name that ends in .yaml"),

@@ -174,3 +174,14 @@ def test_the_files_of_a_site_are_one_mission(asked):
     mission = parse_yaml(answer["text"], Path("panels.yaml"))
     assert (answer["name"], answer["needs"]) == ("panels", [])
     assert (len(mission.tasks), len(mission.robots), len(mission.map.zones)) == (3, 1, 1)
+
+
+def test_the_files_of_a_site_are_added_to_a_mission(asked):
+    team = "schema: muster/1\nname: team\norigin_wgs84: {lat_deg: 47, lon_deg: 8}\n"
+    team += "robots: [{id: r, position: [0, 0]}]\ntasks: []\n"
+    texts = {"team.yaml": team, "panels.csv": CSV, "robots.csv": ROBOTS, "beside.txt": "kept"}
+    files = {name: base64.b64encode(text.encode()).decode() for name, text in texts.items()}
+    answer = asked("convert", name="team.yaml", files=files, robots="robots.csv", site=["panels.csv", "robots.csv"])
+    mission = parse_yaml(answer["text"], Path("team.yaml"))
+    assert (answer["name"], answer["needs"]) == ("team", ["beside.txt"])
+    assert (len(mission.tasks), len(mission.robots)) == (3, 2)

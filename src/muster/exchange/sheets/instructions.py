@@ -65,17 +65,26 @@ def _goods(task: Task) -> Iterator[str]:
 
 
 def _action(action: Action) -> str:
-    told = [f"{words}" for key in ACTION_KEYS[action.name].names if (words := _value(key, action.value(key)))]
-    return ", ".join([action.name.replace("-", " "), *told])
+    keys = [key for key in ACTION_KEYS[action.name].names if action.part is None or key not in ("split", "part")]
+    part = [] if action.part is None else [f"part {action.part} of {action.split}"]
+    told = [words for key in keys if (words := _value(key, action.value(key)))]
+    return ", ".join([action.name.replace("-", " "), *part, *told])
 
 
 def _value(key: str, value: Any) -> str:
-    """The value of a key in words, with its unit: `side 6 m`; empty where there is none."""
-    if value is None:
+    """The value of a key in words, with its unit: `side 6 m`; empty where there is none. Polygons are counted."""
+    if value is None or value is False or value == ():
         return ""
     name, unit = next(((key.removesuffix(end), unit) for end, unit in _UNITS.items() if key.endswith(end)), (key, ""))
+    words = name.replace("_", " ")
+    if value is True:
+        return words
+    if key == "area":
+        return f"{words} with {len(value)} corners"
+    if key == "holes":
+        return f"{len(value)} {words if len(value) > 1 else 'hole'}"
     if isinstance(value, tuple) and all(isinstance(c, int | float) for c in value):
         shown = metres(value)
     else:
         shown = plain(value, 4) if isinstance(value, float) else str(value)
-    return f"{name.replace('_', ' ')} {shown}{unit}"
+    return f"{words} {shown}{unit}"

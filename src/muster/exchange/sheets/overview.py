@@ -114,9 +114,9 @@ class _Printer:
         from muster.exchange.sheets.paper import Column
 
         unit = self.sheets.verdict.usage_unit
-        titles = (("robot", 34), ("type", 24), ("moves", 30), ("starts [m]", 30), ("stops", 44))
-        figures = (("leaves", 20), ("ends", 20), ("waits", 20), (f"usage [{unit}]", 26), (f"capacity [{unit}]", 26))
-        return [Column(*title) for title in titles] + [Column(*title, right=True) for title in figures]
+        titles = ("robot", "type", "moves", "starts [m]", "stops")
+        figures = ("leaves", "ends", "waits", f"usage [{unit}]", f"capacity [{unit}]")
+        return [Column(title) for title in titles] + [Column(title, right=True) for title in figures]
 
     def _robots(self) -> Iterator[Sequence[str]]:
         for sheet in self.sheets.robots:
@@ -138,7 +138,7 @@ class _Printer:
     def _left_out_columns(self) -> list[Column]:
         from muster.exchange.sheets.paper import Column
 
-        return [Column("task", 34), Column("type", 24), Column("place [m]", 40), Column("why", 176)]
+        return [Column(title) for title in ("task", "type", "place [m]", "why")]
 
     def _left_out(self) -> Iterator[Sequence[str]]:
         for item in self.sheets.left_out:

@@ -33,6 +33,8 @@ MARGIN_MM = 12.0
 LINE_MM = 3.7
 _EPOCH = datetime(2000, 1, 1, tzinfo=UTC)
 _DPI = 200
+_PADDING_MM, _SPARE_MM = 1.1, 0.5  # at either side of a cell's text, and within
+_BOLD = 1.2  # at most so many times as wide as text that is not
 _MOST_COLUMNS_OF_TEXT = 160  # in one cell: no row is higher than a page
 _GREY, _PALE = (107, 107, 107), (238, 238, 238)
 _FONT = "names"
@@ -40,10 +42,9 @@ _FONT = "names"
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table: its heading, its share of the width, and whether it is set to the right."""
+    """A column of a table: its heading, and whether it is set to the right."""
 
     heading: str
-    width: float
     right: bool = False
 
 
@@ -160,20 +161,32 @@ class Paper(FPDF):
         """A table over the whole width, its headings on every page."""
         self.set_font(_FONT, size=7)
         self.set_draw_color(*_PALE)
+        texts = [[self._in_cell(cell) for cell in row] for row in rows]
         with self.table(
-            col_widths=tuple(column.width for column in columns),
+            col_widths=tuple(self._widths(columns, texts)),
             text_align=tuple("RIGHT" if column.right else "LEFT" for column in columns),
             borders_layout=TableBordersLayout.HORIZONTAL_LINES,
             headings_style=FontFace(emphasis="BOLD", fill_color=_PALE),
             line_height=LINE_MM,
             v_align="TOP",
-            padding=(0.5, 1.1),
+            padding=(0.5, _PADDING_MM),
             wrapmode=WrapMode.WORD,
         ) as table:
             table.row([column.heading for column in columns])
-            for row in rows:
-                table.row([self._in_cell(cell) for cell in row])
+            for row in texts:
+                table.row(row)
         self.set_draw_color(0)
+
+    def _widths(self, columns: Sequence[Column], texts: Sequence[Sequence[str]]) -> list[float]:
+        """Widths of columns, millimetres: each as its longest text needs it, as far as there is room for all."""
+        needed = [
+            max(
+                *(_BOLD * self.get_string_width(word) for word in column.heading.split()),
+                *(self.get_string_width(row[k]) for row in texts),
+            )
+            for k, column in enumerate(columns)
+        ]
+        return fitted([width + 2 * _PADDING_MM + _SPARE_MM for width in needed], self.epw)
 
     def put_picture(self, figure: Figure, x: float, y: float, width: float) -> None:
         """A figure at a place on the page, millimetres; it leaves the cursor where it is."""
@@ -191,6 +204,19 @@ class Paper(FPDF):
             return bytes(self.output())
         finally:
             subsetting.setLevel(level)
+
+
+def fitted(needed: Sequence[float], total: float) -> list[float]:
+    """Widths that make up a total: what is needed, and more, in proportion; else the widest no wider than one limit."""
+    if sum(needed) <= total:
+        return [width * total / sum(needed) for width in needed]
+    limit, narrow = 0.0, 0.0
+    for k, width in enumerate(sorted(needed)):
+        limit = (total - narrow) / (len(needed) - k)
+        if width > limit:
+            break
+        narrow += width
+    return [min(width, limit) for width in needed]
 
 
 def _is_shaped(c: str) -> bool:

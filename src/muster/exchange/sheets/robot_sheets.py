@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from muster.exchange.sheets.paper import Paper
 
 _MAP_MM = (105.0, 76.0)
-_CLOCK = len("08:00:00")
 
 
 def sheets_files(
@@ -68,10 +67,9 @@ def _image(mission: Mission) -> Grid | None:
 
 @dataclass(frozen=True)
 class _Field:
-    """A column of the table of stops: its heading, its share of the width, and what stands in a line."""
+    """A column of the table of stops: its heading, and what stands in a line."""
 
     heading: str
-    width: float
     cell: Callable[[Line], str]
     right: bool = False
 
@@ -121,7 +119,7 @@ class _Printer:
             paper.write_line("No stops: this robot stays where it is.", bold=True)
             return
         fields = self._fields(sheet)
-        columns = [Column(field.heading, field.width, field.right) for field in fields]
+        columns = [Column(field.heading, field.right) for field in fields]
         paper.write_table(columns, ([field.cell(line) for field in fields] for line in sheet.lines))
         paper.ln(1.5)
         ending = dict(robot_facts(self.sheets, sheet))["ends"]
@@ -131,22 +129,21 @@ class _Printer:
     def _fields(self, sheet: Sheet) -> list[_Field]:
         """The columns that have something in them."""
         told, unit, names = self.sheets.times.text, self.sheets.verdict.usage_unit, self.names
-        wide = 14 if all(len(told(line.visit.ends_s)) <= _CLOCK for line in sheet.lines) else 19
         fields = [
-            _Field("#", 6, lambda line: str(line.order), right=True),
-            _Field("stop", 22, lambda line: stop_name(line, names)),
-            _Field("place [m]", 20, lambda line: metres(line.place)),
-            _Field("latitude, longitude", 30, lambda line: "" if line.spot is None else degrees(line.spot)),
-            _Field("arrive", wide, lambda line: told(line.visit.arrives_s), right=True),
-            _Field("begin", wide, lambda line: told(line.visit.starts_s), right=True),
-            _Field("end", wide, lambda line: told(line.visit.ends_s), right=True),
-            _Field("what to do", 42, lambda line: line.doing),
-            _Field("with", 20, lambda line: ", ".join(map(names.robot, line.others))),
-            _Field("wait", 13, lambda line: _wait(line), right=True),
-            _Field("wait for", 30, lambda line: ", ".join(line.waits_for)),
-            _Field("window, deadline, due", 34, lambda line: "; ".join(line.limits)),
-            _Field("battery after", 24, lambda line: energy(line, unit), right=True),
-            _Field("on board after", 20, self._load),
+            _Field("#", lambda line: str(line.order), right=True),
+            _Field("stop", lambda line: stop_name(line, names)),
+            _Field("place [m]", lambda line: metres(line.place)),
+            _Field("latitude, longitude", lambda line: "" if line.spot is None else degrees(line.spot)),
+            _Field("arrive", lambda line: told(line.visit.arrives_s), right=True),
+            _Field("begin", lambda line: told(line.visit.starts_s), right=True),
+            _Field("end", lambda line: told(line.visit.ends_s), right=True),
+            _Field("what to do", lambda line: line.doing),
+            _Field("with", lambda line: ", ".join(map(names.robot, line.others))),
+            _Field("wait", lambda line: _wait(line), right=True),
+            _Field("wait for", lambda line: ", ".join(line.waits_for)),
+            _Field("window, deadline, due", lambda line: "; ".join(line.limits)),
+            _Field("battery after", lambda line: energy(line, unit), right=True),
+            _Field("on board after", self._load),
         ]
         return [field for field in fields if any(field.cell(line) for line in sheet.lines)]
 

@@ -6,14 +6,14 @@ absent.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from muster.mission.event_descriptions import event_line
-from muster.mission.model import Map, Station, Zone
+from muster.mission.model import Map, Station, Task, Zone
 from muster.mission.stations import station_sign
 from muster.motion.grid import Grid
 from muster.report.activity_spans import spans
@@ -57,6 +57,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         ],
         "events": [[_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in ALARMING] for e in recording.events],
         "nearest": _nearest(recording, tracks),
+        "areas": _areas(recording.tasks),
         "map": _map(recording.mission.map, recording.image),
         "figures": _figures(recording),
         **page_marks(recording.tasks, recorded_rows(recording), recording.mission.starts_at),
@@ -206,6 +207,13 @@ def _map(chart: Map | None, image: Grid | None) -> dict[str, Any] | None:
         "zones": [_zone(zone) for zone in chart.zones],
         "image": None if image is None else _image(image),
     }
+
+
+def _areas(tasks: Iterable[Task]) -> list[list[list[list[int]]]]:
+    """Each area that is to be covered once, however many tasks it is split into: its corners, then those of holes."""
+    actions = [task.action for task in tasks if task.action is not None]
+    areas = dict.fromkeys((action.area, *action.holes) for action in actions if action.area is not None)
+    return [[[_millimetres(corner) for corner in ring] for ring in area] for area in areas]
 
 
 def _zone(zone: Zone) -> dict[str, Any]:

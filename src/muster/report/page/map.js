@@ -46,9 +46,11 @@ function projection(width, height) {
 }
 
 function mapCorners() {
-  if (!data.map) return [];
   const metres = (corner) => corner.map((value) => value / 1000);
-  const corners = [...(data.map.boundary ?? []), ...data.map.zones.flatMap((zone) => zone.corners)].map(metres);
+  const covered = data.areas.flatMap(([outline]) => outline).map(metres);
+  if (!data.map) return covered;
+  const outlines = [...(data.map.boundary ?? []), ...data.map.zones.flatMap((zone) => zone.corners)];
+  const corners = [...covered, ...outlines.map(metres)];
   if (!data.map.image) return corners;
   const { columns, rows, resolution, origin: [x, y, yaw] } = data.map.image;
   const [c, s] = [Math.cos(yaw) * resolution, Math.sin(yaw) * resolution];
@@ -60,9 +62,14 @@ function points(corners) {
   return corners.map(([x, y]) => `${project.x(x / 1000).toFixed(1)},${project.y(y / 1000).toFixed(1)}`).join(" ");
 }
 
+function areaPart(rings) {
+  return svg("path", { class: "area", d: rings.map((ring) => `M${points(ring)}Z`).join("") });
+}
+
 function floorParts() {
-  if (!data.map) return [];
-  const parts = data.map.image ? [walls(data.map.image)] : [];
+  const areas = data.areas.map(areaPart);
+  if (!data.map) return areas;
+  const parts = data.map.image ? [walls(data.map.image), ...areas] : areas;
   if (data.map.boundary) parts.push(svg("polygon", { class: "boundary", points: points(data.map.boundary) }));
   for (const zone of data.map.zones) {
     const label = svg("title", {}, zone.label);

@@ -24,7 +24,14 @@ from muster.mission.errors import MissionError, ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
-from muster.server.services.uploads import as_text, check_sizes, findings_of, mission_input, require_file_name
+from muster.server.services.uploads import (
+    as_text,
+    check_sizes,
+    findings_of,
+    mission_input,
+    require_file_name,
+    site_files,
+)
 from muster.server.store import Store
 
 _READ_AS_THEY_ARE = (".yaml", ".yml")
@@ -197,8 +204,8 @@ class Missions:
     ) -> MissionVersion:
         """Create a mission from a file: YAML as it is; files of sites, of the field and of QGroundControl converted.
 
-        `beside` are further files that the file needs. `options` are those of the worker task `convert`: `robots` and
-        `suitability` (names of files of `beside`), `salesmen`, `depot`.
+        `beside` are further files that the file needs, or those of a site that are added to it. `options` are those of
+        the worker task `convert`: `robots` and `suitability` (names of files of `beside`), `salesmen`, `depot`.
 
         Raises
         ------
@@ -209,18 +216,26 @@ class Missions:
         async with self._actions.of(who, "mission.upload", {"file": filename[:200], "bytes": len(data)}):
             require_file_name(filename)
             path = PurePath(filename)
+            site: list[str] = []
             if path.suffix.lower() in _READ_AS_THEY_ARE:
                 text, kept = as_text(filename, data), dict(beside or {})
-            elif path.suffix.lower() in _CONVERTED:
-                files = {**(beside or {}), filename: data}
-                check_sizes("", files)
-                packed = {name: base64.b64encode(content).decode("ascii") for name, content in files.items()}
-                made = await self._pool.run("convert", {"name": filename, "files": packed, **options})
-                text, kept = made["text"], {name: files[name] for name in made.get("needs", ())}
-            else:
+                site = site_files(text, kept)
+            elif path.suffix.lower() not in _CONVERTED:
                 expected = f"a name that ends in {', '.join((*_READ_AS_THEY_ARE, *_CONVERTED))}"
                 raise ParameterError(f"{filename}: no mission; expected {expected}")
+            if site or path.suffix.lower() in _CONVERTED:
+                files = {**(beside or {}), filename: data}
+                text, kept = await self._converted(filename, files, options | ({"site": site} if site else {}))
             return await self._create(who, text, kept, None, file=path.stem)
+
+    async def _converted(
+        self, name: str, files: Mapping[str, bytes], options: Mapping[str, Any]
+    ) -> tuple[str, dict[str, bytes]]:
+        """The mission that a worker makes of files, and those of them that it goes on to need."""
+        check_sizes("", files)
+        packed = {file: base64.b64encode(content).decode("ascii") for file, content in files.items()}
+        made = await self._pool.run("convert", {"name": name, "files": packed, **options})
+        return made["text"], {file: files[file] for file in made.get("needs", ())}
 
     async def _create(
         self, who: User, text: str, files: Mapping[str, bytes], name: str | None, file: str = "mission"

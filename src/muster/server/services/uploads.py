@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from pathlib import PurePath
 from typing import Any
 
+from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError, ParameterError
 from muster.mission.value_types import shown
 
@@ -68,6 +70,11 @@ def as_text(name: str, data: bytes) -> str:
         line = 1 + data.count(b"\n", 0, error.start)
         found = Finding(name, line, "", f"byte {error.start} is not UTF-8", "a text in UTF-8")
         raise MissionError([found]) from None
+
+
+def site_files(text: str, names: Iterable[str]) -> list[str]:
+    """Which files beside a mission are of a site that is to be added to it: those that the mission does not name."""
+    return [name for name in names if PurePath(name).suffix.lower().lstrip(".") in READERS and name not in text]
 
 
 def findings_of(errors: list[dict[str, Any]]) -> list[Finding]:

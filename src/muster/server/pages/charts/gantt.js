@@ -86,7 +86,7 @@ export default {
       return Math.max(...ends, 0) || 1;
     },
     ticks() {
-      const rough = this.end / Math.max(this.width / 90, 1);
+      const rough = this.end / Math.max((this.width - LEFT - 14) / 90, 1);
       const power = 10 ** Math.floor(Math.log10(rough));
       const decimal = power * [1, 2, 5, 10].find((part) => part * power >= rough * 0.999);
       const step = this.hasClock ? STEPS.find((part) => part >= rough) ?? 86400 * Math.ceil(rough / 86400) : decimal;

@@ -26,6 +26,7 @@ def scene_of(
         "stations": [_station(station) for station in mission.get("stations") or ()],
         "boundary": [list(corner[:2]) for corner in ground["boundary"]] if ground.get("boundary") else None,
         "zones": [_zone(zone, k) for k, zone in enumerate(ground.get("zones") or ())],
+        "areas": _areas(mission.get("tasks") or ()),
         "image": dict(image) if image else None,
         "tiles": {"url": tiles, "origin": [earth["lat_deg"], earth["lon_deg"]]} if tiles and earth else None,
         "impossible": list(impossible),
@@ -60,6 +61,16 @@ def _task(task: Mapping[str, Any]) -> dict[str, Any]:
         ],
         **({} if task.get("delivers") is None else {"delivers": str(task["delivers"])}),
     }
+
+
+def _areas(tasks: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Each area that is to be covered once, however many tasks it is split into, with its holes."""
+    found: list[dict[str, Any]] = []
+    for action in (task.get("action") or {} for task in tasks):
+        area = {"corners": action.get("area"), "holes": action.get("holes") or []}
+        if area["corners"] and area not in found:
+            found.append(area)
+    return found
 
 
 def _station(station: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,6 @@ from typing import Any
 from nicegui import events, ui
 
 from muster.exchange.sites.readers import READERS
-from muster.mission.errors import ParameterError
 from muster.mission.yaml_writer import flow_text
 from muster.server.pages.buttons import once
 from muster.server.pages.notices import errors_shown, warn
@@ -41,7 +40,8 @@ _STARTS = {
     "/3-D": (EMPTY_IN_SPACE, "A small start in 3-D: two drones, one task"),
 }
 _SITES = tuple(f".{name}" for name in READERS.shipped)
-_ACCEPT = ",".join((".yaml,.yml", *_SITES, ".tsp,.atsp,.vrp,.txt,.plan,.png,.pgm,.jpg"))
+_YAML = (".yaml", ".yml")
+_ACCEPT = ",".join((*_YAML, *_SITES, ".tsp,.atsp,.vrp,.txt,.plan,.png,.pgm,.jpg"))
 _MOST_BYTES = 16 * 2**20
 _REJECTED = "entries => emit(entries.map(entry => [entry.failedPropValidation, entry.file.name, entry.file.size]))"
 _CSV = (  # as `mission.thesis_csv` reads them
@@ -143,28 +143,15 @@ async def _upload(files: dict[str, bytes], salesmen: int) -> None:
 
 
 def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str, Any]:
-    """The options for converting a mission's file, by its kind.
-
-    Raises
-    ------
-    ParameterError
-        for a task-list CSV without robots.
-    """
+    """The options for converting a mission's file, by its kind."""
     kind = PurePath(name).suffix.lower()
     if kind in (".tsp", ".atsp"):
         return {"salesmen": salesmen, "depot": "1"}
-    if kind not in _SITES:
-        return {}
-    if kind == ".csv" and "robots" not in beside:
-        raise ParameterError(
-            f"{name}: the robots are missing; expected two files chosen together, of which one has the word "
-            "robots in its name"
-        )
-    return dict(beside)
+    return dict(beside) if kind in (*_YAML, *_SITES) else {}
 
 
 def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
-    """Which of the chosen files are the mission, its robots, and its suitability."""
+    """Which of the chosen files are the mission, YAML before files of a site, its robots, and its suitability."""
     beside = {}
     for kind, word in (("robots", "robot"), ("suitability", "suitab")):
         ends = _SITES if kind == "robots" else (".csv",)
@@ -172,7 +159,6 @@ def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
         if named_so and len(names) > 1:
             beside[kind] = named_so[0]
     rest = [name for name in names if name not in beside.values()]
-    rest.sort(
-        key=lambda name: not name.lower().endswith((".yaml", ".yml", ".tsp", ".atsp", ".vrp", ".txt", ".plan", *_SITES))
-    )
+    kinds = (_YAML, (".tsp", ".atsp", ".vrp", ".txt", ".plan", *_SITES))
+    rest.sort(key=lambda name: next((k for k, ends in enumerate(kinds) if name.lower().endswith(ends)), len(kinds)))
     return rest[0], beside

@@ -14,7 +14,8 @@ from muster.mission.yaml_writer import yaml_text
 from muster.planning.importing import read_site
 from muster.server.work.missions import written_files
 
-_MISSIONS = (".tsp", ".atsp", ".vrp", ".txt", ".plan")
+_YAML = (".yaml", ".yml")
+_MISSIONS = (*_YAML, ".tsp", ".atsp", ".vrp", ".txt", ".plan")
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")
 
 
@@ -24,7 +25,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     `name` is which of `files` (base64, by name) is the mission: a task-list CSV or a file of a site, perhaps with
     `robots` and `suitability`, which name others of them, and all other files of a site are added; an instance file,
     perhaps with `salesmen` and `depot`, of which TSPLIB needs the first; a `.plan` of QGroundControl, of which all
-    `.plan` files are taken together.
+    `.plan` files are taken together; a mission in YAML, to which the files named by `site` are added.
     """
     name, files = arguments["name"], arguments["files"]
     options = {key: arguments[key] for key in _OPTIONS if arguments.get(key) is not None}
@@ -36,19 +37,21 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     if path.suffix.lower() not in suffixes:
         raise MissionError([Finding(shown(name), None, "", "not known", f"a file in {', '.join(suffixes)}")])
     written_files(files)
-    others = _others_of_site(name, files, options)
-    if others:
+    site = arguments.get("site", ())
+    others = [one for one in site or _others_of_site(name, files) if one not in options.values()]
+    if site or others:
         beside = {key: options[key] for key in ("robots", "suitability") if key in options}
         mission = read_site(name, *others, **beside).mission
-        return {"text": yaml_text(mission), "name": mission.name, "needs": []}
+        kept = sorted(set(files) - {name, *others, *beside.values()}) if site else []
+        return {"text": yaml_text(mission), "name": mission.name, "needs": kept}
     mission = load(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
     return {"text": yaml_text(mission), "name": mission.name, "needs": sorted(set((mission.travel or {}).values()))}
 
 
-def _others_of_site(name: str, files: Mapping[str, str], options: Mapping[str, Any]) -> list[str]:
+def _others_of_site(name: str, files: Mapping[str, str]) -> list[str]:
     """The other files of a site, where the mission is one of a site."""
     of_site = [one for one in files if Path(one).suffix.lower().lstrip(".") in READERS]
-    return [one for one in of_site if one not in (name, *options.values())] if name in of_site else []
+    return [one for one in of_site if one != name] if name in of_site else []
 
 
 def _folder_of_plans(files: Mapping[str, str]) -> Path:

@@ -116,7 +116,8 @@ export class Ground {
       ({ id, type: type ?? action?.name ?? "", x, y, prerequisites }));
     this.types = shapedTypes(this.types, tasks);
     for (const task of tasks) task.shape = this.types.indexOf(task.type) % SHAPES.length;
-    this.stage.show({ ...groundOf(this.team.mission), ...this.under, robots, tasks });
+    const areas = areasOf([...this.team.tasks.values()]);
+    this.stage.show({ ...groundOf(this.team.mission), ...this.under, areas, robots, tasks });
     this.stage.theme = readTheme(this.host);
     this.showTasks();
   }
@@ -169,6 +170,13 @@ function shapedTypes(known, tasks) {
 }
 
 const laid = ({ id, services, slots = 1, position: [x, y, z] }) => ({ id, services, slots, x, y, z });
+
+// Each area that tasks cover once, however many tasks it is split into, with its holes.
+function areasOf(tasks) {
+  const covered = tasks.filter(({ action }) => action?.area);
+  const areas = covered.map(({ action: { area: corners, holes } }) => ({ corners, holes: holes ?? [] }));
+  return [...new Map(areas.map((area) => [JSON.stringify(area), area])).values()];
+}
 
 // Boundary, zones and stations of a plain mission.
 function groundOf({ map: chart, stations = [] }) {

@@ -1,4 +1,4 @@
-// What lies under robots and tasks: tiles, floor plan, grid, boundary, zones, and the scale bar.
+// What lies under robots and tasks: tiles, floor plan, grid, areas, boundary, zones, and the scale bar.
 
 import { niceStep } from "./view.js";
 
@@ -6,7 +6,9 @@ export function drawGround(context, view, scene, theme, pictures) {
   if (scene.tiles) pictures.drawTiles(context, view, scene.tiles);
   if (scene.image) pictures.drawFloor(context, view, scene.image);
   drawGrid(context, view, theme);
+  for (const area of scene.areas) drawArea(context, view, area, theme);
   if (scene.boundary) {
+    context.beginPath();
     trace(context, view, scene.boundary);
     context.lineWidth = 1.6;
     context.strokeStyle = theme.frame;
@@ -35,14 +37,28 @@ function drawGrid(context, view, theme) {
   context.stroke();
 }
 
+// Adds a polygon to the path that has been begun.
 function trace(context, view, corners) {
-  context.beginPath();
   corners.forEach(([x, y], k) => context[k ? "lineTo" : "moveTo"](view.x(x), view.y(y)));
   context.closePath();
 }
 
+// What tasks cover, without its holes.
+function drawArea(context, view, { corners, holes }, theme) {
+  context.beginPath();
+  for (const ring of [corners, ...holes]) trace(context, view, ring);
+  context.fillStyle = theme.area;
+  context.globalAlpha = 0.6;
+  context.fill("evenodd");
+  context.globalAlpha = 1;
+  context.lineWidth = 1;
+  context.strokeStyle = theme["area-edge"];
+  context.stroke();
+}
+
 // A zone is hatched where nobody may go, and only framed by dashes where some may.
 function drawZone(context, view, zone, theme) {
+  context.beginPath();
   trace(context, view, zone.corners);
   context.save();
   context.fillStyle = theme.zone;

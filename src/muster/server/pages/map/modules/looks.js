@@ -1,6 +1,6 @@
 // Colours of the page's theme, and how robots and tasks look: by place in the mission, and never by colour alone.
 
-const NAMES = ["paper", "panel", "ink", "quiet", "frame", "grid", "zone", "alarm", "accent", "open", "station", "service"];
+const NAMES = ["paper", "panel", "ink", "quiet", "frame", "grid", "zone", "alarm", "accent", "open", "station", "service", "area", "area-edge"];
 export const COLORS = 8;
 
 // Strokes of the lines of robots: after eight robots the colours come again with another stroke.

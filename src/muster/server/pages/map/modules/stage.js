@@ -10,7 +10,7 @@ import { Pictures } from "./pictures.js";
 import { Sketch } from "./sketch.js";
 import { boundsOf, View } from "./view.js";
 
-const EMPTY = { robots: [], tasks: [], stations: [], zones: [], boundary: null, image: null, tiles: null };
+const EMPTY = { robots: [], tasks: [], stations: [], zones: [], areas: [], boundary: null, image: null, tiles: null };
 const HANDLE = 5; // pixels, half the side of the handle at a corner of a zone
 const REACH = 8; // pixels around a mark within which it is meant
 
@@ -70,8 +70,9 @@ export class Stage {
   }
 
   bounds() {
-    const { boundary, image } = this.scene;
-    return boundsOf([...this.marks(), ...(boundary ?? []), ...(image ? this.pictures.floorCorners(image) : [])]);
+    const { areas, boundary, image } = this.scene;
+    const covered = areas.flatMap(({ corners }) => corners);
+    return boundsOf([...this.marks(), ...covered, ...(boundary ?? []), ...(image ? this.pictures.floorCorners(image) : [])]);
   }
 
   // Places of what is put on the ground: robots, tasks, stations, corners of zones.
