@@ -10,7 +10,7 @@ from pathlib import Path
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, Ring, layer_of, refused
 from muster.exchange.sites.file_sizes import read_bytes
-from muster.exchange.sites.xml_elements import Element, parse_xml
+from muster.exchange.sites.xml_elements import Element, parse_xml, titled
 
 _OWN = "Muster"
 _TEXTS = ("name", "type", "sym")
@@ -26,17 +26,19 @@ def read_gpx_layers(path: Path) -> Sequence[Layer]:
         Feature(_values(one), file, one.line, one.told("name"), Geometry("point", (((_coordinate(one, file),),),)))
         for one in root.all("wpt")
     ]
-    lines = [feature for one in root.children for feature in _line(one, file, own=own)]
-    return [layer_of(file, "", features) for features in (points, lines) if features]
+    drawn = [(one, list(_line(one, file, own=own))) for one in root.children if one.name in ("rte", "trk")]
+    lines = [feature for _, features in drawn for feature in features]
+    lost = tuple(titled(one) for one, features in drawn if not features)
+    layers = [layer_of(file, "", features) for features in (points, lines) if features]
+    return [*layers, Layer(file, "", (), (), lost)] if lost else layers
 
 
 def _line(element: Element, file: str, *, own: bool) -> Iterator[Feature]:
+    """A route or track; nothing, where it has less than two points."""
     if element.name == "rte":
         rings = [_ring(element.all("rtept"), file)]
-    elif element.name == "trk":
-        rings = [_ring(segment.all("trkpt"), file) for segment in element.all("trkseg")]
     else:
-        return
+        rings = [_ring(segment.all("trkpt"), file) for segment in element.all("trkseg")]
     pieces = tuple((ring,) for ring in rings if len(ring) > 1)
     if pieces:
         values = _values(element) | ({"kind": "route"} if own and element.name == "rte" else {})

@@ -113,9 +113,10 @@ def role_word(value: object) -> bool:
 
 
 def _roles_in(name: str) -> list[str]:
-    """The roles whose words stand in a name."""
+    """The roles whose words stand in a name; that a line is the route of a plan only its properties say."""
     folded = name.casefold().replace("no-fly", "nofly").replace("no fly", "nofly").replace("keep-out", "keepout")
-    return [_ROLE_OF[word] for word in _TOKEN.findall(folded) if word in _ROLE_OF]
+    found = [_ROLE_OF[word] for word in _TOKEN.findall(folded) if word in _ROLE_OF]
+    return [role for role in found if role != "route"]
 
 
 def _names_of(layer: Layer) -> list[str]:
