@@ -79,7 +79,7 @@ class Builder:
         self.built = Built({"schema": SCHEMA, "name": "site", **self._base})
         passed_over = len(entries) - len(self._entries)
         if passed_over:
-            self.built.notes.append(f"routes of a plan passed over: {passed_over}; Muster plans them anew")
+            self.built.notes.append(f"routes and areas of a plan passed over: {passed_over}; Muster plans them anew")
 
     def build(self) -> Built:
         """The whole mission."""

@@ -15,6 +15,7 @@ from muster.exchange.sites.xml_elements import Element, parse_xml, titled
 _OWN = "Muster"
 _TEXTS = ("name", "type", "sym")
 _UNSAID = {"sym": "symbol"}
+_OWN_UNSAID = {**_UNSAID, "type": "kind"}
 
 
 def read_gpx_layers(path: Path) -> Sequence[Layer]:
@@ -23,7 +24,9 @@ def read_gpx_layers(path: Path) -> Sequence[Layer]:
     root = parse_xml(read_bytes(path), file, "gpx", "GPX")
     own = root.attributes.get("creator") == _OWN
     points = [
-        Feature(_values(one), file, one.line, one.told("name"), Geometry("point", (((_coordinate(one, file),),),)))
+        Feature(
+            _values(one, own=own), file, one.line, one.told("name"), Geometry("point", (((_coordinate(one, file),),),))
+        )
         for one in root.all("wpt")
     ]
     drawn = [(one, list(_line(one, file, own=own))) for one in root.children if one.name in ("rte", "trk")]
@@ -41,13 +44,14 @@ def _line(element: Element, file: str, *, own: bool) -> Iterator[Feature]:
         rings = [_ring(segment.all("trkpt"), file) for segment in element.all("trkseg")]
     pieces = tuple((ring,) for ring in rings if len(ring) > 1)
     if pieces:
-        values = _values(element) | ({"kind": "route"} if own and element.name == "rte" else {})
+        values = _values(element, own=own) | ({"kind": "route"} if own and element.name == "rte" else {})
         yield Feature(values, file, element.line, element.told("name"), Geometry("line", pieces))
 
 
-def _values(element: Element) -> dict[str, object]:
+def _values(element: Element, *, own: bool) -> dict[str, object]:
     """Its texts, and those of its extensions."""
-    told: dict[str, object] = {_UNSAID.get(name, name): element.told(name) for name in _TEXTS if element.told(name)}
+    said_as = _OWN_UNSAID if own else _UNSAID
+    told: dict[str, object] = {said_as.get(name, name): element.told(name) for name in _TEXTS if element.told(name)}
     extensions = element.first("extensions")
     for one in () if extensions is None else extensions.within():
         if one.text.strip() and not one.children:
