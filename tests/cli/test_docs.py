@@ -106,3 +106,7 @@ def test_an_installation_without_documents(muster, monkeypatch):
     code, out, err = muster("docs")
     assert (code, out) == (2, "")
     assert err.startswith("documents: not in this installation; expected")
+
+
+def test_nothing_to_find_is_refused(muster):
+    assert muster("docs", "--find", " ") == (2, "", "--find: no words; expected some to look for\n")

@@ -19,6 +19,11 @@ def test_help_of_a_verb(verb, flag, muster):
     assert all(len(line) <= 80 for line in out.splitlines())
 
 
+@pytest.mark.parametrize("verb", VERBS)
+def test_no_marks_of_layout_in_help(verb, muster):
+    assert "\\b" not in muster(verb, "--help")[1]
+
+
 def test_help(muster):
     code, out, err = muster("--help")
     assert (code, err) == (0, "")

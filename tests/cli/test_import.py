@@ -56,6 +56,8 @@ def test_a_site_stands_where_a_mission_does(muster, files):
             "panels.csv: robots: missing; expected a sheet or file of robots: --robots FILE, or a file or",
         ),
         (["panels.csv", "--column", "lat"], "--column: lat; expected NAME=VALUE\n"),
+        (["panels.csv", "--column", "foo=name", "--robots", "robots.csv"], "--column: no key foo; did you mean "),
+        (["panels.csv", "--starts-at", "noon", "--robots", "robots.csv"], '--starts-at: starts_at: "noon"; expected a'),
         (["panels.csv", "--as", "panels=tsk"], "--as panels: tsk; expected one of task, robot, station"),
         (["panels.csv", "--origin", "here"], "--origin: here; expected latitude and longitude in degrees"),
         (["panels.csv", "-o", "panels.csv"], "panels.csv: given twice; expected a file that is neither read"),

@@ -251,7 +251,7 @@ def test_missions_by_names_patterns_folders_and_families(tmp_path, monkeypatch):
         ("6T-2R", "genetic:size=3", {}, "genetic has no parameter size"),
         ("6T-2R", [3], {}, "allocators: 3; expected a name"),
         ("6T-2R", "greedy", {"seeds": 0}, "seeds: 0; expected a number above 0"),
-        ("6T-2R", "greedy", {"seeds": [-1]}, "seeds: .*expected a number above 0"),
+        ("6T-2R", "greedy", {"seeds": [-1]}, "seeds: -1; expected a number above 0"),
         ("6T-2R", "greedy", {"jobs": 0}, "jobs: 0; expected a whole number of at least 1"),
         ("6T-2R", "greedy", {"time_limit": 0}, "time_limit: 0; expected seconds, above 0"),
         ("6T-2R", "greedy", {"time_limit": math.nan}, "time_limit: nan; expected seconds"),

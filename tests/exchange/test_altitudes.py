@@ -123,6 +123,12 @@ def test_texts_that_are_no_altitudes(text):
         altitudes_in([text])
 
 
+def test_one_height_for_each_robot():
+    for texts in (["r_0=30,r_0=40"], ["r_0=30", "r_0=30"]):
+        with pytest.raises(ParameterError, match="altitudes: r_0 twice; expected one height for each robot"):
+            altitudes_in(texts)
+
+
 @pytest.mark.parametrize(
     ("options", "line"),
     [

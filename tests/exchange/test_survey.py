@@ -111,3 +111,18 @@ def test_a_rover_has_way_points(case):
     _, _, files = case
     assert not surveys(files["rover.plan"])
     assert sum(item["command"] == 16 for item in files["rover.plan"]) >= 20
+
+
+def test_areas_and_holes_are_polygons_of_maps_and_no_zones_when_read_again(case, tmp_path):
+    mission, plan, _ = case
+    muster.export(mission, plan, "geojson", tmp_path / "field.geojson")
+    drawn = json.loads((tmp_path / "field.geojson").read_text(encoding="utf-8"))["features"]
+    kinds = [one["geometry"]["type"] for one in drawn if one["properties"]["kind"] in ("area", "hole")]
+    assert kinds == ["Polygon"] * 3
+    muster.export(mission, plan, "kml", tmp_path / "field.kml")
+    assert (tmp_path / "field.kml").read_text(encoding="utf-8").count("<Polygon>") == 3
+    for file in (tmp_path / "field.geojson", tmp_path / "field.kml"):
+        found = muster.read_site(file)
+        assert {task.id for task in found.mission.tasks} == {task.id for task in mission.tasks}
+        assert found.mission.map is None
+        assert "routes and areas of a plan passed over: 6; Muster plans them anew" in found.notes

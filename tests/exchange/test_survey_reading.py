@@ -123,6 +123,7 @@ INNER = "TransectStyleComplexItem"
         (lambda s: s.pop(INNER), f"{INNER}: missing; expected a mapping"),
         (lambda s: s.update(angle="north"), 'angle: "north"; expected degrees clockwise from north'),
         (lambda s: s.update(polygon=3), "polygon: 3; expected a list of corners"),
+        (lambda s: s["polygon"].__delitem__(slice(2)), "expected at least 3 corners"),
         (lambda s: s["polygon"].__setitem__(1, [200, 8]), "polygon[1]: [200, 8, 0.0]; expected a latitude"),
         (lambda s: s[INNER].update(Refly90Degrees=True), f"{INNER}.Refly90Degrees: true; expected false, and a second"),
         (lambda s: s[INNER].update(FollowTerrain=True), f"{INNER}.FollowTerrain: true; expected false, and heights"),

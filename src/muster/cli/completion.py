@@ -33,17 +33,20 @@ complete -o nosort -F %(complete_func)s %(prog_name)s
 add_completion_class(_Bash, "bash")
 
 
-@click.command()
+_HELP = """Print the script with which SHELL completes verbs, options, missions and files.
+
+\b
+  bash: eval "$(muster completion bash)"       in ~/.bashrc
+  zsh:  eval "$(muster completion zsh)"        in ~/.zshrc, after compinit
+  fish: muster completion fish > ~/.config/fish/completions/muster.fish
+"""
+
+
+@click.command(help=_HELP)
 @click.argument("shell", type=click.Choice(_SHELLS))
 @quiet_option
 def command(shell: str, quiet: bool, verbose: bool) -> None:
-    r"""Print the script with which SHELL completes verbs, options, missions and files.
-
-    \b
-      bash: eval "$(muster completion bash)"       in ~/.bashrc
-      zsh:  eval "$(muster completion zsh)"        in ~/.zshrc, after compinit
-      fish: muster completion fish > ~/.config/fish/completions/muster.fish
-    """
+    """Print the script with which a shell completes verbs, options, missions and files."""
     from muster.cli.main import muster
 
     kind = get_completion_class(shell)

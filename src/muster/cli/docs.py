@@ -39,6 +39,8 @@ def command(page: str | None, words: str | None, opens: bool, form: str, quiet: 
     """
     if words is not None and (page is not None or opens):
         raise ParameterError("--find: with a PAGE or --open; expected it alone")
+    if words is not None and not words.strip():
+        raise ParameterError("--find: no words; expected some to look for")
     entries = _entries()
     if words is not None:
         _print_found(words, form)

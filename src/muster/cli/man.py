@@ -11,15 +11,17 @@ import click
 from muster.cli.options import quiet_option
 from muster.mission.installation import DISTRIBUTION
 
+_HELP = """Print the manual page, for `man`.
 
-@click.command()
+\b
+  muster man > muster.1 && man ./muster.1
+"""
+
+
+@click.command(help=_HELP)
 @quiet_option
 def command(quiet: bool, verbose: bool) -> None:
-    r"""Print the manual page, for `man`.
-
-    \b
-      muster man > muster.1 && man ./muster.1
-    """
+    """Print the manual page."""
     click.echo(page(), nl=False)
 
 

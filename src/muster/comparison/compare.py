@@ -169,10 +169,12 @@ def _seeds(given: int | Iterable[int]) -> list[int]:
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ParameterError(f"seeds: {shown(given)}; expected how many, or which")
     found = list(dict.fromkeys(seeds))
-    if not found or not all(
-        isinstance(seed, int) and not isinstance(seed, bool) and 0 <= seed <= _LARGEST_SEED for seed in found
-    ):
-        raise ParameterError(f"seeds: {shown(given)}; expected a number above 0, or whole numbers from 0 to 2**64 - 1")
+    wrong = [
+        seed for seed in found if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= _LARGEST_SEED
+    ]
+    if wrong or not found:
+        told = shown(wrong[0] if wrong else given)
+        raise ParameterError(f"seeds: {told}; expected a number above 0, or whole numbers from 0 to 2**64 - 1")
     return found
 
 

@@ -108,7 +108,7 @@ def altitudes_in(texts: Iterable[str]) -> dict[str, float]:
     Raises
     ------
     ParameterError
-        for a text that is none.
+        for a text that is none, and for a robot that is named twice.
     """
     found: dict[str, float] = {}
     for text in texts:
@@ -116,6 +116,8 @@ def altitudes_in(texts: Iterable[str]) -> dict[str, float]:
         for piece in text.split(","):
             before, equals, metres = piece.rpartition("=")
             name += before if equals else f"{piece},"  # an id may hold a comma
+            if equals and name in found:
+                raise ParameterError(f"altitudes: {name} twice; expected one height for each robot")
             if equals:
                 found[name], name = _metres_in(metres, text), ""
         if name:

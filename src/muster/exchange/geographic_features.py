@@ -15,7 +15,7 @@ from muster.verification import RouteFigures, Verdict
 
 Properties = dict[str, Any]
 
-AREAS = ("boundary", "zone")
+AREAS = ("boundary", "zone", "area", "hole")
 """The kinds of features that are areas."""
 
 

@@ -15,6 +15,7 @@ from muster.exchange.qgc_fields import PlanFields, is_number
 from muster.mission.robots import MOST_PIXELS
 
 _LENS_KEYS = ("SensorWidth", "SensorHeight", "FocalLength", "ImageWidth", "ImageHeight")
+_LEAST_CORNERS = 3
 _LEFT_OUT = {"Refly90Degrees": "a second survey for the lanes across", "FollowTerrain": "heights above home"}
 
 
@@ -83,9 +84,12 @@ def read_survey(fields: PlanFields, item: dict[str, Any], at: str, number: int) 
     angle = item.get("angle")
     if not is_number(angle):
         raise fields.refused(f"{at}.angle", angle, "degrees clockwise from north")
+    corners = fields.corners(item, "polygon", f"{at}.polygon")
+    if len(corners) < _LEAST_CORNERS:
+        raise fields.refused(f"{at}.polygon", item["polygon"], f"at least {_LEAST_CORNERS} corners")
     return Survey(
         number=number,
-        corners=fields.corners(item, "polygon", f"{at}.polygon"),
+        corners=corners,
         height_m=fields.positive(calc, "DistanceToSurface", "metres above 0", f"{at_calc}.DistanceToSurface"),
         heading_deg=(90.0 - angle) % 180.0,
         width_m=fields.positive(calc, "AdjustedFootprintSide", "metres above 0", f"{at_calc}.AdjustedFootprintSide"),

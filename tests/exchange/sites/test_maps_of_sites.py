@@ -146,6 +146,33 @@ def test_kml_folders_and_heights_over_the_ground(tmp_path):
     assert read_site(tmp_path / "site.kmz", name="site").mission == mission
 
 
+def test_what_of_kml_has_no_place_in_a_mission_is_named(tmp_path, robots):
+    file = tmp_path / "site.kml"
+    point = writers.placemark("p", "<Point><coordinates>8.5416,47.3768</coordinates></Point>")
+    others = [writers.placemark("view", ""), "<Folder><NetworkLink><name>more</name></NetworkLink></Folder>"]
+    file.write_text(writers.kml(point, *others), encoding="utf-8")
+    found = read_site(file, robots=robots)
+    assert [task.id for task in found.mission.tasks] == ["p"]
+    assert f"{file}: passed over: NetworkLink more, Placemark view" in found.notes
+
+
+def test_a_file_of_nothing_but_links_is_refused(tmp_path):
+    file = tmp_path / "site.kml"
+    file.write_text(writers.kml("<NetworkLink><name>more</name></NetworkLink>"), encoding="utf-8")
+    with pytest.raises(MissionError, match=r"site.kml: nothing to read; expected points, areas or lines"):
+        read_site(file)
+
+
+def test_a_route_of_gpx_is_lanes_and_what_is_no_line_is_named(tmp_path, robots):
+    file = tmp_path / "walk.gpx"
+    route = '<rte><name>Route A</name><rtept lat="47.3768" lon="8.5416"/><rtept lat="47.3769" lon="8.5417"/></rte>'
+    stop = '<trk><name>stop</name><trkseg><trkpt lat="47.3768" lon="8.5416"/></trkseg></trk>'
+    file.write_text(writers.gpx(*writers.gpx_points(), route, stop), encoding="utf-8")
+    found = read_site(file, robots=robots)
+    assert len(found.mission.lanes.edges) == 1
+    assert f"{file}: passed over: trk stop" in found.notes
+
+
 def test_gpx_tracks_are_lanes_and_named_ones_areas(tmp_path, robots):
     file = tmp_path / "walk.gpx"
     ring = "".join(f'<trkpt lat="{lat}" lon="{lon}"/>' for lon, lat in [*YARD, YARD[0]])

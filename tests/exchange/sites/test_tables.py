@@ -144,7 +144,7 @@ def test_columns_named_by_hand_are_stronger(tmp_path, robots):
     assert (found.mission.tasks[0].id, found.mission.tasks[0].position) == ("7", (0.0, 0.0))
     with pytest.raises(ParameterError, match="--column lat: no heading Breit; did you mean 'Breite'"):
         read(tmp_path, robots, text, columns={"lat": "Breit"})
-    with pytest.raises(ParameterError, match="--column: priorty; expected did you mean 'priority'"):
+    with pytest.raises(ParameterError, match="--column: no key priorty; did you mean 'priority'"):
         read(tmp_path, robots, text, columns={"priorty": "no"})
 
 
@@ -179,6 +179,18 @@ def test_what_the_mission_refuses_is_named_by_the_column(tmp_path, robots):
 def test_tables_that_cannot_be_meant(tmp_path, robots, text, message):
     with pytest.raises(MissionError, match=message):
         read(tmp_path, robots, text)
+
+
+def test_titles_above_the_headings_are_passed_over_and_named(tmp_path, robots):
+    found = read(tmp_path, robots, "Roof 4;;\n;;\nspring;;\nname;lat;lon\nA;47,4;8,5\n", origin=(47.4, 8.5))
+    assert [task.id for task in found.mission.tasks] == ["A"]
+    assert f"{tmp_path / 'panels.csv'}: passed over: row 1 (Roof 4), row 3 (spring)" in found.notes
+
+
+@pytest.mark.parametrize("count", [1, 8])
+def test_a_table_of_one_column_has_no_titles(tmp_path, robots, count):
+    rows = "".join(f'"47.4, 8.5{k}"\n' for k in range(count))
+    assert len(read(tmp_path, robots, f"GPS\n{rows}").mission.tasks) == count
 
 
 def test_ids_from_names_rows_and_numbers(tmp_path, robots):

@@ -79,7 +79,7 @@ class Builder:
         self.built = Built({"schema": SCHEMA, "name": "site", **self._base})
         passed_over = len(entries) - len(self._entries)
         if passed_over:
-            self.built.notes.append(f"{passed_over} routes of a plan passed over: Muster plans them anew")
+            self.built.notes.append(f"routes and areas of a plan passed over: {passed_over}; Muster plans them anew")
 
     def build(self) -> Built:
         """The whole mission."""
@@ -348,6 +348,7 @@ class Builder:
         stated = self._options.starts_at
         if stated is not None:
             self.built.data["starts_at"] = stated
+            self.built.places[("starts_at",)] = "--starts-at", None
         if self.built.data.get("starts_at") is not None:
             return
         chosen, needed = chosen_start(self._entries)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
@@ -16,6 +16,7 @@ from muster.mission.errors import Finding
 
 _NEAR = 0.75
 """How much a heading that means nothing is like a key, to be taken for a slip."""
+_MOST_NAMED = 8
 _IN_DEGREES = ("lat", "lon", "lat_lon", "alt")
 _IN_METRES = ("x", "y", "position")
 _EXPECTED_PLACE = "columns of latitude and longitude (or x and y); --column lat=HEADING --column lon=HEADING names them"
@@ -66,6 +67,8 @@ def entries_of(
     notes: list[str],
 ) -> list[Entry]:
     """What a layer holds; what of it is not read is noted."""
+    if layer.passed_over:
+        notes.append(f"{layer.title}: passed over: {_some(layer.passed_over)}")
     features = list(_with_shapes(layer, findings))
     by_role: dict[str, list[Feature]] = {}
     for feature in features:
@@ -90,9 +93,16 @@ def entries_of(
 def _told_unread(names: list[str], roles: list[str]) -> str:
     """Headings that mean nothing, and for those that are nearly a key what that may be."""
     known = [key for role in roles for key in keys_of(role)]
-    near = {name: get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR) for name in names[:8]}
+    near = {name: get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR) for name in names[:_MOST_NAMED]}
     told = [f"{name} (did you mean {found[0]}?)" if found else name for name, found in near.items()]
-    return ", ".join(told) + (f", and {len(names) - 8} more" if len(names) > 8 else "")
+    return _some([*told, *names[_MOST_NAMED:]])
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of many names."""
+    return ", ".join(names[:_MOST_NAMED]) + (
+        f", and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
+    )
 
 
 def _with_shapes(layer: Layer, findings: list[Finding]) -> Iterator[Feature]:

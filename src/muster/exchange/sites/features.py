@@ -63,13 +63,15 @@ class Feature:
 class Layer:
     """Features that have their headings in common: a table, a sheet, a folder.
 
-    `name` is that of the sheet, folder or layer, if there is one; `headings` are in the order of the file.
+    `name` is that of the sheet, folder or layer, if there is one; `headings` are in the order of the file;
+    `passed_over` is what has no place in a mission.
     """
 
     file: str
     name: str
     headings: tuple[str, ...]
     features: tuple[Feature, ...]
+    passed_over: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:

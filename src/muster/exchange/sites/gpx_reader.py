@@ -10,11 +10,12 @@ from pathlib import Path
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, Ring, layer_of, refused
 from muster.exchange.sites.file_sizes import read_bytes
-from muster.exchange.sites.xml_elements import Element, parse_xml
+from muster.exchange.sites.xml_elements import Element, parse_xml, titled
 
 _OWN = "Muster"
 _TEXTS = ("name", "type", "sym")
 _UNSAID = {"sym": "symbol"}
+_OWN_UNSAID = {**_UNSAID, "type": "kind"}
 
 
 def read_gpx_layers(path: Path) -> Sequence[Layer]:
@@ -23,29 +24,34 @@ def read_gpx_layers(path: Path) -> Sequence[Layer]:
     root = parse_xml(read_bytes(path), file, "gpx", "GPX")
     own = root.attributes.get("creator") == _OWN
     points = [
-        Feature(_values(one), file, one.line, one.told("name"), Geometry("point", (((_coordinate(one, file),),),)))
+        Feature(
+            _values(one, own=own), file, one.line, one.told("name"), Geometry("point", (((_coordinate(one, file),),),))
+        )
         for one in root.all("wpt")
     ]
-    lines = [feature for one in root.children for feature in _line(one, file, own=own)]
-    return [layer_of(file, "", features) for features in (points, lines) if features]
+    drawn = [(one, list(_line(one, file, own=own))) for one in root.children if one.name in ("rte", "trk")]
+    lines = [feature for _, features in drawn for feature in features]
+    lost = tuple(titled(one) for one, features in drawn if not features)
+    layers = [layer_of(file, "", features) for features in (points, lines) if features]
+    return [*layers, Layer(file, "", (), (), lost)] if lost else layers
 
 
 def _line(element: Element, file: str, *, own: bool) -> Iterator[Feature]:
+    """A route or track; nothing, where it has less than two points."""
     if element.name == "rte":
         rings = [_ring(element.all("rtept"), file)]
-    elif element.name == "trk":
-        rings = [_ring(segment.all("trkpt"), file) for segment in element.all("trkseg")]
     else:
-        return
+        rings = [_ring(segment.all("trkpt"), file) for segment in element.all("trkseg")]
     pieces = tuple((ring,) for ring in rings if len(ring) > 1)
     if pieces:
-        values = _values(element) | ({"kind": "route"} if own and element.name == "rte" else {})
+        values = _values(element, own=own) | ({"kind": "route"} if own and element.name == "rte" else {})
         yield Feature(values, file, element.line, element.told("name"), Geometry("line", pieces))
 
 
-def _values(element: Element) -> dict[str, object]:
+def _values(element: Element, *, own: bool) -> dict[str, object]:
     """Its texts, and those of its extensions."""
-    told: dict[str, object] = {_UNSAID.get(name, name): element.told(name) for name in _TEXTS if element.told(name)}
+    said_as = _OWN_UNSAID if own else _UNSAID
+    told: dict[str, object] = {said_as.get(name, name): element.told(name) for name in _TEXTS if element.told(name)}
     extensions = element.first("extensions")
     for one in () if extensions is None else extensions.within():
         if one.text.strip() and not one.children:

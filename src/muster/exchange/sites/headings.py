@@ -118,7 +118,7 @@ def given_columns(given: Mapping[str, str], layers: Sequence[Layer]) -> dict[str
         keys = [key for role in ROLES if (key := _key_named(named, keys_of(role))) is not None]
         if not keys:
             hint, told = did_you_mean(named, known), ", ".join(known)
-            raise ParameterError(f"--column: {named}; expected {hint.removeprefix('; ') or f'one of {told}'}")
+            raise ParameterError(f"--column: no key {named}{hint or f'; expected one of {told}'}")
         if heading not in headings:
             hint = did_you_mean(heading, headings) or f"; the files have {', '.join(headings[:12]) or 'none'}"
             raise ParameterError(f"--column {named}: no heading {heading}{hint}")

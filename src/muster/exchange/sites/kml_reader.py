@@ -1,7 +1,7 @@
 """KML 2.2 (OGC 07-147r2) and KMZ as layers, one a folder: placemarks with their points, lines and areas.
 
-A height is read where `altitudeMode` says that it is one: over the ground, or absolute. Networks of links, overlays and
-models are passed over.
+A height is read where `altitudeMode` says that it is one: over the ground, or absolute. Networks of links, overlays
+and placemarks without a point, line or area (models, Google's tracks) are passed over, and named.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ from pathlib import Path
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, Ring, Shape, layer_of, refused
 from muster.exchange.sites.file_sizes import open_archive, read_bytes, unpacked
-from muster.exchange.sites.xml_elements import Element, parse_xml
+from muster.exchange.sites.xml_elements import Element, parse_xml, titled
 
 _WHAT = "KML"
 _KMZ = "KMZ: a ZIP archive with a .kml in it"
 _SHAPES: dict[str, Shape] = {"Point": "point", "LineString": "line", "LinearRing": "line", "Polygon": "area"}
 _LEAST = {"point": 1, "line": 2, "area": 3}
+_PASSED_OVER = ("NetworkLink", "GroundOverlay", "ScreenOverlay", "PhotoOverlay")
 _HEIGHTS = {"relativeToGround": True, "absolute": False}
 """Modes in which a height is one, and whether it is over the ground."""
 
@@ -38,10 +39,16 @@ def read_kmz_layers(path: Path) -> Sequence[Layer]:
 
 
 def _layers(data: bytes, file: str) -> list[Layer]:
+    root = parse_xml(data, file, "kml", _WHAT)
     groups: dict[str, list[Feature]] = {}
-    for folder, mark in _placemarks(parse_xml(data, file, "kml", _WHAT), ""):
-        groups.setdefault(folder, []).extend(_Placemark(mark, folder, file).features())
-    return [layer_of(file, folder, features) for folder, features in groups.items()]
+    lost = [element for element in root.within() if element.name in _PASSED_OVER]
+    for folder, mark in _placemarks(root, ""):
+        features = list(_Placemark(mark, folder, file).features())
+        groups.setdefault(folder, []).extend(features)
+        if not features:
+            lost.append(mark)
+    layers = [layer_of(file, folder, features) for folder, features in groups.items() if features]
+    return [*layers, Layer(file, "", (), (), tuple(map(titled, lost)))] if lost else layers
 
 
 def _placemarks(element: Element, folder: str) -> Iterator[tuple[str, Element]]:

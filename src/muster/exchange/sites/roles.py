@@ -32,10 +32,12 @@ _ROLE_OF = {word: role for role, words in _WORDS.items() for word in (role, *wor
 _FITTING = {
     "point": AT_POINTS,
     "line": ("lane", "route", "boundary", "zone", "survey"),
-    "area": ("zone", "boundary", "survey"),
+    "area": ("zone", "boundary", "survey", "route"),
 }
 _BY_SHAPE = {"point": "task", "line": "lane", "area": "zone"}
 _SAID = {"point": "a point", "line": "a line", "area": "an area"}
+_DRAWN = {"area": "route", "hole": "route"}
+"""Kinds in exported plans of what their tasks cover: passed over as routes are, and no zones."""
 _TOKEN = re.compile(r"[^\W\d_]+")
 
 
@@ -79,7 +81,8 @@ class Roles:
         if told is not None:
             if told in _FITTING[shape]:
                 return told
-            expected = f"one of {', '.join(_FITTING[shape])} for {_SAID[shape]}"
+            fitting = ", ".join(role for role in _FITTING[shape] if role != "route")
+            expected = f"one of {fitting} for {_SAID[shape]}"
             findings.append(feature.finding(said, told, expected))
             return _BY_SHAPE[shape]
         names = ([] if shape == "point" else [_name(feature)]) + _names_of(layer)
@@ -93,7 +96,8 @@ class Roles:
                 return role, f"--as {name}"
         for heading, value in feature.values.items():
             if isinstance(value, str) and heading.casefold() in (ROLE.name, *ROLE.names, "type"):
-                role = _ROLE_OF.get(value.casefold().replace("-", "").replace(" ", ""))
+                word = value.casefold().replace("-", "").replace(" ", "")
+                role = _ROLE_OF.get(word) or _DRAWN.get(word)
                 point = feature.geometry is None or feature.geometry.shape == "point"
                 if role is not None and not (
                     heading.casefold() == "type" and point and value.casefold() not in AT_POINTS
@@ -113,9 +117,10 @@ def role_word(value: object) -> bool:
 
 
 def _roles_in(name: str) -> list[str]:
-    """The roles whose words stand in a name."""
+    """The roles whose words stand in a name; that a line is the route of a plan only its properties say."""
     folded = name.casefold().replace("no-fly", "nofly").replace("no fly", "nofly").replace("keep-out", "keepout")
-    return [_ROLE_OF[word] for word in _TOKEN.findall(folded) if word in _ROLE_OF]
+    found = [_ROLE_OF[word] for word in _TOKEN.findall(folded) if word in _ROLE_OF]
+    return [role for role in found if role != "route"]
 
 
 def _names_of(layer: Layer) -> list[str]:

@@ -1,8 +1,10 @@
-"""Rows of cells as a layer: the first row that is not empty has the headings."""
+"""Rows of cells as a layer: the first row that is not empty has the headings; titles may stand above it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
+from textwrap import shorten
 
 from muster.exchange.sites.features import Feature, Layer, refused
 from muster.mission.value_types import shown
@@ -10,6 +12,9 @@ from muster.mission.value_types import shown
 Row = tuple[int, Sequence[object]]
 """The number of a row, from 1, and its cells."""
 MOST_ROWS = 1_000_000
+_LONGEST_TITLE = 60
+_MOST_TITLES = 5
+"""Rows of a single cell that may stand above the headings."""
 
 
 def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> Layer:
@@ -20,7 +25,7 @@ def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> L
     MissionError
         if a row has a cell beyond the headings, or a heading stands twice.
     """
-    filled = ((number, cells) for number, cells in rows if any(not is_empty(cell) for cell in cells))
+    titles, filled = _split_titles(row for row in rows if any(not is_empty(cell) for cell in row[1]))
     first = next(filled, None)
     if first is None:
         return Layer(file, name, (), ())
@@ -37,7 +42,29 @@ def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> L
         _require_headings(file, number, cells, headings, where)
         values = {heading: _tidy(cell) for heading, cell in zip(headings, cells, strict=False) if not is_empty(cell)}
         features.append(Feature(values, file, number, where))
-    return Layer(file, name, tuple(named), tuple(features))
+    return Layer(file, name, tuple(named), tuple(features), tuple(map(_told_title, titles)))
+
+
+def _split_titles(filled: Iterator[Row]) -> tuple[list[Row], Iterator[Row]]:
+    """The rows of a single cell that stand above all rows of more, and the rest; none, where no row has more."""
+    above: list[Row] = []
+    for row in filled:
+        if _has_several(row):
+            return above, chain([row], filled)
+        above.append(row)
+        if len(above) > _MOST_TITLES:
+            break
+    return [], chain(above, filled)
+
+
+def _told_title(row: Row) -> str:
+    number, cells = row
+    text = next(str(cell) for cell in cells if not is_empty(cell))
+    return f"row {number} ({shorten(text, _LONGEST_TITLE, placeholder=' ...')})"
+
+
+def _has_several(row: Row) -> bool:
+    return sum(not is_empty(cell) for cell in row[1]) > 1
 
 
 def is_empty(cell: object) -> bool:

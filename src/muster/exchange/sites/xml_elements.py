@@ -49,6 +49,11 @@ class Element:
             yield from child.within()
 
 
+def titled(element: Element) -> str:
+    """An element as messages name it: by its kind, and its name if it has one."""
+    return " ".join([element.name, *element.told("name").split()])
+
+
 def parse_xml(data: bytes, file: str, root: str, what: str) -> Element:
     """The root element of a document, which must have that name.
 
