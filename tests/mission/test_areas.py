@@ -47,7 +47,7 @@ def field(keys, more=""):
         (
             "area: [[0, 0], [10, 0]], width_m: 1",
             "area",
-            "[[0, 0], [10, 0]]; expected a list of at least 3, each [x, y] in metres",
+            "[[0, 0], [10, 0]]; expected a list of at least 3, each [x, y] in metres, or {lat_lon: [[lat, lon], ...]}",
         ),
         (
             f"{FIELD}, holes: [[[35, 10], [45, 10], [45, 20]]]",
@@ -185,3 +185,10 @@ def test_areas_do_not_move_and_what_comes_later_is_one_task():
 
 def vars_of(action):
     return {"name": action.name, "area": action.area, "width_m": action.width_m}
+
+
+def test_degrees_in_the_wrong_order_are_far_away(tmp_path):
+    corners = "[8.5, 47.4], [8.501, 47.4], [8.501, 47.401]"
+    found = complaints(field(f"area: {{lat_lon: [{corners}]}}, width_m: 1"), tmp_path=tmp_path)
+    assert [at for _, at, _ in found] == [f"tasks[0].action.area.lat_lon[{k}]" for k in range(3)]
+    assert "4944 km from origin_wgs84; expected a place within 1000 km of it: latitude comes first" in found[0][2]

@@ -8,6 +8,7 @@ is taken at the altitude of the origin, and its height over the plane of the map
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -20,6 +21,7 @@ from muster.mission.tasks import Action
 from muster.mission.value_types import INVALID, Fault, Path, is_list, shown
 
 _OTHER_PLACES = ("end_position", "entry", "exit", "pickup")
+_FARTHEST_KM = 1000.0
 _WORDS = (("x, y, z", "lat, lon, alt"), ("x, y", "lat, lon"))
 
 
@@ -60,7 +62,7 @@ def degrees_to_metres(data: object, faults: list[Fault]) -> Mapping[Path, InDegr
     origin = _origin(data, found[0], faults)
     read = [_read(place, faults) for place in found]
     for place, metres in zip(found, _metres(read, origin), strict=True):
-        place.put(metres)
+        place.put(metres if metres is INVALID else _at_hand(metres, place, faults))
     return {place.metres_at: place for place in found}
 
 
@@ -156,6 +158,16 @@ def _origin(data: object, first: InDegrees, faults: list[Fault]) -> Origin | Non
     wrong: list[Fault] = []
     origin: Origin = Record(Origin, "an origin").read(given, (), wrong)
     return None if wrong else origin
+
+
+def _at_hand(metres: list[float], place: InDegrees, faults: list[Fault]) -> Any:
+    """The metres; INVALID, and a fault, where they are so many that the plane of the map frame is of no use."""
+    away_km = math.hypot(*metres) / 1000
+    if away_km <= _FARTHEST_KM:
+        return metres
+    expected = f"a place within {_FARTHEST_KM:g} km of it: latitude comes first, then longitude"
+    faults.append(Fault(place.at, f"{shown(place.value)}, {away_km:.0f} km from origin_wgs84", expected))
+    return INVALID
 
 
 def _metres(places: Sequence[Any], origin: Origin | None) -> list[Any]:

@@ -6,7 +6,7 @@ Units are SI; positions are metres in the map frame (ENU: x east, y north, z up)
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -83,10 +83,12 @@ class Mission(MissionData):
         return f"<Mission {self.name}: {self._counts}, {self.rules.objective}>"
 
     def _repr_html_(self) -> str:
+        worked = any(task.actuation_cost for task in self.tasks)
+        of_tasks = ("type", "position", "actuation_cost" if worked else "duration_s", "prerequisites")
         return (
             html_line(f"Mission {self.name}: {self._counts}, objective {self.rules.objective}")
             + _html_table("Robots", self.robots, ("type", "position", "work_capacity", "skills"))
-            + _html_table("Tasks", self.tasks, ("type", "position", "actuation_cost", "prerequisites"))
+            + _html_table("Tasks", self.tasks, of_tasks)
             + (_html_table("Stations", self.stations, ("position", "services", "slots")) if self.stations else "")
         )
 
@@ -144,4 +146,5 @@ def _html_table(title: str, items: Sequence[Robot] | Sequence[Task] | Sequence[S
 def _in_cell(value: Any) -> Any:
     """A value as a cell shows it: what is nested as in a mission file."""
     flat = isinstance(value, tuple) and all(isinstance(item, str | float) for item in value)
-    return flow_text(plain(value)) if isinstance(value, Mapping | tuple) and not flat else value
+    nested = isinstance(value, Mapping | tuple) or is_dataclass(value)
+    return flow_text(plain(value)) if nested and not flat else value

@@ -54,6 +54,10 @@ class Corners(Many):
     kind: Position = Position(planar=True)
     minimum: int = 3
 
+    @property
+    def expected(self) -> str:
+        return f"{super().expected}, or {{lat_lon: [[lat, lon], ...]}}"
+
     def schema(self) -> JsonSchema:
         degrees = {"type": "array", "items": LatLon(planar=True).schema(), "minItems": self.minimum}
         return {"anyOf": [super().schema(), _in_degrees(degrees)]}

@@ -97,7 +97,7 @@ def test_the_overview_has_figures_robots_and_what_is_left_out(tmp_path):
         "tasks done 5 of 6",
         "Left out: 1 of 6 tasks",
         "skill, for every robot",
-        "2 tasks, 1 call at stations",
+        "2 tasks, 1 call at a station",
     ):
         assert word in page
 

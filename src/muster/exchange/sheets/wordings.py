@@ -99,7 +99,8 @@ def stops_words(sheet: Sheet) -> str:
     """`5 tasks, 1 call at a station`."""
     tasks = sum(not line.visit.is_station for line in sheet.lines)
     stations = len(sheet.lines) - tasks
-    return counted(tasks, "task") + (f", {counted(stations, 'call')} at stations" if stations else "")
+    where = "a station" if stations == 1 else "stations"
+    return counted(tasks, "task") + (f", {counted(stations, 'call')} at {where}" if stations else "")
 
 
 def places_words(mission: Mission) -> str:
