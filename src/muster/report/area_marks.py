@@ -26,7 +26,7 @@ def draw_areas(ax: Any, mission: Mission, *, spatial: bool) -> list[tuple[Any, s
         look = _HOLE | ({"facecolor": "white"} if cross_holes else {"facecolor": FAINT, "hatch": "xx"})
         for n, hole in enumerate(holes):
             ax.add_patch(Polygon(hole, zorder=0.7, gid=f"hole-{k}-{n}", **look))
-            entries["not to be covered" if cross_holes else "no way through"] = Patch(**look)
+            entries["not to be covered" if cross_holes else "hole, gone around"] = Patch(**look)
     return [(patch, label) for label, patch in entries.items()]
 
 

@@ -5,13 +5,14 @@ from dataclasses import replace
 import pytest
 from tests.exchange.sheets.crew import CREW, crew
 
-from muster import verify
+from muster import load, verify
 from muster.exchange.export_request import ExportOptions
 from muster.exchange.sheets.content import sheets_of
 from muster.exchange.sheets.instructions import at_task, plain
 from muster.exchange.sheets.times import Times
 from muster.mission.model import Action, Task
 from muster.mission.plan_reader import plan_of
+from muster.motion.actions import plan as motion_of
 from muster.verification import Stop
 
 FIELD = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0))
@@ -169,3 +170,20 @@ def test_times_without_a_start_are_those_since_then():
 )
 def test_plain_numbers(value, text):
     assert plain(value) == text
+
+
+def test_the_place_of_an_area_is_where_its_lanes_begin(tmp_path):
+    (tmp_path / "field.yaml").write_text(
+        """\
+schema: muster/1
+robots: [{id: r, position: [-5, 0]}]
+tasks: [{id: lawn, action: {name: coverage, width_m: 3, area: [[0, 0], [30, 0], [30, 9], [0, 9]]}}]
+""",
+        encoding="utf-8",
+    )
+    mission = load(tmp_path / "field.yaml")
+    plan = plan_of({"r": ["lawn"]})
+    (line,) = lines_of(sheets_of(mission, verify(mission, plan), ExportOptions(), plan), "r")
+    (lawn,) = mission.tasks
+    assert line.place == motion_of(lawn, mission.robots[0]).entry
+    assert line.place != lawn.position

@@ -19,6 +19,8 @@ from muster.exchange.task_times import late_s, stops_of
 from muster.mission.goods import by_commodity
 from muster.mission.model import Mission, Point, Robot, Station, Task
 from muster.mission.plan import Plan, Unassigned
+from muster.motion.actions import Impossible
+from muster.motion.actions import plan as motion_of
 from muster.verification import RouteFigures, Stop, Verdict
 
 _MOST_ROBOTS = 4  # that are named beside one reason
@@ -99,6 +101,13 @@ def sheets_of(mission: Mission, verdict: Verdict, options: ExportOptions, plan: 
     return Sheets(mission, verdict, plan, tuple(made.sheets()), tuple(_left_out(mission, verdict, plan)), notes)
 
 
+def _begin(task: Task, robot: Robot) -> Point:
+    if task.action is None or task.action.area is None:
+        return task.position
+    motion = motion_of(task, robot)
+    return task.position if isinstance(motion, Impossible) else (*motion.entry[:2], *task.position[2:])
+
+
 class _Maker:
     """What the sheets of all robots need."""
 
@@ -122,8 +131,8 @@ class _Maker:
             yield Sheet(robot, figures, altitude, lines, start)
 
     def _place(self, robot: Robot, stop: Stop, altitude: float | None) -> Point:
-        """Where the stop is; for a drone with a height of flight no lower than that."""
-        point = (self._stations if stop.is_station else self._tasks)[stop.name].position
+        """Where the stop is, of an area where its first lane begins; for a drone with a height of flight no lower."""
+        point = self._stations[stop.name].position if stop.is_station else _begin(self._tasks[stop.name], robot)
         if altitude is None:
             return point
         floor = (*robot.position, 0.0)[2] + altitude
