@@ -80,7 +80,9 @@ class Lanes:
         return replace(lanes, rows=rows, rest=unseen(rows))
 
     def _over_slivers(self) -> Floats:
-        """The rows, longer by slivers at their ends."""
+        """The rows, longer by slivers at their ends, but not into holes."""
+        import shapely
+
         _, south, _, north = self.region.seen.bounds
         rows = self.rows.copy()
         for piece in _pieces(self.rest, self.region, self.strips, self.width_m):
@@ -94,7 +96,9 @@ class Lanes:
                     rows[k, 1, 0] = max(rows[k, 1, 0], east)
                 if abs(begin - east) <= self.region.over_m:
                     rows[k, 0, 0] = min(rows[k, 0, 0], west)
-        return rows
+        inside = np.asarray(shapely.covers(self.region.within, shapely.linestrings(rows)))
+        found: Floats = np.where(inside[:, None, None], rows, self.rows)
+        return found
 
     def short(self) -> Floats:
         """(m, 2, 2) the ends of short lanes from which the rest is seen."""
