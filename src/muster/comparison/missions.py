@@ -14,13 +14,12 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.planning.loading import load
 
 MissionSpec = str | Path | Mission
 """A mission, a file, a pattern of files, a folder of mission files, a shipped name, or a family of random missions
 with its parameters: `uniform:tasks=40:count=20`. A text may hold several, with commas between them."""
-
-_SUFFIXES = (".yaml", ".yml")
 
 
 def missions_of(given: MissionSpec | Iterable[MissionSpec]) -> dict[str, Mission]:
@@ -85,6 +84,6 @@ def _of_pattern(pattern: str) -> Iterator[Mission]:
 
 def _of_path(path: Path) -> Iterator[Mission]:
     """The mission of a file; those of a folder of mission files; a folder of anything else as `load` reads it."""
-    inside = sorted(file for file in path.iterdir() if file.suffix.lower() in _SUFFIXES) if path.is_dir() else []
+    inside = sorted(file for file in path.iterdir() if file.suffix.lower() in YAML_SUFFIXES) if path.is_dir() else []
     for file in inside or [path]:
         yield load(file)

@@ -262,7 +262,4 @@ class _Reading:
                 speed = self._params(item, f"mission.items[{k}]")[1]
                 if is_number(speed) and speed > 0:
                     return float(speed)
-        speed = mission.get("hoverSpeed")
-        if not is_number(speed) or not speed > 0:
-            raise self._fields.refused("mission.hoverSpeed", speed, "metres a second above 0")
-        return float(speed)
+        return self._fields.positive(mission, "hoverSpeed", "metres a second above 0", "mission.hoverSpeed")

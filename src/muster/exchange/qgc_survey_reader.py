@@ -12,10 +12,11 @@ from typing import Any
 
 from muster.exchange import qgc_format as qgc
 from muster.exchange.qgc_fields import PlanFields, is_number
+from muster.mission.place_types import Corners
 from muster.mission.robots import MOST_PIXELS
 
 _LENS_KEYS = ("SensorWidth", "SensorHeight", "FocalLength", "ImageWidth", "ImageHeight")
-_LEAST_CORNERS = 3
+_LEAST_CORNERS = Corners().minimum
 _LEFT_OUT = {"Refly90Degrees": "a second survey for the lanes across", "FollowTerrain": "heights above home"}
 
 

@@ -14,6 +14,8 @@ from muster.mission.records import key_of, specified
 from muster.mission.source import IN_PYTHON
 from muster.mission.value_types import FileForm
 
+YAML_SUFFIXES = (".yaml", ".yml")
+"""How names of mission files in YAML end."""
 M = TypeVar("M", bound=MissionData)
 
 

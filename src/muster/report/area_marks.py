@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from muster.mission.model import Mission, Point
+from muster.mission.model import Mission, Point, Task
 from muster.report.styles import AREA, AREA_EDGE, FAINT, FRAME
 
 _HOLE: dict[str, Any] = {"edgecolor": FRAME, "linewidth": 0.8}
@@ -15,7 +16,7 @@ def draw_areas(ax: Any, mission: Mission, *, spatial: bool) -> list[tuple[Any, s
     from matplotlib.patches import Patch, Polygon
 
     entries: dict[str, Any] = {}
-    for k, (area, holes, cross_holes) in enumerate(_areas(mission)):
+    for k, (area, holes, cross_holes) in enumerate(areas_of(mission.tasks)):
         ground: dict[str, Any] = {"facecolor": AREA, "edgecolor": AREA_EDGE, "linewidth": 1.0}
         entries["area"] = Patch(**ground)
         if spatial:
@@ -32,10 +33,11 @@ def draw_areas(ax: Any, mission: Mission, *, spatial: bool) -> list[tuple[Any, s
 
 def area_corners(mission: Mission) -> list[Point]:
     """List the corners of all areas."""
-    return [corner for area, _, _ in _areas(mission) for corner in area]
+    return [corner for area, _, _ in areas_of(mission.tasks) for corner in area]
 
 
-def _areas(mission: Mission) -> list[tuple[tuple[Point, ...], tuple[tuple[Point, ...], ...], bool]]:
-    actions = (task.action for task in mission.tasks if task.action is not None)
+def areas_of(tasks: Iterable[Task]) -> list[tuple[tuple[Point, ...], tuple[tuple[Point, ...], ...], bool]]:
+    """Each area that tasks cover once, however many it is split into: corners, holes, whether holes are crossed."""
+    actions = (task.action for task in tasks if task.action is not None)
     found = [(action.area, action.holes, action.cross_holes) for action in actions if action.area is not None]
     return list(dict.fromkeys(found))

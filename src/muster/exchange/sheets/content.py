@@ -102,6 +102,7 @@ def sheets_of(mission: Mission, verdict: Verdict, options: ExportOptions, plan: 
 
 
 def _begin(task: Task, robot: Robot) -> Point:
+    """Where the robot begins the task: of an area, with the first lane."""
     if task.action is None or task.action.area is None:
         return task.position
     motion = motion_of(task, robot)

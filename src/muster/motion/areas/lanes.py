@@ -76,8 +76,8 @@ class Lanes:
             return cast("Surface", shapely.difference(region.seen, shapely.union_all(swaths(rows, side_by_side))))
 
         lanes = cls(region, width_m, count, rows, numbers, unseen(rows))
-        rows = lanes._over_slivers()
-        return replace(lanes, rows=rows, rest=unseen(rows))
+        longer = lanes._over_slivers()
+        return lanes if np.array_equal(longer, rows) else replace(lanes, rows=longer, rest=unseen(longer))
 
     def _over_slivers(self) -> Floats:
         """The rows, longer by slivers at their ends, but not into holes."""

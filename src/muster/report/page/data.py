@@ -17,6 +17,7 @@ from muster.mission.model import Map, Station, Task, Zone
 from muster.mission.stations import station_sign
 from muster.motion.grid import Grid
 from muster.report.activity_spans import spans
+from muster.report.area_marks import areas_of
 from muster.report.level_lines import recorded_level
 from muster.report.page.distances import nearest
 from muster.report.record import Recording, Tracks
@@ -210,9 +211,8 @@ def _map(chart: Map | None, image: Grid | None) -> dict[str, Any] | None:
 
 
 def _areas(tasks: Iterable[Task]) -> list[list[list[list[int]]]]:
-    """Each area that is to be covered once, however many tasks it is split into: its corners, then those of holes."""
-    actions = [task.action for task in tasks if task.action is not None]
-    areas = dict.fromkeys((action.area, *action.holes) for action in actions if action.area is not None)
+    """The areas that tasks cover: of each its corners, then those of its holes."""
+    areas = dict.fromkeys((area, *holes) for area, holes, _ in areas_of(tasks))
     return [[[_millimetres(corner) for corner in ring] for ring in area] for area in areas]
 
 

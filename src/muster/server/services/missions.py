@@ -22,6 +22,7 @@ from muster.exchange.mission_control import (
 from muster.exchange.sites.readers import READERS
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.ignorable_rules import ignored_rules
+from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
 from muster.server.services.uploads import (
@@ -34,7 +35,6 @@ from muster.server.services.uploads import (
 )
 from muster.server.store import Store
 
-_READ_AS_THEY_ARE = (".yaml", ".yml")
 _CONVERTED = (*(f".{name}" for name in READERS), ".tsp", ".atsp", ".vrp", ".txt", ".plan")
 
 
@@ -217,11 +217,11 @@ class Missions:
             require_file_name(filename)
             path = PurePath(filename)
             site: list[str] = []
-            if path.suffix.lower() in _READ_AS_THEY_ARE:
+            if path.suffix.lower() in YAML_SUFFIXES:
                 text, kept = as_text(filename, data), dict(beside or {})
                 site = site_files(text, kept)
             elif path.suffix.lower() not in _CONVERTED:
-                expected = f"a name that ends in {', '.join((*_READ_AS_THEY_ARE, *_CONVERTED))}"
+                expected = f"a name that ends in {', '.join((*YAML_SUFFIXES, *_CONVERTED))}"
                 raise ParameterError(f"{filename}: no mission; expected {expected}")
             if site or path.suffix.lower() in _CONVERTED:
                 files = {**(beside or {}), filename: data}

@@ -9,7 +9,7 @@ from typing import Any
 from nicegui import events, ui
 
 from muster.exchange.sites.readers import READERS
-from muster.mission.yaml_writer import flow_text
+from muster.mission.yaml_writer import YAML_SUFFIXES, flow_text
 from muster.server.pages.buttons import once
 from muster.server.pages.notices import errors_shown, warn
 from muster.server.pages.visitor import the_services, the_user
@@ -40,8 +40,7 @@ _STARTS = {
     "/3-D": (EMPTY_IN_SPACE, "A small start in 3-D: two drones, one task"),
 }
 _SITES = tuple(f".{name}" for name in READERS.shipped)
-_YAML = (".yaml", ".yml")
-_ACCEPT = ",".join((*_YAML, *_SITES, ".tsp,.atsp,.vrp,.txt,.plan,.png,.pgm,.jpg"))
+_ACCEPT = ",".join((*YAML_SUFFIXES, *_SITES, ".tsp,.atsp,.vrp,.txt,.plan,.png,.pgm,.jpg"))
 _MOST_BYTES = 16 * 2**20
 _REJECTED = "entries => emit(entries.map(entry => [entry.failedPropValidation, entry.file.name, entry.file.size]))"
 _CSV = (  # as `mission.thesis_csv` reads them
@@ -147,7 +146,7 @@ def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str,
     kind = PurePath(name).suffix.lower()
     if kind in (".tsp", ".atsp"):
         return {"salesmen": salesmen, "depot": "1"}
-    return dict(beside) if kind in (*_YAML, *_SITES) else {}
+    return dict(beside) if kind in (*YAML_SUFFIXES, *_SITES) else {}
 
 
 def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
@@ -159,6 +158,6 @@ def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
         if named_so and len(names) > 1:
             beside[kind] = named_so[0]
     rest = [name for name in names if name not in beside.values()]
-    kinds = (_YAML, (".tsp", ".atsp", ".vrp", ".txt", ".plan", *_SITES))
+    kinds = (YAML_SUFFIXES, (".tsp", ".atsp", ".vrp", ".txt", ".plan", *_SITES))
     rest.sort(key=lambda name: next((k for k, ends in enumerate(kinds) if name.lower().endswith(ends)), len(kinds)))
     return rest[0], beside

@@ -10,12 +10,11 @@ from muster import load
 from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError
 from muster.mission.value_types import shown
-from muster.mission.yaml_writer import yaml_text
+from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 from muster.planning.importing import read_site
 from muster.server.work.missions import written_files
 
-_YAML = (".yaml", ".yml")
-_MISSIONS = (*_YAML, ".tsp", ".atsp", ".vrp", ".txt", ".plan")
+_MISSIONS = (*YAML_SUFFIXES, ".tsp", ".atsp", ".vrp", ".txt", ".plan")
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")
 
 
