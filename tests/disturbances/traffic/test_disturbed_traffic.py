@@ -5,7 +5,7 @@ from collections import Counter
 from tests.disturbances.traffic.script import STOPS
 from tests.disturbances.traffic.trial import trial
 
-SEEDS = (3, 8, 10, 12, 16, 20, 22, 24, 260, 922, 1219, 1363)
+SEEDS = (3, 8, 10, 12, 16, 20, 22, 24, 260, 922, 1219, 1363, 1613, 1694, 3084, 3154, 3384, 3438)
 
 
 def test_teams_in_narrow_places_get_through_whatever_happens():
