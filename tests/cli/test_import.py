@@ -53,7 +53,7 @@ def test_a_site_stands_where_a_mission_does(muster, files):
         (["none.csv"], "none.csv: No such file or directory; expected a file to read\n"),
         (
             ["panels.csv"],
-            "panels.csv: robots: missing; expected a sheet or file of robots: --robots FILE, or a file or",
+            "panels.csv: robots: missing; expected a sheet or file of robots whose name says so (robots.csv), or",
         ),
         (["panels.csv", "--column", "lat"], "--column: lat; expected NAME=VALUE\n"),
         (["panels.csv", "--column", "foo=name", "--robots", "robots.csv"], "--column: no key foo; did you mean "),

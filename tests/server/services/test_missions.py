@@ -29,7 +29,7 @@ class Worker:
     async def run(self, task, arguments):
         self.asked.append((task, arguments))
         if task == "convert":
-            return {"text": "name: converted"}
+            return {"text": "name: converted", "needs": [], "notes": ["one", "two"]}
         text = arguments["mission"]["text"]
         if "bad" in text:
             return {"errors": [FINDING], "impossible": [], "summary": None, "mission": None, "floor": None}
@@ -157,7 +157,8 @@ def test_who_may_only_watch(missions, store):
 def test_uploads(missions, worker):
     async def story():
         assert (await missions.upload(ANN, "Some yard.yaml", b"\xef\xbb\xbfrobots: []")).mission == "Some-yard"
-        assert (await missions.upload(ANN, "tasks.csv", b"id,x\n")).text == "name: converted"
+        converted = await missions.upload(ANN, "tasks.csv", b"id,x\n")
+        assert (converted.text, converted.note) == ("name: converted", "one\ntwo")
         assert worker.asked[-2] == ("convert", {"name": "tasks.csv", "files": {"tasks.csv": "aWQseAo="}})
         await missions.upload(ANN, "t.csv", b"", {"r.csv": b"r"}, robots="r.csv")
         files = {"r.csv": "cg==", "t.csv": ""}

@@ -174,6 +174,8 @@ def test_the_files_of_a_site_are_one_mission(asked):
     mission = parse_yaml(answer["text"], Path("panels.yaml"))
     assert (answer["name"], answer["needs"]) == ("panels", [])
     assert (len(mission.tasks), len(mission.robots), len(mission.map.zones)) == (3, 1, 1)
+    assert answer["notes"][:3] == ["panels.csv: 3 tasks", "fences.geojson: 1 zone", "robots.csv: 1 robot"]
+    assert answer["notes"][3].startswith("origin_wgs84 chosen: ")
 
 
 def test_the_files_of_a_site_are_added_to_a_mission(asked):

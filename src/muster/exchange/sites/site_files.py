@@ -22,7 +22,7 @@ from muster.mission.thesis_csv import suitability_table
 from muster.mission.yaml_writer import file_data
 
 _FROM_TEAM = ("robots", "origin_wgs84", "starts_at")
-_ROBOTS = "a sheet or file of robots: --robots FILE, or a file or sheet whose name says so (robots.csv)"
+_ROBOTS = "a sheet or file of robots whose name says so (robots.csv), or --robots FILE of the command"
 
 
 @dataclass(frozen=True)

@@ -205,7 +205,8 @@ class Missions:
         """Create a mission from a file: YAML as it is; files of sites, of the field and of QGroundControl converted.
 
         `beside` are further files that the file needs, or those of a site that are added to it. `options` are those of
-        the worker task `convert`: `robots` and `suitability` (names of files of `beside`), `salesmen`, `depot`.
+        the worker task `convert`: `robots` and `suitability` (names of files of `beside`), `salesmen`, `depot`. What
+        was read and chosen becomes the note of the version.
 
         Raises
         ------
@@ -217,6 +218,7 @@ class Missions:
             require_file_name(filename)
             path = PurePath(filename)
             site: list[str] = []
+            note = ""
             if path.suffix.lower() in YAML_SUFFIXES:
                 text, kept = as_text(filename, data), dict(beside or {})
                 site = site_files(text, kept)
@@ -225,25 +227,32 @@ class Missions:
                 raise ParameterError(f"{filename}: no mission; expected {expected}")
             if site or path.suffix.lower() in _CONVERTED:
                 files = {**(beside or {}), filename: data}
-                text, kept = await self._converted(filename, files, options | ({"site": site} if site else {}))
-            return await self._create(who, text, kept, None, file=path.stem)
+                text, kept, note = await self._converted(filename, files, options | ({"site": site} if site else {}))
+            return await self._create(who, text, kept, None, file=path.stem, note=note)
 
     async def _converted(
         self, name: str, files: Mapping[str, bytes], options: Mapping[str, Any]
-    ) -> tuple[str, dict[str, bytes]]:
-        """The mission that a worker makes of files, and those of them that it goes on to need."""
+    ) -> tuple[str, dict[str, bytes], str]:
+        """The mission that a worker makes of files, those of them that it goes on to need, and what it says of them."""
         check_sizes("", files)
         packed = {file: base64.b64encode(content).decode("ascii") for file, content in files.items()}
         made = await self._pool.run("convert", {"name": name, "files": packed, **options})
-        return made["text"], {file: files[file] for file in made.get("needs", ())}
+        return made["text"], {file: files[file] for file in made["needs"]}, "\n".join(made["notes"])
 
     async def _create(
-        self, who: User, text: str, files: Mapping[str, bytes], name: str | None, file: str = "mission"
+        self,
+        who: User,
+        text: str,
+        files: Mapping[str, bytes],
+        name: str | None,
+        *,
+        file: str = "mission",
+        note: str = "",
     ) -> MissionVersion:
         summary = await self._summary(text, files, name or file)
         called = name or str(summary["name"])
         return await asyncio.to_thread(
-            lambda: self._table.create(called, text, files, summary, who.name, reserved=shipped_entries())
+            lambda: self._table.create(called, text, files, summary, who.name, note, reserved=shipped_entries())
         )
 
     async def _summary(self, text: str, files: Mapping[str, bytes], name: str) -> dict[str, Any]:

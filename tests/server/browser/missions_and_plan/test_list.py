@@ -1,5 +1,7 @@
 """Missions are found in the list, copied, deleted and taken back."""
 
+import re
+
 import pytest
 from tests.server.browser.missions_and_plan.plan_view import own_missions
 
@@ -27,3 +29,28 @@ def test_missions_are_found_made_deleted_and_taken_back(watched, page):
     page.get_by_role("button", name="Undo").click()
     row.wait_for()
     assert copied(watched) == ["6T-2R copy"]
+
+
+ROBOTS = b"id,lat,lon\nr_0,47.0001,8.0001\n"
+PANELS = b"id,lat,lon,Remarks\nA1,47.0002,8.0002,dirty\nA2,47.0003,8.0001,\n"
+
+
+def test_what_was_read_of_the_files_of_a_site_is_said_before_they_are_opened(watched, page):
+    watched.open("/")
+    page.get_by_role("button", name="New mission").click()
+    files = [
+        {"name": name, "mimeType": "text/csv", "buffer": data}
+        for name, data in (("panels.csv", PANELS), ("robots.csv", ROBOTS))
+    ]
+    page.set_input_files("input[type=file]", files[:1])
+    page.get_by_text("robots: missing; expected a sheet or file of robots").wait_for()
+    page.set_input_files("input[type=file]", files)
+    for words in (
+        "panels.csv: 2 tasks",
+        "robots.csv: 1 robot",
+        re.compile("origin_wgs84 chosen: "),
+        re.compile("Remarks"),
+    ):
+        page.get_by_text(words).first.wait_for()
+    page.get_by_role("button", name="Open it").click()
+    page.wait_for_url("**/plan/panels")

@@ -8,6 +8,7 @@ from typing import Any
 
 from nicegui import events, ui
 
+from muster.exchange.mission_control import MissionVersion
 from muster.exchange.sites.readers import READERS
 from muster.mission.yaml_writer import YAML_SUFFIXES, flow_text
 from muster.server.pages.buttons import once
@@ -138,7 +139,23 @@ async def _upload(files: dict[str, bytes], salesmen: int) -> None:
         options = options_of(name, beside, salesmen)
         rest = {other: data for other, data in files.items() if other != name}
         made = await the_services().missions.upload(the_user(), name, files[name], rest, **options)
-        ui.navigate.to(f"/plan/{made.mission}")
+        if made.note:
+            _tell(made)
+        else:
+            ui.navigate.to(f"/plan/{made.mission}")
+
+
+def _tell(made: MissionVersion) -> None:
+    """Show what was read from files, and what was chosen, before the mission is opened."""
+    with ui.dialog().props("persistent") as dialog, ui.card().classes("making"):
+        ui.label(f"{made.mission}: made").classes("dialog-title")
+        with ui.element("ul").classes("notes small"):
+            for line in made.note.splitlines():
+                with ui.element("li"):
+                    ui.label(line)
+        with ui.element("div").classes("dialog-buttons"):
+            ui.button("Open it", on_click=lambda: ui.navigate.to(f"/plan/{made.mission}")).props("unelevated")
+    dialog.open()
 
 
 def options_of(name: str, beside: Mapping[str, str], salesmen: int) -> dict[str, Any]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from muster import load
 from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError
+from muster.mission.model import Mission
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 from muster.planning.importing import read_site
+from muster.planning.loading import load_noted
 from muster.server.work.missions import written_files
 
 _MISSIONS = (*YAML_SUFFIXES, ".tsp", ".atsp", ".vrp", ".txt", ".plan")
@@ -19,12 +20,13 @@ _OPTIONS = ("robots", "suitability", "salesmen", "depot")
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"name", "files", ...}` -> `{"text", "name", "needs"}`: a mission as YAML, its name, the files that it names.
+    """`{"name", "files", ...}` -> `{"text", "name", "needs", "notes"}`: a mission as YAML, its name, files it names.
 
     `name` is which of `files` (base64, by name) is the mission: a task-list CSV or a file of a site, perhaps with
     `robots` and `suitability`, which name others of them, and all other files of a site are added; an instance file,
     perhaps with `salesmen` and `depot`, of which TSPLIB needs the first; a `.plan` of QGroundControl, of which all
-    `.plan` files are taken together; a mission in YAML, to which the files named by `site` are added.
+    `.plan` files are taken together; a mission in YAML, to which the files named by `site` are added. `notes` are what
+    was read from files of a site, what was chosen, and what was not read.
     """
     name, files = arguments["name"], arguments["files"]
     options = {key: arguments[key] for key in _OPTIONS if arguments.get(key) is not None}
@@ -40,11 +42,15 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     others = [one for one in site or _others_of_site(name, files) if one not in options.values()]
     if site or others:
         beside = {key: options[key] for key in ("robots", "suitability") if key in options}
-        mission = read_site(name, *others, **beside).mission
+        found = read_site(name, *others, **beside)
         kept = sorted(set(files) - {name, *others, *beside.values()}) if site else []
-        return {"text": yaml_text(mission), "name": mission.name, "needs": kept}
-    mission = load(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
-    return {"text": yaml_text(mission), "name": mission.name, "needs": sorted(set((mission.travel or {}).values()))}
+        return _answer(found.mission, kept, (*found.counts, *found.notes))
+    noted = load_noted(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
+    return _answer(noted.mission, sorted(set((noted.mission.travel or {}).values())), noted.notes)
+
+
+def _answer(mission: Mission, needs: Sequence[str], notes: Sequence[str]) -> dict[str, Any]:
+    return {"text": yaml_text(mission), "name": mission.name, "needs": needs, "notes": notes}
 
 
 def _others_of_site(name: str, files: Mapping[str, str]) -> list[str]:
