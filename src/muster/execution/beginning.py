@@ -91,6 +91,11 @@ class Beginning:
         """Why a task can never begin any more; None: it still can."""
         return next((found for name in self.ledger.unit(task) for found in self._missed(name, now)), None)
 
+    def in_time_until_s(self, task: str, now: float) -> float:
+        """Until when a task that is not missed now cannot be: until then no window closes, and no time is over."""
+        ends = [end for name in self.ledger.unit(task) for end in self._time_limits_s(name, now)]
+        return min((end for end in ends if end >= now), default=math.inf)
+
     def present(self, task: str) -> list[RobotState]:
         """The robots that wait at a task."""
         return [state for state in self.assigned(task) if _waits_at(state, task)]
@@ -145,6 +150,17 @@ class Beginning:
                 yield Missed(
                     "prerequisite", f"prerequisite: not begun within {within} after {before}, ended at {ended}"
                 )
+
+    def _time_limits_s(self, name: str, now: float) -> Iterator[float]:
+        """The last moments of a task's windows, deadline and lags; now, of a lag that has not begun."""
+        task = self.ledger.tasks[name]
+        yield from (last + TIME_ROUNDING_S for _, last in task.window_s if last is not None)
+        if task.deadline_s is not None:
+            yield task.deadline_s + TIME_ROUNDING_S
+        limits = self.ledger.lag_limits(name)
+        yield from (latest + TIME_ROUNDING_S for _, latest in limits.values())
+        if len(limits) < len(task.lags):
+            yield now
 
 
 def next_begin(tasks: Sequence[Task], now: float) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.execution.changes import Change
+from muster.execution.robot_energy import RobotEnergy
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.station_calls import Call
 from muster.execution.stations import Stations
@@ -108,24 +109,25 @@ class EnergyWatch:
         energy = state.energy
         if energy is None or energy.share >= _FULL or state.charged_idle:
             return None
-        found = self._nearest(state)
-        if found is None:
+        short = self._is_short_of_home(state)
+        if not (short or self.on_duty() or has_tasks_without_robot(self.ledger, self.crew)):
             return None
-        station, needed = found
-        if self._is_low(state, needed, station):
-            return Call(station.id, None, planned=False)
+        found = self._nearest(state)
+        if found is not None and (short or self._is_low(energy, *found)):
+            return Call(found[0].id, None, planned=False)
         return None
 
-    def _is_low(self, state: RobotState, to_station: float, station: Station) -> bool:
-        energy = state.energy
-        assert energy is not None
-        capacity = energy.battery.capacity
-        if state.home is not None and not state.at_home:
-            home = self._usage(state, state.home)
-            if home is not None and energy.above_reserve < energy.drain * home:
-                return True
-        if not (self.on_duty() or has_tasks_without_robot(self.ledger, self.crew)):
+    def _is_short_of_home(self, state: RobotState) -> bool:
+        """Whether the energy of a robot that is to go home does not bring it there."""
+        if state.home is None or state.at_home:
             return False
+        assert state.energy is not None
+        home = self._usage(state, state.home)
+        return home is not None and state.energy.above_reserve < state.energy.drain * home
+
+    def _is_low(self, energy: RobotEnergy, station: Station, to_station: float) -> bool:
+        """Whether a robot for which there may be work had better charge first."""
+        capacity = energy.battery.capacity
         if energy.above_reserve < energy.drain * to_station + _LOW * capacity:
             return True
         order = self._mean_usage(capacity)

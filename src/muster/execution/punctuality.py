@@ -30,29 +30,36 @@ class Punctuality:
     crew: Mapping[str, RobotState]
     beginning: Beginning
     _planned_s: dict[str, float] = field(default_factory=dict)
+    _in_time_until_s: dict[str, float] = field(default_factory=dict)  # until when each task need not be looked at
+    _revision: int = -1  # of the ledger, when that was found
     _timed: bool = False
 
     def expect(self, forecast: Forecast, now: float) -> None:
         """Note when tasks are going to begin by the routes as they are now."""
         self._timed = self.ledger.is_timed
         self._planned_s = (forecast.begins(now) or {}) if self._timed else {}
+        self._in_time_until_s = {}
 
     def look(self, now: float) -> Iterator[Change]:
         """Tasks that were not begun in time: those of routes ask for a new plan."""
         if not self._timed:
             return
-        routed = {name for state in self.crew.values() if not state.out for name in state.route}
-        for task in self.ledger.open:
-            if task.id in self.ledger.starts_s or task.id in self.ledger.expired:
+        if self._revision != self.ledger.revision:
+            self._in_time_until_s, self._revision = {}, self.ledger.revision
+        for task in list(self.ledger.tasks.values()):
+            if now <= self._in_time_until_s.get(task.id, -math.inf):
+                continue
+            if task.id in self.ledger.starts_s or task.id in self.ledger.expired or not self.ledger.is_open(task.id):
                 continue
             missed = self.beginning.missed(task.id, now)
             if missed is not None:
                 self.ledger.expire(task.id, missed.reason)
             else:
+                self._in_time_until_s[task.id] = self.beginning.in_time_until_s(task.id, now)
                 missed = self._missed_window(task.id, now)
             if missed is not None:
                 self.ledger.missed.append(MissedTask(task.id, now, missed.reason, missed.next_s))
-                if task.id in routed:
+                if self._is_routed(task.id):
                     yield Change(
                         MISSED[missed.rule], {"task": task.id, "reason": missed.reason, "next_s": missed.next_s}
                     )
@@ -88,13 +95,16 @@ class Punctuality:
     def _waiting(self) -> list[RobotState]:
         return [state for state in self.crew.values() if state.activity is Activity.WAITING and not state.out]
 
+    def _is_routed(self, task: str) -> bool:
+        return any(task in state.route for state in self.crew.values() if not state.out)
+
     def _missed_window(self, name: str, now: float) -> Missed | None:
         """A window that was meant has closed, and another one opens later."""
         task, planned = self.ledger.tasks[name], self._planned_s.get(name)
         if planned is None or len(task.window_s) < 2:
             return None
         for first, last in task.window_s:
-            if last is not None and first - TIME_ROUNDING_S <= planned <= last < now - TIME_ROUNDING_S:
+            if last is not None and first - TIME_ROUNDING_S <= planned <= last and now > last + TIME_ROUNDING_S:
                 del self._planned_s[name]
                 opens = next_begin([task], now)
                 return Missed("window", f"window: closed at {last:,g} s; the next is open from {opens:,g} s on", opens)

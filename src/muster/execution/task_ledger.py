@@ -6,6 +6,7 @@ Entries are removed only of standing fleets, and live on in sums (`Retired`).
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -104,7 +105,9 @@ class Ledger:
     missed: list[MissedTask] = field(default_factory=list)
     expired: dict[str, str] = field(default_factory=dict)  # tasks that can never begin any more, and why
     retired: Retired = field(default_factory=Retired)
+    revision: int = 0  # how often tasks came, went or were opened again
     _units: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    _must_follow: dict[str, list[str]] | None = None  # by task: those that must begin within some time after it
 
     @classmethod
     def of(cls, tasks: Iterable[Task], needs_order: bool, ignored: Collection[str] = ()) -> Ledger:
@@ -123,7 +126,7 @@ class Ledger:
             self.expired[task.id] = late
             task = replace(task, starts_with=())
         self.tasks[task.id] = task
-        self._units = {}
+        self._tasks_changed()
 
     def too_late_to_begin_with(self, tasks: Iterable[str]) -> str:
         """Why nothing can begin together with these tasks any more; empty if it still can."""
@@ -154,11 +157,14 @@ class Ledger:
 
     def within_dependants(self, unit: Collection[str]) -> list[str]:
         """Tasks not done that must begin within some time after one of these."""
-        return [
-            task.id
-            for task in self.open
-            if any(task.lags[name].within_s is not None for name in unit if name in task.lags)
-        ]
+        if self._must_follow is None:
+            self._must_follow = defaultdict(list)
+            for task in self.tasks.values():
+                for before, lag in task.lags.items():
+                    if lag.within_s is not None:
+                        self._must_follow[before].append(task.id)
+        after = dict.fromkeys(after for name in unit for after in self._must_follow.get(name, ()))
+        return [name for name in after if self.is_open(name)]
 
     def has_within(self, task: str) -> bool:
         """Whether a task must begin soon after this one."""
@@ -176,6 +182,10 @@ class Ledger:
     def open(self) -> list[Task]:
         """Tasks that are neither done nor cancelled, work under way included."""
         return [task for name, task in self.tasks.items() if name not in self.ends_s and name not in self.cancelled]
+
+    def is_open(self, task: str) -> bool:
+        """Whether a task is neither done nor cancelled."""
+        return task not in self.ends_s and task not in self.cancelled
 
     def lost(
         self, why: Callable[[str], str], gone: Mapping[str, str], under_way: Collection[str] = ()
@@ -228,7 +238,7 @@ class Ledger:
     def expire(self, task: str, reason: str) -> None:
         """Neither a task nor those that begin with it can begin any more."""
         for name in self.unit(task):
-            if name not in self.ends_s and name not in self.cancelled:
+            if self.is_open(name):
                 self.expired.setdefault(name, reason if name == task else f"relation: begins with {task}; {reason}")
 
     def waits(self, task: str, cause: str, seconds: float) -> None:
@@ -291,7 +301,7 @@ class Ledger:
         self.delays_s.pop(task.id, None)
         self.refusals.pop(task.id, None)
         self.tasks[task.id] = task
-        self._units = {}
+        self._tasks_changed()
 
     def withdraw(self, task: str, now: float) -> None:
         self.cancelled[task] = now
@@ -300,7 +310,7 @@ class Ledger:
     def settled(self, before_s: float) -> set[str]:
         """Tasks done or cancelled before a time, or that can never begin, to which no other task refers."""
         over = {name for times in (self.ends_s, self.cancelled) for name, at_s in times.items() if at_s < before_s}
-        over |= {name for name in self.expired if name not in self.ends_s and name not in self.cancelled}
+        over |= {name for name in self.expired if self.is_open(name)}
         needed = {name for task in self.tasks.values() if task.id not in over for name in _referred_to(task)}
         return over - needed
 
@@ -317,7 +327,12 @@ class Ledger:
         for entries in by_task:
             for name in tasks:
                 entries.pop(name, None)
+        self._tasks_changed()
+
+    def _tasks_changed(self) -> None:
+        self.revision += 1
         self._units = {}
+        self._must_follow = None
 
     def _sum_up(self, task: str) -> None:
         sums = self.retired
