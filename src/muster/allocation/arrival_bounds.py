@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from muster.allocation.problem import Floats, Indices
-from muster.allocation.spanning import Ways, never, spanning_tree
+from muster.allocation.spanning import Ways, never
 
 _GROUPS = 4  # of levels, each with multipliers of its own
 _ROUNDS = 50  # for each group
@@ -42,7 +42,7 @@ def least_arrivals(ways: Ways, robots: int, due: Callable[[], bool] = never) -> 
         q, memory, step = np.zeros(n), np.zeros(0), math.nan
         for _ in range(rounds):
             p = ways.work / 2 + q
-            joined, parent = spanning_tree(ways.legs.rows_plus(p), root + p, p, due)
+            joined, parent = ways.legs.tree(root + p, p, due)
             if due():
                 return float(best.sum())
             tree = float(joined.sum())

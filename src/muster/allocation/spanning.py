@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from muster import core
 from muster.allocation.problem import Bools, Floats, Indices, Problem
 
 _DENSE = 1500  # tasks up to which all legs are held at once
@@ -38,12 +39,15 @@ class Legs:
         self._groups = _groups(problem, kinds, weights, surplus)
         self._dense = self._between(self._tasks) if len(self._tasks) <= _DENSE else None
 
-    def rows_plus(self, p: Floats) -> Callable[[int], Floats]:
-        """For a task (n,) the lesser of the legs from it to the others and back, the others' p (n,) added."""
+    def tree(self, root: Floats, p: Floats, due: Callable[[], bool]) -> tuple[Floats, Indices]:
+        """The least spanning tree of a root and all tasks, of which edges cost the multipliers p (n,) of both tasks.
+
+        For each task the cost of the edge that joins it to its parent, and the parent, -1: the root. `root` (n,) are
+        the edges from the root. From when it is `due` the tree is not finished.
+        """
         if self._dense is not None:
-            costs: Floats = self._dense + p
-            return costs.__getitem__
-        return lambda task: np.asarray(self._between(self._tasks[task : task + 1])[0] + p)
+            return spanning_tree(self._dense, root, p)
+        return _tree_of_rows(lambda task: self._between(self._tasks[task : task + 1])[0], root, p, due)
 
     def _between(self, some: Indices) -> Floats:
         legs = self.directed(some)
@@ -217,7 +221,7 @@ def _ascended(
     for _ in range(rounds):
         first, group = _least_rows(ways.starts + (a - b)[:, None])
         last, end_group = _least_rows(ways.ends + b[:, None])
-        joined, parent = spanning_tree(ways.legs.rows_plus(p), first + p, p, due)
+        joined, parent = ways.legs.tree(first + p, p, due)
         if due():
             break
         tree = float(joined.sum())
@@ -256,24 +260,18 @@ def _least_rows(costs: Floats) -> tuple[Floats, Indices]:
     return costs[row, np.arange(costs.shape[1])], row
 
 
-def spanning_tree(
-    row: Callable[[int], Floats], root: Floats, p: Floats | None = None, due: Callable[[], bool] = never
+def spanning_tree(legs: Floats, root: Floats, p: Floats | None = None) -> tuple[Floats, Indices]:
+    """The least spanning tree of a root and n tasks, of legs (n, n), symmetric; else as `Legs.tree` [prim1957]."""
+    n = len(root)
+    joined, parent = np.empty(n), np.empty(n, np.int64)
+    core.spanning_tree(np.ascontiguousarray(legs), root, np.zeros(n) if p is None else p, joined, parent)
+    return joined, parent
+
+
+def _tree_of_rows(
+    row: Callable[[int], Floats], root: Floats, p: Floats, due: Callable[[], bool]
 ) -> tuple[Floats, Indices]:
-    """The least spanning tree of a root and all tasks [prim1957].
-
-    For each task the cost of the edge that joins it to its parent, multipliers included, and the parent, -1: the root.
-
-    Parameters
-    ----------
-    row
-        of a task: (n,) the legs from it to all, the multipliers p of the others added.
-    root
-        (n,) the legs from the root, with p.
-    p
-        (n,) multipliers of the tasks; 0 by default.
-    due
-        from when it says so the tree is not finished.
-    """
+    """The same, with one `row` of the legs at a time."""
     n = len(root)
     reach, outside, parent = root.copy(), np.ones(n, np.bool_), np.full(n, -1)
     joined = np.zeros(n)
@@ -281,11 +279,10 @@ def spanning_tree(
         if due():
             break
         task = int(reach.argmin())
-        own = 0.0 if p is None else float(p[task])
         joined[task] = reach[task]
         reach[task], outside[task] = math.inf, False
-        legs = row(task)
-        nearer = (legs < reach - own) & outside
-        np.copyto(reach, legs + own, where=nearer)
+        legs = row(task) + p
+        nearer = (legs < reach - p[task]) & outside
+        np.copyto(reach, legs + p[task], where=nearer)
         parent[nearer] = task
     return joined, parent

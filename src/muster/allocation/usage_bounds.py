@@ -155,7 +155,7 @@ class UsageBounds:
         root, near = self._from_start[robots][:, tasks].min(axis=0), self._near[np.ix_(tasks, tasks)]
         allowed = self.problem.allowed[np.ix_(robots, tasks)]
         work = np.array([self.problem.work_usage(i)[list(tasks)] for i in robots])
-        joined, _ = spanning_tree(near.__getitem__, root)
+        joined, _ = spanning_tree(near, root)
         return float(joined.sum()) + float(np.where(allowed, work, math.inf).min(axis=0).sum())
 
     @cached_property

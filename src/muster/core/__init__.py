@@ -48,6 +48,7 @@ from muster.core._core import (
     nearest_in_plane,
     nearest_in_space,
     rvo,
+    spanning_tree,
     squared_distances,
     usage_with_calls,
 )
@@ -97,6 +98,7 @@ __all__ = [
     "nearest_in_plane",
     "nearest_in_space",
     "rvo",
+    "spanning_tree",
     "squared_distances",
     "usage_with_calls",
 ]

@@ -650,6 +650,11 @@ class Tree:
         The shortest way found so far with its ends, (k, 3); empty if there is none.
         """
 
+def spanning_tree(legs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], root: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], joined: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], parent: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]) -> None:
+    """
+    Write for each of n tasks what the edge to its parent costs in the least spanning tree of a root and all tasks, and the parent, -1: the root. Edges cost legs (n, n), symmetric, and p (n,) of both ends; those of the root cost root (n,).
+    """
+
 class PlaneAgents:
     """Robots that share the plane."""
 

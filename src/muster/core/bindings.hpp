@@ -22,6 +22,7 @@ void bind_grid(nanobind::module_& m);
 void bind_ways(nanobind::module_& m);
 void bind_air(nanobind::module_& m);
 void bind_tree(nanobind::module_& m);
+void bind_spanning_tree(nanobind::module_& m);
 void bind_avoidance(nanobind::module_& m);
 void bind_crowd_world(nanobind::module_& m);
 void bind_passing_order(nanobind::module_& m);

@@ -26,6 +26,7 @@ NB_MODULE(_core, m) {
   muster::bind_ways(m);
   muster::bind_air(m);
   muster::bind_tree(m);
+  muster::bind_spanning_tree(m);
   muster::bind_avoidance(m);
   muster::bind_crowd_world(m);
   muster::bind_passing_order(m);
