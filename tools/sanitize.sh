@@ -1,14 +1,17 @@
 #!/bin/sh
 # Builds the core with the address and undefined-behaviour sanitizers into an environment of its own, build/sanitized,
-# and runs the tests that exercise it, with few examples of each property. Left out are those of the planning doors, as a
-# server's worker may take too little memory for the sanitizers' shadow of it, and those that spend their time in NumPy, Ray,
-# Shapely or a solver. The first report of a sanitizer ends the run with an error.
+# which sees the packages of the development environment, and runs the tests that exercise it, with few examples of each
+# property. Left out are those of the planning doors, as a server's worker may take too little memory for the sanitizers'
+# shadow of it, and those that spend their time in Python, NumPy, Ray, Shapely or a solver. The first report of a
+# sanitizer ends the run with an error.
 set -eu
-python=${PYTHON:-python3}
+python=${PYTHON:-.venv/bin/python}
 environment=build/sanitized
-[ -d "$environment" ] || "$python" -m venv "$environment"
-"$environment/bin/pip" install --quiet -C cmake.define.MUSTER_SANITIZE=ON -C cmake.define.MUSTER_WERROR=ON -C build-dir=build/sanitizing \
-    -C install.strip=false '.[all]' pytest pytest-xdist hypothesis
+"$python" -m venv --clear "$environment"
+packages() { "$1" -c 'import sysconfig; print(sysconfig.get_path("purelib"))'; }
+packages "$python" > "$(packages "$environment/bin/python")/developed.pth"  # of it alone, not the muster that it names
+"$environment/bin/pip" install --quiet --no-deps -C cmake.define.MUSTER_SANITIZE=ON -C cmake.define.MUSTER_WERROR=ON \
+    -C build-dir=build/sanitizing -C install.strip=false .
 core=$(find "$environment" -path '*/muster/core/_core*.so')
 if ! ldd "$core" | grep -q libasan; then
     echo "the core in $environment was built without the sanitizers" >&2
