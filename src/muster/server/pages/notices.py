@@ -44,13 +44,17 @@ def say(text: str) -> None:
     ui.notify(text, position="bottom-left", timeout=4000, classes="notice", group=False, attrs={"role": "status"})
 
 
-def warn(text: str) -> None:
-    """Show an error in place of the last one; it stays for a while, or until it is closed."""
-    client = ui.context.client
-    before = _warnings.pop(client, None)
+def end_warning() -> None:
+    """Take away the last error, if it is still shown: what was wrong is not any more."""
+    before = _warnings.pop(ui.context.client, None)
     if before is not None and not before.is_deleted:
         before.dismiss()
-    _warnings[client] = ui.notification(
+
+
+def warn(text: str) -> None:
+    """Show an error in place of the last one; it stays for a while, or until it is closed."""
+    end_warning()
+    _warnings[ui.context.client] = ui.notification(
         text,
         position="bottom-left",
         timeout=_WARNED_S,

@@ -60,9 +60,6 @@ def test_what_is_typed_while_another_text_is_on_its_way_is_put_into_that(watched
 def test_what_is_typed_while_a_mark_is_on_its_way_stays(watched, page, yard):
     plan_view(watched, yard)
     end_of_text(page)
-    page.keyboard.type("\n")
-    page.keyboard.press("Control+s")
-    page.get_by_text("version 2", exact=True).wait_for()  # nothing else is on its way that the server waits for
     page.evaluate(HELD)
     page.keyboard.type("taskss: []")
     page.wait_for_function("heldHas('wrong-line')")

@@ -12,7 +12,7 @@ from muster.exchange.mission_control import MissionVersion
 from muster.exchange.sites.readers import READERS
 from muster.mission.yaml_writer import YAML_SUFFIXES, flow_text
 from muster.server.pages.buttons import once
-from muster.server.pages.notices import errors_shown, warn
+from muster.server.pages.notices import end_warning, errors_shown, warn
 from muster.server.pages.visitor import the_services, the_user
 from muster.server.work import WorkError
 
@@ -90,7 +90,9 @@ def _uploading() -> None:
     salesmen.props("outlined dense").classes("full")
 
     async def take(event: events.MultiUploadEventArguments) -> None:
-        await _upload({file.name: await file.read() for file in event.files}, int(salesmen.value or 3))
+        files = {file.name: await file.read() for file in event.files}
+        upload.reset()  # else a file that is chosen once more, with others, is left out as already there
+        await _upload(files, int(salesmen.value or 3))
 
     upload = ui.upload(
         label="Choose or drop files",
@@ -139,6 +141,7 @@ async def _upload(files: dict[str, bytes], salesmen: int) -> None:
         options = options_of(name, beside, salesmen)
         rest = {other: data for other, data in files.items() if other != name}
         made = await the_services().missions.upload(the_user(), name, files[name], rest, **options)
+        end_warning()
         if made.note:
             _tell(made)
         else:

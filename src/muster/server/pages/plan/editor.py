@@ -27,6 +27,11 @@ class Editor(CodeMirror):
     _before: str | None = None  # what was shown when another text was sent, as long as that is on its way
     _sent = 0
 
+    def begin(self) -> None:
+        """Take the text as what the browser shows first: what was sent so far arrives there together."""
+        self._shown, self._before = self.value, None
+        self._sent += 1
+
     def update(self) -> None:
         """Send the element with its text."""
         super().update()

@@ -36,6 +36,7 @@ class TextView:
         self._editor.props["aria-label"] = "Text of the mission"
         if not editable:
             self._editor.disable()
+        self._editor.begin()
         ui.timer(0, self._theme, once=True)
 
     async def _theme(self) -> None:

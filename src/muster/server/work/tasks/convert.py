@@ -12,7 +12,7 @@ from muster.mission.model import Mission
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 from muster.planning.importing import read_site
-from muster.planning.loading import load_noted
+from muster.planning.loading import is_site_file, load_noted
 from muster.server.work.missions import written_files
 
 _MISSIONS = (*YAML_SUFFIXES, ".tsp", ".atsp", ".vrp", ".txt", ".plan")
@@ -40,7 +40,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     written_files(files)
     site = arguments.get("site", ())
     others = [one for one in site or _others_of_site(name, files) if one not in options.values()]
-    if site or others:
+    if site or others or is_site_file(path):
         beside = {key: options[key] for key in ("robots", "suitability") if key in options}
         found = read_site(name, *others, **beside)
         kept = sorted(set(files) - {name, *others, *beside.values()}) if site else []
