@@ -248,11 +248,11 @@ class RobotState:
     @property
     def way_left_m(self) -> float:
         """Metres of the last order that it has not travelled, by its own navigation where that tells them."""
-        left = self._waypoints[self.passed + self._marks_left :]
         told = self._told_left_m
-        if told is None or not left:
-            return path_length(self.position, left)
-        return told + path_length(left[0].position, left[1:])
+        if told is None:
+            return path_length(self.position, self._waypoints[self.passed :])
+        left = self._waypoints[self.passed + self._marks_next :]
+        return told + path_length(left[0].position, left[1:]) if left else 0.0
 
     @property
     def steered(self) -> bool:

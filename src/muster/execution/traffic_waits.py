@@ -159,12 +159,13 @@ class TrafficWaits:
         self.sent_round.clear()
         self._notice_returns()
         for robot, state in self._crew.items():
-            nearer_m = self._nearer_m(state)
+            left_m = state.way_left_m
+            nearer_m = self._nearer_m(state, left_m)
             could_m = state.robot.speed_mps * (now - self._looked_s)
-            self._note_progress(state)
+            self._note_progress(state, left_m)
             if nearer_m < -_ROUND * could_m - _NEARER_M and _under_way(state):
                 self.sent_round.add(robot)
-                self.progress[robot].goes_round(state.way_left_m)
+                self.progress[robot].goes_round(left_m)
             other = self._held_up_by(state, now, hardly=nearer_m < _HARDLY * could_m)
             wait = self.waits.get(robot)
             if other and wait is None:
@@ -224,13 +225,13 @@ class TrafficWaits:
         """How those of a jam get on who wait, by their ids."""
         return [self.progress[robot] for robot in sorted(jam) if robot in self.waits]
 
-    def _note_progress(self, state: RobotState) -> None:
+    def _note_progress(self, state: RobotState, left_m: float) -> None:
         robot, target = state.robot.id, state.route[0] if state.route else ""
         target = state.station if state.activity is Activity.TO_STATION else target
         if robot not in self.progress or self.progress[robot].target != target:
             self.progress[robot] = Progress(robot, target)
         if _under_way(state):
-            self.progress[robot].note(state.way_left_m)
+            self.progress[robot].note(left_m)
 
     def _over(self, robot: str, wait: TrafficWait) -> Iterator[tuple[str, dict[str, Any]]]:
         del self.waits[robot]
@@ -259,9 +260,9 @@ class TrafficWaits:
             return said.waits_for
         return self._in_its_way(state) if hardly and _has_way(state) else ""
 
-    def _nearer_m(self, state: RobotState) -> float:
+    def _nearer_m(self, state: RobotState, left_m: float) -> float:
         """By how much its way has grown shorter since the last look; inf where its order is new."""
-        robot, left_m = state.robot.id, state.way_left_m
+        robot = state.robot.id
         order, before_m = self._left_m.get(robot, (-1, 0.0))
         self._left_m[robot] = state.order, left_m
         return before_m - left_m if order == state.order else math.inf
