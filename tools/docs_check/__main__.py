@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from tools.docs_check import measured, pictures
 from tools.docs_check.commands import ROOT, command_lines, without_remark
 from tools.docs_check.outcomes import FAILED, Outcome, summary
-from tools.docs_check.page_run import check_page
+from tools.docs_check.page_run import timed_check
 from tools.docs_check.pages import read_page
 
 _SLOWEST = 10  # pages that are named
@@ -31,19 +31,13 @@ def check(chosen: list[Path]) -> int:
     """Check pages, two at a time, each in a process of its own; returns the exit code."""
     begin = time.monotonic()
     with ProcessPoolExecutor(2, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
-        found = list(pool.map(_timed_check, chosen))
+        found = list(pool.map(timed_check, chosen))
     outcomes: list[Outcome] = [outcome for _, of_page in found for outcome in of_page]
     print("\n".join(summary(outcomes)))
     print(f"{len(chosen)} pages, {time.monotonic() - begin:.0f} s")
     slowest = sorted(zip((seconds for seconds, _ in found), chosen, strict=True), reverse=True)[:_SLOWEST]
     print("slowest: " + ", ".join(f"{page.name} {seconds:.0f} s" for seconds, page in slowest))
     return int(any(outcome.status == FAILED for outcome in outcomes))
-
-
-def _timed_check(page: Path) -> tuple[float, list[Outcome]]:
-    begin = time.monotonic()
-    outcomes = check_page(page)
-    return time.monotonic() - begin, outcomes
 
 
 def make_long(names: list[str]) -> int:

@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 import traceback
 import types
 from collections.abc import Iterator
@@ -41,6 +42,13 @@ def check_page(path: Path) -> list[Outcome]:
             return [outcome for item in items for outcome in run.check(item)]
         finally:
             run.close()
+
+
+def timed_check(path: Path) -> tuple[float, list[Outcome]]:
+    """How many seconds that took, and what it found."""
+    begin = time.monotonic()
+    outcomes = check_page(path)
+    return time.monotonic() - begin, outcomes
 
 
 class _PageRun:
