@@ -14,6 +14,13 @@ HELD = """() => {
   socket.onevent = (packet) => held.push(packet);
 }"""  # what the server sends is on its way, as long as a test wants
 
+ANSWERS_HELD = """() => {
+  const emit = socket.emit.bind(socket);
+  const held = [];
+  window.releaseAnswers = () => { socket.emit = emit; held.forEach((answer) => emit(...answer)); };
+  socket.emit = (...said) => said[0] === "javascript_response" ? held.push(said) : emit(...said);
+}"""  # the browser's answers, by which the server knows what is shown, are late
+
 
 def test_what_is_wrong_is_said_with_its_line_while_one_types(watched, page, yard):
     plan_view(watched, yard)
@@ -55,6 +62,16 @@ def test_what_is_typed_while_another_text_is_on_its_way_is_put_into_that(watched
     page.get_by_text("version 2", exact=True).wait_for()
     plan_view(watched, yard)
     assert text_of(page, " # tail") == after
+
+
+def test_what_is_typed_before_the_server_knows_that_the_text_is_shown_stays(watched, page, yard):
+    plan_view(watched, yard)
+    page.evaluate(ANSWERS_HELD)
+    end_of_text(page)
+    page.keyboard.type("# at once")
+    page.get_by_text("version 1, changed").wait_for()
+    page.evaluate("releaseAnswers()")
+    assert text_of(page).endswith("# at once")
 
 
 def test_what_is_typed_while_a_mark_is_on_its_way_stays(watched, page, yard):
