@@ -39,6 +39,7 @@ class ScheduleSearch {
   bool joins(int robot, int at, int other, int other_at) const;
   double growth_of_tails() const;
   bool is_tail(int robot, int at, int other) const;
+  bool does_alone(int robot, int task) const;
   bool exchange_tails();
   void take_tail(int robot, int at, std::vector<int>& units);
 

@@ -1,5 +1,6 @@
 // Steps of the search that exchange what two robots do last, as 2-opt* does [potvin1995].
 #include <algorithm>
+#include <functional>
 
 #include "schedule_search.hpp"
 
@@ -66,12 +67,17 @@ bool ScheduleSearch::is_tail(int robot, int at, int other) const {
     const Visit& visit = timeline.stop(robot, k);
     if (problem_.tasks_of_unit(visit.unit).size() != 1 || timeline.visits_of(visit.unit).size() != 1) return false;
     if (!problem_.allowed(other, visit.place) || !problem_.same_robot(visit.place).empty() ||
-        !problem_.other_robot(visit.place).empty())
+        !problem_.other_robot(visit.place).empty() || !does_alone(other, visit.place))
       return false;
     const int partner = roster_.partner(visit.unit);
     if (partner >= 0 && timeline.visit(timeline.visits_of(partner).front()).at <= at) return false;
   }
   return true;
+}
+
+// Whether a robot has all the abilities that a task needs, as the one that does it now has.
+bool ScheduleSearch::does_alone(int robot, int task) const {
+  return std::ranges::equal(problem_.ability(robot), problem_.needs(task), std::ranges::greater_equal{});
 }
 
 bool ScheduleSearch::exchange_tails() {

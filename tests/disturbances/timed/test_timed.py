@@ -4,7 +4,7 @@ from collections import Counter
 
 from tests.disturbances.timed.trial import trial
 
-SEEDS = range(50, 90)  # in two of which a window is missed, as happens rarely
+SEEDS = (*range(50, 90), 138)  # in two a window is missed, as happens rarely; in the last a tail went to a weaker robot
 
 
 def test_missions_with_windows_and_teams_are_carried_out_whatever_happens():
