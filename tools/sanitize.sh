@@ -28,4 +28,4 @@ HYPOTHESIS_PROFILE=few \
     --ignore tests/core/test_stub.py --ignore tests/conformance/test_planning_doors.py \
     --ignore tests/allocation/test_bounds.py --ignore tests/allocation/test_exact.py \
     --ignore tests/allocation/test_ray_cluster.py --ignore tests/allocation/test_as_run.py \
-    --ignore tests/allocation/test_map_travel.py --ignore tests/allocation/test_partition.py --ignore tests/motion/areas
+    --ignore tests/allocation/test_map_travel.py --ignore tests/motion/areas

@@ -6,7 +6,7 @@ import pytest
 
 from tests.disturbances.trial import trial
 
-PART = 15
+PART = 30
 
 
 @pytest.mark.parametrize("first", range(0, 2 * PART, PART))

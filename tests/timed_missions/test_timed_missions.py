@@ -18,7 +18,7 @@ from tests.timed_missions.possibilities import Possibilities
 from tests.timed_missions.remedied import Remedied
 from tests.timed_missions.trial import Report, Trial, trial
 
-MISSIONS, CHUNK = 24, 8
+MISSIONS, CHUNK = 45, 15
 
 
 @pytest.mark.parametrize("first", range(0, MISSIONS, CHUNK))

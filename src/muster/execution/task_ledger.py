@@ -158,11 +158,7 @@ class Ledger:
     def within_dependants(self, unit: Collection[str]) -> list[str]:
         """Tasks not done that must begin within some time after one of these."""
         if self._must_follow is None:
-            self._must_follow = defaultdict(list)
-            for task in self.tasks.values():
-                for before, lag in task.lags.items():
-                    if lag.within_s is not None:
-                        self._must_follow[before].append(task.id)
+            self._must_follow = _must_follow(self.tasks.values())
         after = dict.fromkeys(after for name in unit for after in self._must_follow.get(name, ()))
         return [name for name in after if self.is_open(name)]
 
@@ -368,6 +364,15 @@ def some_of(names: Sequence[str]) -> str:
     """A few names, and how many more there are."""
     left = len(names) - MOST_NAMED
     return ", ".join(names) if left <= 1 else f"{', '.join(names[:MOST_NAMED])} and {left} more"
+
+
+def _must_follow(tasks: Iterable[Task]) -> dict[str, list[str]]:
+    """By task those that must begin within some time after it."""
+    found = defaultdict(list)
+    for task in tasks:
+        for before in (before for before, lag in task.lags.items() if lag.within_s is not None):
+            found[before].append(task.id)
+    return found
 
 
 def _over(time_s: float, limit_s: float | None) -> float:
