@@ -1,10 +1,13 @@
 """`muster generate`: the files, and what it says."""
 
 import json
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
 
+from muster.generation.generate import generate
+from muster.generation.generator import Generator
 from muster.generation.registry import GENERATORS
 
 pytestmark = pytest.mark.usefixtures("folder")
@@ -19,6 +22,7 @@ def test_files_are_those_of_their_seeds(muster):
     assert err == "next: muster compare made/u --allocators search,greedy,auction\n"
     code, single, err = muster("generate", "uniform", "--tasks", 4, "--robots", 2, "--seed", 9, "-q")
     assert (code, err) == (0, "")
+    assert muster("generate", "-q", "uniform", "--tasks", 4, "-o", "quiet")[2] == ""
     assert single == Path("made/u/uniform-4T-2R-9.yaml").read_text(encoding="utf-8")
     assert muster("solve", "made/u/uniform-4T-2R-9.yaml", "-a", "greedy", "-q")[0] == 0
 
@@ -41,6 +45,8 @@ def test_a_file_that_is_another_is_left_alone(muster):
         (("uniform", "--tasks", 0), "uniform: tasks: 0, expected a whole number of at least 1"),
         (("uniform", "--count", 2), "--count: 2 without -o; expected -o FOLDER"),
         (("uniform", "--count", 2, "-o", "m.yaml"), "--output: m.yaml; expected a folder for 2 missions"),
+        (("uniform", "-o", "m.json"), "--output: m.json; expected a folder, or a file .yaml"),
+        (("--format", "json", "uniform"), "--format without --list; missions are written as YAML"),
         (("uniform", "-o", "none/m.yaml"), "none/m.yaml: No such file or directory"),
     ],
 )
@@ -57,6 +63,30 @@ def test_a_family_has_help(family, muster):
     for name in GENERATORS[family].parameters.__dataclass_fields__:
         assert f"--{name.replace('_', '-')}" in out
     assert "Source: " in out
+
+
+@dataclass(frozen=True, kw_only=True)
+class Odd:
+    """Parameters of which some are no options."""
+
+    tasks: int = 3
+    sides_m: tuple[float, ...] = (4.0, 5.0)
+    words: list[str] = field(default_factory=list)
+    most: float | None = None
+
+
+def test_parameters_that_no_option_can_be_are_for_python_alone(muster):
+    make = lambda given, seed: generate("uniform", 1, seed, tasks=given.tasks)[0]  # noqa: E731
+    GENERATORS.add("odd", Generator(name="odd", summary="odd", source="a test", parameters=Odd, make=make))
+    try:
+        code, out, _ = muster("generate", "odd", "--help")
+        assert code == 0
+        assert "--tasks" in out
+        assert "--sides-m" not in out
+        assert muster("generate", "odd", "--tasks", 2)[1].count("position") == 2 + 5
+        assert muster("generate", "--list")[0] == 0
+    finally:
+        GENERATORS.remove("odd")
 
 
 def test_families_are_listed(muster):

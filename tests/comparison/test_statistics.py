@@ -48,7 +48,21 @@ def test_more_weight_comes_before_a_lower_objective():
 def test_an_objective_of_0_is_no_division():
     best = best_of([run("a", 0.0), run("b", 5.0)])
     assert gap(run("a", 0.0), best) == 0.0
-    assert gap(run("b", 5.0), best) is None
+    assert gap(run("b", 5.0), best) == math.inf
+
+
+def test_late_runs_beside_one_in_time_are_infinitely_worse():
+    late = [(0.0, 28.1), (0.0, 43.7), (5.0, 5.5), (0.0, 0.0)]
+    runs = [
+        run(name, values[k], mission=f"m{j}") for j, values in enumerate(late) for k, name in enumerate(("good", "bad"))
+    ]
+    good, bad = standings_of(runs, ["good", "bad"])
+    assert (good.gap_mean, good.gap_median) == (0.0, 0.0)
+    assert (bad.gap_mean, bad.gap_low, bad.gap_high) == (math.inf, None, None)
+    assert bad.gap_median == math.inf
+    (pair,), (turned,) = pairs_of(runs, ["good", "bad"]), pairs_of(runs, ["bad", "good"])
+    assert pair.difference == pytest.approx((-100 - 100 / 11) / 2)
+    assert turned.difference == math.inf
 
 
 def test_holm_is_that_of_the_textbook():

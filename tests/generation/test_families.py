@@ -5,6 +5,7 @@ import hashlib
 import pytest
 
 import muster
+from muster import ParameterError
 from muster.generation.generator import Generator
 from muster.generation.registry import GENERATORS
 from muster.mission.yaml_writer import yaml_text
@@ -77,6 +78,26 @@ def test_most_tasks_can_be_done(family):
 def test_the_smallest_missions_are_missions(family):
     (mission,) = muster.generate(family, seed=1, **SMALLEST[family])
     assert muster.verify(mission, muster.solve(mission, "greedy")).valid
+
+
+@pytest.mark.parametrize(("battery", "stations"), [(20, 40), (1, 3)])
+def test_a_battery_lasts_to_each_customer_and_back(battery, stations):
+    for seed in range(8):
+        (mission,) = muster.generate("charging", seed=seed, battery_m=battery, stations=stations)
+        assert mission.robots[0].battery.capacity >= battery
+        plan = muster.solve(mission, "greedy")
+        assert muster.verify(mission, plan).valid
+        assert plan.tasks_completed == plan.tasks_total
+
+
+@pytest.mark.parametrize("values", [{"tasks": 10_000}, {"species": 1, "most": 1}, {"tasks": 10_000, "most": 9}])
+def test_coalitions_of_many_tasks_are_drawn_or_refused(values):
+    try:
+        (mission,) = muster.generate("coalitions", **values)
+    except ParameterError as error:
+        assert "expected less, or more robots_each" in str(error)
+    else:
+        assert all(task.needs for task in mission.tasks)
 
 
 @pytest.mark.parametrize("family", GENERATORS.shipped)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import Field, fields
+from dataclasses import MISSING, Field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -52,16 +52,19 @@ def command(ctx: click.Context, listed: bool, form: str, quiet: bool, verbose: b
     The same family, parameters and seed give the same file on every machine. `muster generate FAMILY --help` lists the
     parameters of a family.
     """
+    ctx.obj = quiet
     if listed:
         _list(form)
         ctx.exit()
+    if form != "table":
+        raise click.UsageError("--format without --list; missions are written as YAML", ctx)
     if ctx.invoked_subcommand is None:
         raise click.UsageError("FAMILY missing; expected one of `muster generate --list`", ctx)
 
 
 def _command_of(generator: Generator) -> click.Command:
     """The command of a family."""
-    own = [_option(f) for f in fields(generator.parameters)]
+    own = [_option(f) for f in fields(generator.parameters) if _type(f) in _METAVARS]
     common = [
         click.Option(["--count"], type=int, default=1, show_default=True, metavar="N", help="How many missions."),
         click.Option(
@@ -81,9 +84,10 @@ def _command_of(generator: Generator) -> click.Command:
         click.Option(["-q", "--quiet"], is_flag=True, help="No messages on standard error, errors aside."),
     ]
 
-    def write(count: int, seed: int, output: Path | None, quiet: bool, **values: Any) -> None:
+    @click.pass_obj
+    def write(group_quiet: bool, count: int, seed: int, output: Path | None, quiet: bool, **values: Any) -> None:
         given = {name: value for name, value in values.items() if value is not None}
-        _write(generator, given, count, seed, output, quiet)
+        _write(generator, given, count, seed, output, quiet or group_quiet)
 
     source = f"Source: {generator.source}."
     return click.Command(
@@ -104,24 +108,30 @@ def _option(f: Field[Any]) -> click.Option:
         declared,
         type=kind,
         default=None,
-        metavar=None if kind is bool else f"[{'|'.join(choices)}]" if choices else _METAVARS[kind],
+        metavar=f"[{'|'.join(choices)}]" if choices else _METAVARS[kind],
         help=_help(f),
     )
 
 
-_METAVARS: dict[type[Any], str] = {int: "N", float: "X", str: "NAME"}
+_METAVARS: dict[type[Any], str | None] = {bool: None, int: "N", float: "X", str: "NAME"}
+"""What an option may be; parameters of other types are for Python alone."""
 
 
 def _type(f: Field[Any]) -> type[Any]:
     """The type of a parameter's values: that of its default, or of the first number that its kind has in its place."""
-    return type(f.metadata["kind"].filler if f.default is None else f.default)
+    default, kind = _default(f), f.metadata.get("kind")
+    return type(kind.filler if default is None and kind is not None else default)
+
+
+def _default(f: Field[Any]) -> Any:
+    return f.default if f.default_factory is MISSING else f.default_factory()
 
 
 def _help(f: Field[Any]) -> str:
     from muster.mission.field_help import unit_of
 
     text, unit = f.metadata.get("doc", ""), unit_of(f)
-    default = "" if f.default is None else f"  [default: {_shown(f.default)}]"
+    default = "" if _default(f) is None else f"  [default: {_shown(_default(f))}]"
     return f"{text[:1].upper()}{text[1:]}{f', in {unit}' if unit else ''}.{default}".lstrip(".")
 
 
@@ -138,7 +148,7 @@ def _list(form: str) -> None:
         click.echo(json.dumps([_as_data(one) for one in families], indent=1))
         return
     rows = [
-        (one.name, one.summary, ", ".join(f"{f.name}={_given(f.default)}" for f in fields(one.parameters)))
+        (one.name, one.summary, ", ".join(f"{f.name}={_given(_default(f))}" for f in fields(one.parameters)))
         for one in families
     ]
     print_table(("family", "what it is", "parameters and defaults"), rows)
@@ -152,7 +162,7 @@ def _as_data(generator: Generator) -> dict[str, Any]:
     from muster.mission.field_help import unit_of
 
     parameters = [
-        {"name": f.name, "unit": unit_of(f) or None, "default": f.default, "meaning": f.metadata.get("doc", "")}
+        {"name": f.name, "unit": unit_of(f) or None, "default": _default(f), "meaning": f.metadata.get("doc", "")}
         for f in fields(generator.parameters)
     ]
     return {
@@ -206,6 +216,8 @@ def _written(missions: Sequence[Mission], output: Path) -> Iterator[Path]:
 
 
 def _file(mission: Mission, output: Path, count: int) -> Path:
+    if output.suffix == ".json":
+        raise ParameterError(f"--output: {output}; expected a folder, or a file .yaml")
     if output.suffix not in _SUFFIXES:
         return output / f"{mission.name}.yaml"
     if count > 1:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from math import isfinite, isinf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -109,7 +110,10 @@ class Comparison:
         return draw_profiles([(one.allocator, one.ratios, one.shares) for one in self.profiles], ax)
 
     def plot_gaps(self, ax: Axes | None = None) -> Axes:
-        """Draw for each allocator how far its runs are behind the best on their missions; needs the extra `plot`."""
+        """Draw for each allocator how far its runs are behind the best on their missions; needs the extra `plot`.
+
+        Infinite gaps, of runs beside a best objective of 0, are left out.
+        """
         from muster.comparison.ranking import bests, gap
         from muster.report.profiles import draw_gaps
 
@@ -118,16 +122,17 @@ class Comparison:
             name: [gap(run, best[run.mission]) for run in self.runs if run.allocator == name]
             for name in self.allocators
         }
-        return draw_gaps({name: [one for one in some if one is not None] for name, some in gaps.items()}, ax)
+        finite = {name: [one for one in some if one is not None and isfinite(one)] for name, some in gaps.items()}
+        return draw_gaps(finite, ax)
 
     def as_dict(self) -> dict[str, Any]:
-        """All of it as plain data, as `muster compare --format json` prints it."""
+        """All of it as plain data, as `muster compare --format json` prints it; None where a figure is infinite."""
         settings: Mapping[str, Any] = asdict(self.settings)
         return {
             "settings": {**settings, "against": self.against},
             "whole": self.is_whole,
-            "allocators": [asdict(one) for one in self.standings],
-            "pairs": [asdict(one) for one in self.pairs],
+            "allocators": [_finite(one) for one in self.standings],
+            "pairs": [_finite(one) for one in self.pairs],
             "runs": [asdict(one) for one in self.runs],
         }
 
@@ -166,6 +171,11 @@ class Comparison:
             command=command,
         )
         write_text(Path(path), page(contents))
+
+
+def _finite(one: Standing | Pair) -> dict[str, Any]:
+    fields = asdict(one)
+    return {key: None if isinstance(value, float) and isinf(value) else value for key, value in fields.items()}
 
 
 def _counted(count: int, word: str) -> str:

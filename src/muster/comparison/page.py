@@ -10,7 +10,7 @@ from html import escape
 from importlib.metadata import version
 
 from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
-from muster.comparison.ranking import Best, bests, by_mission, typical
+from muster.comparison.ranking import Best, bests, by_mission, close, typical
 from muster.comparison.run import Run
 from muster.comparison.statistics import Pair, Standing
 
@@ -36,8 +36,8 @@ _METHODS = (
     "figures are those of Muster's judge, which shares no code with allocators. Values that differ by less than "
     "1e-9 of themselves are equal. A run that failed is behind every plan.",
     "The gap of a run is by how many per cent its objective is above that of the best run on its mission. It is "
-    "counted where the run completes as much weight as the best; “as much done” is the share of such runs. The "
-    "mean gap is the mean over missions of their means, with a 95 % interval by the bootstrap over missions "
+    "counted where the run completes as much weight as the best; “as much done” is the share of such runs. It is "
+    "infinite (inf) where the best objective is 0 and its own is not; figures leave such runs out. The mean gap is the mean over missions of their means, with a 95 % interval by the bootstrap over missions "
     "(percentiles, 9,999 samples); of a single mission over its runs.",
     "Wins, ties and losses count missions, each by the run in the middle of an allocator's seeds: against the "
     "best of all others, and of the two in a pair. Missions that an allocator cannot take (n/a) are not counted "
@@ -129,7 +129,7 @@ def _total(own: dict[str, list[Run]]) -> float:
 def _best(best: Best | None, total: float) -> str:
     if best is None:
         return "-"
-    return f"{best.value:.2f}" if best.weight >= total else f"{best.value:.2f} ({best.weight:g} of {total:g})"
+    return f"{best.value:.2f}" if close(best.weight, total) else f"{best.value:.2f} ({best.weight:g} of {total:g})"
 
 
 def _middle(runs: Sequence[Run] | None, best: Best | None) -> str:
@@ -138,7 +138,7 @@ def _middle(runs: Sequence[Run] | None, best: Best | None) -> str:
     minus, value = typical(runs)
     if minus == float("inf"):
         return "failed"
-    return f"{value:.2f}" if best is not None and -minus >= best.weight else f"{value:.2f} ({-minus:g})"
+    return f"{value:.2f}" if best is not None and close(-minus, best.weight) else f"{value:.2f} ({-minus:g})"
 
 
 def _not_done(runs: Iterable[Run]) -> str:

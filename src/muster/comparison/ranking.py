@@ -66,9 +66,11 @@ def ratio(run: Run, best: Best | None) -> float:
 
 
 def gap(run: Run, best: Best | None) -> float | None:
-    """By how many per cent a run's objective is above the best; None where it cannot be said."""
-    found = ratio(run, best)
-    return 100 * (found - 1) if math.isfinite(found) else None
+    """By how many per cent a run's objective is above the best; None where it completes less weight than the best.
+
+    Infinite where the best objective is 0, and its own is not.
+    """
+    return 100 * (ratio(run, best) - 1) if completes_as_much(run, best) else None
 
 
 def by_mission(runs: Sequence[Run]) -> dict[str, dict[str, list[Run]]]:

@@ -41,7 +41,8 @@ class Standing:
         share of its runs that complete as much weight as the best run on their mission.
     gap_mean, gap_low, gap_high
         per cent of the objective above the best run on the mission, of the runs that complete as much: the mean over
-        missions of their means, and its confidence interval (95 %).
+        missions of their means, and its confidence interval (95 %). The mean is infinite, without an interval, where
+        the best objective of a mission is 0 and that of a run is not.
     gap_median
         of all its runs that complete as much.
     wins, ties, losses
@@ -75,7 +76,7 @@ class Pair:
         of the first.
     difference
         per cent of the objective of the first above that of the second: the median over the missions on which both
-        complete as much.
+        complete as much; infinite on a mission where that of the second alone is 0.
     p_value, p_holm
         of the two-sided test that neither is better, and corrected for all pairs that are tested.
     exact
@@ -199,7 +200,7 @@ def mean_with_interval(values: Sequence[float]) -> tuple[float | None, float | N
     if not values:
         return None, None, None
     mean = fmean(values)
-    if len(values) == 1:
+    if len(values) == 1 or math.isinf(mean):
         return mean, None, None
     if close(min(values), max(values)):
         return mean, mean, mean
@@ -243,11 +244,7 @@ def _pair(runs: Sequence[Run], a: str, b: str) -> Pair:
     both = list(_paired(runs, a, b))
     signs = [order(one, other) for one, other in both]
     p_value, exact = signed_rank(_signed_magnitudes(both))
-    relative = [
-        100 * (one[1] - other[1]) / other[1]
-        for one, other in both
-        if close(one[0], other[0]) and math.isfinite(one[1]) and other[1] > 0
-    ]
+    relative = [_above(one[1], other[1]) for one, other in both if close(one[0], other[0]) and math.isfinite(one[1])]
     return Pair(
         allocator=a,
         other=b,
@@ -260,6 +257,13 @@ def _pair(runs: Sequence[Run], a: str, b: str) -> Pair:
         exact=exact,
         units="seeds" if len({run.mission for run in runs}) == 1 else "missions",
     )
+
+
+def _above(value: float, other: float) -> float:
+    """By how many per cent a value is above another; infinite above 0."""
+    if close(value, other):
+        return 0.0
+    return 100 * (value / other - 1) if other > 0 else math.inf
 
 
 def _paired(runs: Sequence[Run], a: str, b: str) -> Iterator[tuple[Rank, Rank]]:

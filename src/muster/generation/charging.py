@@ -1,7 +1,7 @@
 """Batteries and stations for missions of vehicles, in the manner of Schneider, Stenger and Goeke [schneider2014].
 
-A battery lasts from the farthest customer to its station and back; filling it takes as long as three customers. A
-window that nobody can keep who charges is opened.
+A battery lasts to each customer and back, with at most one charge each way; filling it takes as long as three
+customers. A window that nobody can keep who charges is opened.
 """
 
 from __future__ import annotations
@@ -50,8 +50,7 @@ def with_batteries(mission: Mission, draw: Random, battery: float, stations: int
     xs, ys = zip(*(task.position[:2] for task in tasks), strict=True)
     places = [robot.position]
     places += [(draw.uniform(min(xs), max(xs)), draw.uniform(min(ys), max(ys))) for _ in range(stations)]
-    farthest = max(min(math.dist(task.position, place) for place in places) for task in tasks)
-    capacity = max(battery, 2 * farthest)
+    capacity = max(battery, *(_needed(robot.position, places, task.position) for task in tasks))
     full_s = _CUSTOMERS_A_CHARGE * sum(task.duration_s or 0.0 for task in tasks) / len(tasks)
     rides = _Rides(robot, places, capacity, full_s)
     return replace(
@@ -66,6 +65,17 @@ def _station(number: int, place: Place, slots: int, per_s: float) -> Station:
     return Station(
         id=f"S{number}", position=place, services=("charge",), slots=slots, charge_per_s=per_s, partial=False
     )
+
+
+def _needed(depot: Place, stations: Sequence[Place], place: Place) -> float:
+    """What a battery must hold for the way to a place and back, with at most one charge each way."""
+    ends: list[tuple[float, float]] = []  # from the place to where it is charged, and from there to the depot
+    for end in sorted(
+        [(math.dist(depot, place), 0.0), *((math.dist(s, place), math.dist(depot, s)) for s in stations)]
+    ):
+        if not ends or end[1] < ends[-1][1]:
+            ends.append(end)
+    return min(max(here + there, far, away) for here, far in ends for there, away in ends)
 
 
 class _Rides:
@@ -106,7 +116,7 @@ class _Rides:
 def _opened(task: Task, rides: _Rides) -> Task:
     """The task, with a window that a robot alone can keep."""
     limits = rides.limits(task)
-    assert limits is not None  # the battery lasts to a station and back
+    assert limits is not None  # `_needed`
     (opens, closes), (first, last) = task.window_s[0], limits
     return replace(task, window_s=((min(opens, last - _CLEAR), max(closes or math.inf, first + _CLEAR)),))
 

@@ -5,6 +5,8 @@ Robots move, and missions are compared, as in the family `teams`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import numpy.typing as npt
 
@@ -17,6 +19,7 @@ from muster.mission.value_types import Flag, Whole
 
 Integers = npt.NDArray[np.int64]
 _TRIES = 1_000
+_ANEW = 10_000
 
 
 @record
@@ -61,8 +64,9 @@ def coalitions_mission(given: Coalitions, seed: int) -> Mission:
 
 def _able(given: Coalitions, draw: np.random.Generator) -> tuple[Integers, Integers]:
     """Skills and needs, drawn until the robots together can do every task."""
+    anew = iter(range(_ANEW))
     for _ in range(_TRIES):
-        skills, needs = _skills(given, draw), _needs(given, draw)
+        skills, needs = _skills(given, draw), _needs(given, draw, anew)
         if (given.robots_each * skills.sum(axis=0) >= needs).all():
             return skills, needs
     raise ParameterError(f"coalitions: most: {given.most}; expected less, or more robots_each ({given.robots_each})")
@@ -78,12 +82,19 @@ def _skills(given: Coalitions, draw: np.random.Generator) -> Integers:
             return skills
 
 
-def _needs(given: Coalitions, draw: np.random.Generator) -> Integers:
-    """(tasks, skills) how much of each skill a task needs: each task something."""
-    while True:
+def _needs(given: Coalitions, draw: np.random.Generator, anew: Iterator[int]) -> Integers:
+    """(tasks, skills) how much of each skill a task needs: each task something.
+
+    All are drawn anew where a task needs nothing, as published; once that was done `_ANEW` times, as of many tasks,
+    those that need nothing alone, which has the same distribution.
+    """
+    for _ in anew:
         needs: Integers = draw.integers(0, given.most + 1, (given.tasks, given.species))
         if needs.any(axis=1).all():
             return needs
+    while (empty := ~needs.any(axis=1)).any():
+        needs[empty] = draw.integers(0, given.most + 1, (int(empty.sum()), given.species))
+    return needs
 
 
 def _amounts(amounts: Integers) -> dict[str, float]:

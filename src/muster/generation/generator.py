@@ -31,7 +31,8 @@ class Generator:
         where it comes from: a publication, or what in Muster uses it.
     parameters
         a frozen, keyword-only dataclass with a default for each field, which checks itself when it is made: a class of
-        `muster.mission.records`, whose fields say what they mean, or any other.
+        `muster.mission.records`, whose fields say what they mean, or any other. Those that are whole numbers, numbers,
+        words or truth values, by their default, are options of `muster generate`.
     make
         the mission for parameters and a seed. It draws random numbers from the seed alone, and rounds what it computes
         by functions whose last digit differs between machines.

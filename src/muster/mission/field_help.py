@@ -46,7 +46,7 @@ def unit_of(f: Field[Any]) -> str:
     ending = re.search(r"_([a-z0-9]+)$", f.name)
     if ending is not None and ending[1] in _UNITS:
         return _UNITS[ending[1]]
-    kind = f.metadata["kind"]
+    kind = f.metadata.get("kind")
     places = isinstance(kind, Position) or (isinstance(kind, Many) and isinstance(kind.kind, Position))
     return "m" if places else ""
 

@@ -125,6 +125,8 @@ HOSTILE = {
     "nul.csv": b"id,lat,lon\n1,47.1\0,8\n",
     "infinite.geojson": b'{"type":"Point","coordinates":[1e999, 3]}',
     "nan.geojson": b'{"type":"Point","coordinates":[NaN, 3]}',
+    "nan.gpx": b'<gpx><wpt lat="47" lon="nan"/></gpx>',
+    "nan_height.gpx": b'<gpx><wpt lat="47" lon="8"><ele>nan</ele></wpt></gpx>',
     "empty.csv": b"",
     "blank.csv": b"\n\n;;\n",
     "no.kmz": b"PK\3\4 no archive",

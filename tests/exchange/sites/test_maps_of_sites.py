@@ -97,6 +97,31 @@ def test_lines_are_lanes_that_meet_where_they_share_a_point(tmp_path, robots):
     ]  # fmt: skip
     assert [lane.width_m for lane in lanes.edges] == [2.5, 2.5, None]
     assert (lanes.edges[2].speed_mps, lanes.edges[2].capacity) == (1, 1)
+    assert "pieces of lines along which lanes lead already are left out: features[2] (2)" in found.notes
+
+
+def test_a_second_line_adds_the_direction_that_the_first_lacks(tmp_path, robots):
+    line = [[8.5416, 47.3768], [8.5417, 47.3770]]
+    there, both = feature("LineString", line, oneway="yes"), feature("LineString", line, maxspeed="2 m/s")
+    lanes = site(tmp_path, robots, there, both, *points()).mission.lanes
+    assert [(lane.start, lane.end, lane.both_ways, lane.speed_mps) for lane in lanes.edges] == [
+        ("n1", "n2", False, None), ("n2", "n1", False, 2),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("apart_m", "nodes"), [(0.0, 3), (0.004, 3), (0.009, 3), (0.02, 4)])
+def test_points_within_a_centimetre_are_one_node(tmp_path, robots, apart_m, nodes):
+    for east in (8.54173, 8.541731, 8.5417321):
+        moved = east + apart_m / 75_500
+        lines = [[[8.5416, 47.3768], [east, 47.377]], [[moved, 47.377], [8.5420, 47.3772]]]
+        found = site(tmp_path, robots, *(feature("LineString", line) for line in lines), *points())
+        assert len(found.mission.lanes.nodes) == nodes
+
+
+def test_a_zone_that_is_forbidden_to_nobody_is_told(tmp_path, robots):
+    found = site(tmp_path, robots, area(FENCE, kind="zone", name="free", forbidden_to="[]"), *points())
+    assert found.mission.map is None
+    assert "zones that are forbidden to nobody are left out: free" in found.notes
 
 
 @pytest.fixture

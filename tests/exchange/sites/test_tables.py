@@ -148,6 +148,19 @@ def test_columns_named_by_hand_are_stronger(tmp_path, robots):
         read(tmp_path, robots, text, columns={"priorty": "no"})
 
 
+@pytest.mark.parametrize(
+    ("heading", "seconds"),
+    [("Duration min", 900), ("Inspection (min)", 900), ("how long", 15), ("Inspection (km)", None)],
+)
+def test_columns_named_by_hand_have_the_unit_in_their_heading(tmp_path, robots, heading, seconds):
+    text, named = f"name,lat,lon,{heading}\na,47.3,8.5,15\n", {"duration_s": heading}
+    if seconds is None:
+        with pytest.raises(MissionError, match=r"Inspection \(km\): a unit that does not fit"):
+            read(tmp_path, robots, text, columns=named)
+    else:
+        assert read(tmp_path, robots, text, columns=named).mission.tasks[0].duration_s == seconds
+
+
 def test_what_is_wrong_is_named_with_line_and_column(tmp_path, robots):
     text = "name,lat,lon,duration,prio\na,47.3,8.5,soon,high\nb,97,8.5,5,1\nc,,8.5,5,1\n"
     with pytest.raises(MissionError) as caught:
@@ -185,6 +198,13 @@ def test_titles_above_the_headings_are_passed_over_and_named(tmp_path, robots):
     found = read(tmp_path, robots, "Roof 4;;\n;;\nspring;;\nname;lat;lon\nA;47,4;8,5\n", origin=(47.4, 8.5))
     assert [task.id for task in found.mission.tasks] == ["A"]
     assert f"{tmp_path / 'panels.csv'}: passed over: row 1 (Roof 4), row 3 (spring)" in found.notes
+
+
+@pytest.mark.parametrize("title", ["Plant A, north", '"a;b;c;d"'])
+@pytest.mark.parametrize("rows", ["A;47,4;8,5", "A;47,4;8,5;x\nB;47,4;8,5;x", "A;47,4;8,5;"])
+def test_separators_are_not_taken_from_titles_or_decimal_commas(tmp_path, robots, title, rows):
+    found = read(tmp_path, robots, f"{title}\n\nname;lat;lon;note\n{rows}\n", origin=(47.4, 8.5))
+    assert found.mission.tasks[0].position == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("count", [1, 8])

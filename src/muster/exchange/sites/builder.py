@@ -9,7 +9,7 @@ from pathlib import PurePath
 from typing import Any
 
 from muster.exchange.sites.areas import areas_of, around, boundary_of, survey_tasks, zones_of
-from muster.exchange.sites.entries import Entry
+from muster.exchange.sites.entries import Entry, some_of
 from muster.exchange.sites.features import Coordinate
 from muster.exchange.sites.frame import FARTHEST_M, Frame
 from muster.exchange.sites.keys import AT_POINTS, COVERAGE, can_survey, keys_of
@@ -297,7 +297,11 @@ class Builder:
             else:
                 holes = zones_of(entry, areas, self.built.findings)
             zones += [(entry, zone) for zone in holes]
-        self._set_map(bounds, [(entry, zone) for entry, zone in zones if zone.get("forbidden_to") != []])
+        open_zones = [entry for entry, zone in zones if zone.get("forbidden_to") == []]
+        self._set_map(bounds, [(entry, zone) for entry, zone in zones if entry not in open_zones])
+        if open_zones:
+            told = some_of([entry.told for entry in open_zones])
+            self.built.notes.append(f"zones that are forbidden to nobody are left out: {told}")
 
     def _set_map(
         self, bounds: Sequence[tuple[Entry, list[list[float]]]], zones: Sequence[tuple[Entry, dict[str, Any]]]
@@ -339,6 +343,9 @@ class Builder:
             ways.add(entry, self._frame, self.built.findings)
         for k, entry in enumerate(ways.made, begin):
             self._place(("lanes", "edges", k), entry)
+        if ways.doubled:
+            told = some_of([f"{name} ({count})" for name, count in ways.doubled.items()])
+            self.built.notes.append(f"pieces of lines along which lanes lead already are left out: {told}")
         if ways.edges:
             self.built.data["lanes"] = {"nodes": ways.nodes, "edges": ways.edges}
 

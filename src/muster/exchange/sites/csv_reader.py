@@ -6,11 +6,12 @@ import codecs
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from pathlib import Path
 
 from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.file_sizes import read_bytes
-from muster.exchange.sites.tables import Row, table_layer
+from muster.exchange.sites.tables import MOST_TITLES, Row, table_layer
 
 _SEPARATORS = ";\t,|"
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
@@ -59,7 +60,7 @@ def _rows(text: str, file: str) -> Iterator[Row]:
     lines = text.splitlines()
     told = next((line.strip().strip('"') for line in lines if line.strip()), "")
     stated = told[4:] if told[:4].casefold() == "sep=" and len(told) == 5 else ""
-    separator = stated or _separator(told)
+    separator = stated or _separator([line for line in lines if line.strip()][: MOST_TITLES + 2])
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     begins, skips = 1, bool(stated)
     try:
@@ -73,7 +74,17 @@ def _rows(text: str, file: str) -> Iterator[Row]:
         raise refused(file, begins, "", str(error), "CSV: a cell with separators or quotes in quotes") from None
 
 
-def _separator(head: str) -> str:
-    """The separator that stands most often in the headings, outside of quotes; the first of those where several do."""
-    outside = "".join(head.split('"')[::2])
-    return max(_SEPARATORS, key=outside.count) if any(sign in outside for sign in _SEPARATORS) else ","
+def _separator(lines: Sequence[str]) -> str:
+    """The separator that stands as often in one line as in the next, outside of quotes, and there most often.
+
+    Else that of the first line with several. So titles above the headings, and decimal commas below, are passed over.
+    """
+    outside = ["".join(line.split('"')[::2]) for line in lines]
+    for line, following in pairwise(outside):
+        alike = [sign for sign in _SEPARATORS if line.count(sign) == following.count(sign) > 0]
+        if alike:
+            return max(alike, key=line.count)
+    most = [max(_SEPARATORS, key=line.count) for line in outside]
+    several = [sign for sign, line in zip(most, outside, strict=True) if line.count(sign) > 1]
+    first = [sign for sign, line in zip(most[:1], outside, strict=False) if sign in line]
+    return next(iter([*several, *first]), ",")

@@ -52,6 +52,12 @@ class Entry:
         return self.feature.finding(self.columns.heading(key), value, expected)
 
     @property
+    def told(self) -> str:
+        """As notes name it: by its name, else by where it is in its file."""
+        named = self.values.get("id") or self.values.get("name")
+        return str(named or self.feature.where or f"line {self.feature.line}")
+
+    @property
     def height(self) -> float | None:
         """Of a point, if it has one."""
         place = self.degrees or self.metres or ()
@@ -68,7 +74,7 @@ def entries_of(
 ) -> list[Entry]:
     """What a layer holds; what of it is not read is noted."""
     if layer.passed_over:
-        notes.append(f"{layer.title}: passed over: {_some(layer.passed_over)}")
+        notes.append(f"{layer.title}: passed over: {some_of(layer.passed_over)}")
     features = list(_with_shapes(layer, findings))
     by_role: dict[str, list[Feature]] = {}
     for feature in features:
@@ -95,10 +101,10 @@ def _told_unread(names: list[str], roles: list[str]) -> str:
     known = [key for role in roles for key in keys_of(role)]
     near = {name: get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR) for name in names[:_MOST_NAMED]}
     told = [f"{name} (did you mean {found[0]}?)" if found else name for name, found in near.items()]
-    return _some([*told, *names[_MOST_NAMED:]])
+    return some_of([*told, *names[_MOST_NAMED:]])
 
 
-def _some(names: Sequence[str]) -> str:
+def some_of(names: Sequence[str]) -> str:
     """The first of many names."""
     return ", ".join(names[:_MOST_NAMED]) + (
         f", and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""

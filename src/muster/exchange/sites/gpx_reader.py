@@ -68,7 +68,7 @@ def _coordinate(point: Element, file: str) -> Coordinate:
     for name, most in (("lon", 180.0), ("lat", 90.0)):
         told = point.attributes.get(name, "")
         number = _number(told)
-        if number is None or abs(number) > most:
+        if number is None or not abs(number) <= most:  # not a number is refused too
             field = ", ".join(part for part in (point.told("name"), f"{point.name} {name}") if part)
             raise refused(file, point.line, field, told or "missing", f"degrees from -{most:g} to {most:g}")
         numbers.append(number)
@@ -76,7 +76,7 @@ def _coordinate(point: Element, file: str) -> Coordinate:
     if not told:
         return tuple(numbers)
     height = _number(told)
-    if height is None or abs(height) > 1e6:
+    if height is None or not abs(height) <= 1e6:
         raise refused(file, point.line, f"{point.name} ele", told, "metres")
     return (*numbers, height)
 

@@ -138,7 +138,9 @@ def _names(key: SiteKey) -> tuple[str, ...]:
 
 
 def _explicit(heading: str, key: SiteKey) -> Column:
-    return Column(heading, key, next((f for _, f in _readings(heading, key) if f), 1.0))
+    """The column that a user names; its factor is 0 where it has a unit that does not fit the key."""
+    told = (factor for _, factor in _readings(heading, key) if factor != 1.0)
+    return Column(heading, key, next(told, 1.0) if key.dimension else 1.0)
 
 
 def _meaning(heading: str, keys: Mapping[str, SiteKey]) -> Column | None:

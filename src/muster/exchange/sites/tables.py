@@ -13,7 +13,7 @@ Row = tuple[int, Sequence[object]]
 """The number of a row, from 1, and its cells."""
 MOST_ROWS = 1_000_000
 _LONGEST_TITLE = 60
-_MOST_TITLES = 5
+MOST_TITLES = 5
 """Rows of a single cell that may stand above the headings."""
 
 
@@ -52,7 +52,7 @@ def _split_titles(filled: Iterator[Row]) -> tuple[list[Row], Iterator[Row]]:
         if _has_several(row):
             return above, chain([row], filled)
         above.append(row)
-        if len(above) > _MOST_TITLES:
+        if len(above) > MOST_TITLES:
             break
     return [], chain(above, filled)
 

@@ -60,7 +60,7 @@ class RunStage extends Stage {
   paintMove(context, id, { to, until }, now) {
     const task = this.places.tasks.get(id);
     if (!task) return;
-    const [x, y] = [this.view.x(task.x), this.view.y(task.y)];
+    const [x, y] = this.spot(task);
     const radius = (RING + 1.5 * Math.sin((2 * Math.PI * now) / PULSE_MS)) * this.theme.scale;
     context.globalAlpha = Math.min(Math.max((until - now) / FADE_MS, 0), 1);
     context.beginPath();

@@ -57,7 +57,8 @@ function arrow(context, x, y, angle) {
 }
 
 // From each prerequisite to the task that waits for it; where one task is chosen, its own alone.
-export function drawPrerequisites(context, view, scene, places, theme, chosen) {
+export function drawPrerequisites(context, stage, chosen) {
+  const { scene, places, theme } = stage;
   context.strokeStyle = chosen ? theme.ink : theme.quiet;
   context.fillStyle = context.strokeStyle;
   context.lineWidth = 1;
@@ -67,7 +68,7 @@ export function drawPrerequisites(context, view, scene, places, theme, chosen) {
     for (const before of task.prerequisites) {
       const first = places.tasks.get(before);
       if (!first || (chosen && chosen !== task.id && chosen !== before)) continue;
-      const [from, to] = [[view.x(first.x), view.y(first.y)], [view.x(task.x), view.y(task.y)]];
+      const [from, to] = [stage.spot(first), stage.spot(task)];
       context.beginPath();
       context.moveTo(...from);
       context.lineTo(...to);

@@ -16,16 +16,17 @@ export const short = (name) => (name.length > LONGEST_NAME ? `${name.slice(0, LO
 export function drawTasks(context, view, stage) {
   const { scene, places, theme, chosen, hovered } = stage;
   const radius = taskRadius(scene, theme);
-  const seen = scene.tasks.filter((task) => isSeen(view, task));
-  for (const task of seen) drawTask(context, view.x(task.x), view.y(task.y), radius, task, stage);
+  const seen = scene.tasks.filter((task) => isSeen(view, ...stage.spot(task)));
+  for (const task of seen) drawStem(context, view, stage.spot(task), task, theme);
+  for (const task of seen) drawTask(context, ...stage.spot(task), radius, task, stage);
   const labels = new Labels(view.width, view.height);
   const around = (task) => radius + stage.marginOf(task);
-  for (const task of seen) labels.block(view.x(task.x), view.y(task.y), around(task));
+  for (const task of seen) labels.block(...stage.spot(task), around(task));
   for (const robot of scene.robots) labels.block(view.x(robot.x), view.y(robot.y), robotRadius(scene, theme));
   context.font = theme.font;
   const isFirst = (task) => places.is(chosen, "task", task.id) || places.is(hovered, "task", task.id);
   for (const task of [...seen.filter(isFirst), ...seen.filter((task) => !isFirst(task))]) {
-    const at = [view.x(task.x), view.y(task.y)];
+    const at = stage.spot(task);
     const names = stage.namesOf(task);
     for (const text of names) {
       const must = isFirst(task) && text === names.at(-1);
@@ -37,10 +38,19 @@ export function drawTasks(context, view, stage) {
   }
 }
 
-const isSeen = (view, { x, y }) => {
-  const [px, py] = [view.x(x), view.y(y)];
-  return px > -20 && py > -20 && px < view.width + 20 && py < view.height + 20;
-};
+const isSeen = (view, px, py) => px > -20 && py > -20 && px < view.width + 20 && py < view.height + 20;
+
+// From the place that tasks share to the mark that is put beside it.
+function drawStem(context, view, [px, py], { x, y }, theme) {
+  const place = [view.x(x), view.y(y)];
+  if (place[0] === px && place[1] === py) return;
+  context.beginPath();
+  context.moveTo(...place);
+  context.lineTo(px, py);
+  context.lineWidth = 1;
+  context.strokeStyle = theme.quiet;
+  context.stroke();
+}
 
 function drawTask(context, x, y, radius, task, stage) {
   const { theme, places, chosen, impossible } = stage;

@@ -1,5 +1,6 @@
 // The map as a whole: what is shown, on two canvases: the ground with tasks and routes, which change seldom, and robots.
 
+import { asideOf, hiddenBeneath } from "./aside.js";
 import { drawGround, drawScaleBar } from "./ground.js";
 import { drawPrerequisites, drawRoutes, drawTrails } from "./lines.js";
 import { Live } from "./live.js";
@@ -44,6 +45,8 @@ export class Stage {
       tasks: new Map(this.scene.tasks.map((task) => [task.id, task])),
       stations: new Map(this.scene.stations.map((station) => [station.id, station])),
       robotIndex: new Map(this.scene.robots.map((robot, k) => [robot.id, k])),
+      aside: asideOf(this.scene.tasks),
+      beneath: hiddenBeneath(this.scene.tasks),
       is: (one, what, id) => one !== null && one.what === what && one.id === id,
     };
   }
@@ -122,7 +125,7 @@ export class Stage {
     const only = chosen?.what === "robot" ? chosen.id : null;
     drawRoutes(context, view, this.routes, places, theme, only);
     const task = chosen?.what === "task" ? chosen.id : null;
-    if (this.showPrerequisites || task) drawPrerequisites(context, view, scene, places, theme, task);
+    if (this.showPrerequisites || task) drawPrerequisites(context, this, task);
     drawStations(context, view, this);
     drawTasks(context, view, this);
     if (this.editable) this.paintHandles(context);
@@ -162,13 +165,21 @@ export class Stage {
     return point ? { x: point[0], y: point[1] } : null;
   }
 
+  // The pixel of a task's mark: at its place, or beside it where tasks share one.
+  spot({ id, x, y }) {
+    const [right, down] = this.places.aside.get(id) ?? [0, 0];
+    const radius = taskRadius(this.scene, this.theme);
+    return [this.view.x(x) + right * radius, this.view.y(y) + down * radius];
+  }
+
   // What is at a pixel: robots before tasks before stations before corners of zones; the nearest of each.
   at(px, py) {
     const nearest = (items, radius) => {
       let best = null;
       let least = radius + REACH;
-      for (const { x, y, ...one } of items) {
-        const gap = Math.hypot(this.view.x(x) - px, this.view.y(y) - py);
+      for (const { x, y, spot, ...one } of items) {
+        const [left, top] = spot ?? [this.view.x(x), this.view.y(y)];
+        const gap = Math.hypot(left - px, top - py);
         if (gap < least) [best, least] = [one, gap];
       }
       return best;
@@ -177,7 +188,7 @@ export class Stage {
       const { x, y } = this.robotAt(robot);
       return { what: "robot", id: robot.id, x, y };
     });
-    const tasks = this.scene.tasks.map(({ id, x, y }) => ({ what: "task", id, x, y }));
+    const tasks = this.scene.tasks.map((task) => ({ what: "task", id: task.id, spot: this.spot(task) }));
     const stations = this.scene.stations.map(({ id, x, y }) => ({ what: "station", id, x, y }));
     const corners = this.editable ? this.corners() : [];
     return nearest(robots, robotRadius(this.scene, this.theme) - 4)
@@ -196,7 +207,12 @@ export class Stage {
   whyNot() { return "can never be done"; }
 
   // What is written beside a task, the longest first: where there is no room, the next.
-  namesOf(task) { return [short(task.id)]; }
+  namesOf(task) { return [this.withBeneath(task, short(task.id))]; }
+
+  withBeneath(task, name) {
+    const count = this.places.beneath.get(task.id);
+    return count ? `${name} + ${count}` : name;
+  }
 
   // How far around a task's mark nothing is written, in pixels.
   marginOf() { return 0; }
@@ -204,7 +220,10 @@ export class Stage {
   // Moves something on the map alone: while it is dragged.
   place(one, x, y) {
     if (one.what === "zone") this.scene.zones[one.id].corners[one.corner] = [x, y];
-    else Object.assign(this.find(one), { x, y });
+    else {
+      Object.assign(this.find(one), { x, y });
+      this.index();
+    }
     this.draw();
   }
 }

@@ -14,7 +14,7 @@ export function drawStations(context, view, stage) {
   const radius = STATION_RADIUS * theme.scale;
   const labels = new Labels(view.width, view.height);
   for (const { x, y } of scene.stations) labels.block(view.x(x), view.y(y), radius);
-  for (const { x, y } of scene.tasks) labels.block(view.x(x), view.y(y), taskRadius(scene, theme));
+  for (const task of scene.tasks) labels.block(...stage.spot(task), taskRadius(scene, theme));
   for (const { x, y } of scene.robots) labels.block(view.x(x), view.y(y), robotRadius(scene, theme));
   context.font = theme.font;
   for (const { id, x, y } of scene.stations) {
