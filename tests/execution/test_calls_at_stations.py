@@ -188,6 +188,19 @@ def test_a_robot_that_is_served_is_free_when_that_is_over_and_has_the_level_of_t
     assert snapshot.free_s == pytest.approx(20, abs=0.5)
 
 
+@pytest.mark.parametrize("more", [(), (Event(at_s=20.5, cancel_task="n"),)])
+def test_a_robot_that_is_served_stays_for_all_that_a_new_plan_asks(more):
+    robots = [robot(name, x, battery=battery(60, 0.3, reserve=0.1)) for name, x in (("a", -4), ("b", 6))]
+    given = mission(robots, [task("t0", 20), task("t1", 24)], [charger(rate=1)])
+    events = (Event(at_s=20, new_task=task("n", -8)), *more)
+    done = carried_out(replace(given, events=events), charged={"dock": 25.0}, a="dock t0", b="dock t1")
+    assert done.result().tasks_done == tuple(sorted({"t0", "t1", "n"} - {event.cancel_task for event in more}))
+    begins, ends = happened(done, "service_begins"), happened(done, "service_ends")
+    assert [name for _, name in begins if name == "a"] == ["a"]  # one visit
+    assert begins[0][0] < 20 < ends[0][0]
+    assert all(begin >= end for (begin, _), (end, _) in zip(begins[1:], ends, strict=False))
+
+
 def test_an_empty_robot_counts_as_failed_where_it_is():
     given = mission([robot("r", battery=battery(20)), robot("s", -9)], [task("a", 30)])
     done = carried_out(given, ignore="battery", r="a", s="")

@@ -190,6 +190,15 @@ def test_the_admissible_part_of_routes_is_admissible_and_in_order(seed):
         assert [j for j in whole if j in kept] == kept
 
 
+def test_of_routes_with_goods_who_picks_up_still_delivers():
+    (mission,) = muster.generate("transports", transports=6, seed=2)
+    problem = Problem.compile(mission).ready()
+    plan = muster.solve(mission, "search", iterations=300, seed=1)
+    routes = [[problem.task_index[name] for name in route.tasks] for route in plan.routes]
+    assert plan.tasks_completed == plan.tasks_total
+    assert admissible_part(problem, routes) == routes
+
+
 def test_reasons_are_given_together():
     reasons = (Reason("a", "skill", "lacks x"), Reason("b", "lock", "only c"), Reason("c", "skill", "lacks x"))
     assert reasons_in_one_line(reasons) == "skill: lacks x (a, c); lock: only c (b)"

@@ -114,7 +114,7 @@ def admissible_part(problem: Problem, routes: Routes) -> Routes:
 
     Removed are tasks that their robot may not do, tasks with a prerequisite that is missing, and tasks at the end of a
     route above its capacity. If routes deadlock, only the fixed tasks are left. With rules about time, teams or
-    relations tasks are removed with which there is no schedule, those that begin together all at once.
+    relations tasks are removed with which there is no schedule, those of a unit (`_unit`) all at once.
     """
     if problem.has_timed_rules:
         return _timed_part(problem, routes)
@@ -139,7 +139,7 @@ def _timed_part(problem: Problem, routes: Routes) -> Routes:
     """The part of routes that has a schedule: unit after unit is kept that fits with those before it."""
     kept = {j for i, route in enumerate(routes) for j in route[: len(problem.beginning(i))]}
     place = {j: k for route in routes for k, j in enumerate(route)}
-    units = {tuple(sorted({j, *problem.timed_rules.beginning_with(j)})) for j in place.keys() - kept}
+    units = {tuple(sorted(_unit(problem, j) - kept)) for j in place.keys() - kept}
     pending = sorted(units, key=lambda unit: (max(place.get(j, 0) for j in unit), unit))
     while pending:
         ready = next((unit for unit in pending if _is_whole(problem, unit, place, kept)), None)
@@ -152,10 +152,21 @@ def _timed_part(problem: Problem, routes: Routes) -> Routes:
     return [[j for j in route if j in kept] for route in routes]
 
 
+def _unit(problem: Problem, j: int) -> set[int]:
+    """A task with all that begin with it, and with those that pick up or deliver the same goods."""
+    unit, waiting = {j}, [j]
+    while waiting:
+        k = waiting.pop()
+        new = {*problem.timed_rules.beginning_with(k), *problem.with_partner(k)} - unit
+        unit |= new
+        waiting += new
+    return unit
+
+
 def _is_whole(problem: Problem, unit: Sequence[int], place: Mapping[int, int], kept: Collection[int]) -> bool:
-    """Whether all tasks that begin together are there, and what must be done before them is kept."""
+    """Whether all tasks of a unit are there, and what must be done before them is kept."""
     before = {other for j in unit for other in problem.prerequisites[j]}
-    return all(j in place for j in unit) and before <= set(kept)
+    return all(j in place for j in unit) and before <= {*kept, *unit}
 
 
 def _too_much(usage: float, capacity: float) -> bool:

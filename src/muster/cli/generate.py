@@ -85,7 +85,7 @@ def _command_of(generator: Generator) -> click.Command:
     ]
 
     @click.pass_obj
-    def write(group_quiet: bool, count: int, seed: int, output: Path | None, quiet: bool, **values: Any) -> None:
+    def write(group_quiet: bool, /, count: int, seed: int, output: Path | None, quiet: bool, **values: Any) -> None:
         given = {name: value for name, value in values.items() if value is not None}
         _write(generator, given, count, seed, output, quiet or group_quiet)
 

@@ -68,7 +68,8 @@ class Itinerary:
     def with_heights(self, heights_m: Mapping[str, float]) -> Itinerary:
         """The itinerary with the work of some tasks, by their names, at a height above the ground of the map frame."""
         passages = [
-            replace(p, place=(*p.place[:2], heights_m[p.task])) if p.task in heights_m else p for p in self.passages
+            p if (height := heights_m.get(p.task or "")) is None else replace(p, place=(*p.place[:2], height))
+            for p in self.passages
         ]
         return replace(self, passages=tuple(passages))
 

@@ -9,7 +9,7 @@ from typing import Any
 from muster.execution.goods_ledger import GoodsLedger, as_amount
 from muster.execution.robot_energy import RobotEnergy
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.stations import Stations
+from muster.execution.stations import AT_STATION, Stations
 from muster.execution.task_ledger import Ledger, moved, robot_as_it_holds
 from muster.execution.task_motion import place
 from muster.execution.team_work import break_off
@@ -198,7 +198,7 @@ class Changes:
         self._leave(task, now)
         self.ledger.withdraw(task, now)
         for state in self.crew.values():
-            state.route = [name for name in state.route if name != task]
+            state.leave_out({task})
         self.ledger.expire(task, "cancelled")
         self._cancel_delivery_of(task)
         yield Change("cancel_task", {"task": task})
@@ -263,12 +263,12 @@ class Changes:
         self.on_doors(closed)
 
     def _leave(self, task: str, now: float) -> None:
-        """Stop the robots that are at a task or on the way to it."""
+        """Stop the robots that are at a task or on the way to it; those at a station before it go on there."""
         at = self._at(task)
         if any(state.activity is Activity.WORKING for state in at):
             break_off(self.crew, self.ledger, task, now)
         for state in at:
-            if state.activity not in (Activity.IDLE, Activity.RETURNING):
+            if state.activity not in (Activity.IDLE, Activity.RETURNING, *AT_STATION):
                 state.stop(now)
 
     def _at(self, task: str) -> list[RobotState]:

@@ -15,7 +15,7 @@ from muster.execution.goods_ledger import GoodsLedger
 from muster.execution.monitor import exceeds
 from muster.execution.peers import Gathering, Peers
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.station_calls import Call, next_call
+from muster.execution.station_calls import Call, as_one, next_call
 from muster.execution.station_service import StationService
 from muster.execution.stations import AT_STATION
 from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
@@ -180,13 +180,17 @@ class Dispatch:
     ) -> None:
         """A robot that is served stays for it, and one on the way to a station where it is still to go goes on."""
         current, first = state.call, next_call(tasks, calls)
-        state.route, kept = list(tasks), list(calls)
+        is_next = first is not None and first.station == state.station
         own = current is not None and not current.planned and not tasks and not calls
-        if current is not None and (state.activity is Activity.SERVED or own):
-            kept = [replace(current, before=tasks[0] if tasks else None), *calls]
-        elif current is None or first is None or first.station != state.station:
+        state.route, state.calls = list(tasks), list(calls)
+        if current is not None and state.activity is Activity.SERVED and first is not None and is_next:
+            state.calls = [as_one(current, first), *(call for call in calls if call is not first)]
+            if self.service is not None:
+                self.service.extend(state, now)
+        elif current is not None and (state.activity is Activity.SERVED or own):
+            state.calls = [replace(current, before=tasks[0] if tasks else None), *calls]
+        elif current is None or not is_next:
             state.stop(now)
-        state.calls = kept
 
     def _begins_unasked(self, state: RobotState) -> bool:
         """Whether a robot on the way would begin its task at once, and the task must wait for more than it did."""

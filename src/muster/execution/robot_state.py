@@ -6,13 +6,13 @@ The availability `a_i` of [tcf-thesis], 5.3.1: a robot is busy while it moves to
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import takewhile
 
 from muster.execution.robot_energy import RobotEnergy
-from muster.execution.station_calls import Call, next_call
+from muster.execution.station_calls import Call, next_call, without_tasks
 from muster.execution.task_motion import Work, path_length, place
 from muster.mission.model import Robot
 from muster.motion.leg_times import LegTimes
@@ -123,6 +123,10 @@ class RobotState:
     def call(self) -> Call | None:
         """Its next call, where that comes before its next task."""
         return next_call(self.route, self.calls)
+
+    def leave_out(self, gone: Container[str]) -> None:
+        """Take tasks out of its route; what it was to charge before them it charges before the next."""
+        self.route, self.calls = without_tasks(self.route, self.calls, gone)
 
     @property
     def position(self) -> Place:

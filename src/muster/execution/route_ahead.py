@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from muster.allocation.allocator import scheduled
 from muster.allocation.problem import Problem
-from muster.execution.station_calls import Call, tasks_and_calls
+from muster.execution.station_calls import Call, in_one_visit, tasks_and_calls
 from muster.mission.plan import RouteStop
 
 
@@ -60,15 +60,22 @@ def route_ahead(problem: Problem, i: int, stops: Sequence[RouteStop]) -> RouteAh
 def _calls(
     problem: Problem, i: int, stops: Sequence[RouteStop], after: Sequence[float], whole: float
 ) -> tuple[Call, ...]:
-    """The calls among stops, after each of which the robot uses so much, with the shares up to which it charges."""
+    """The calls among stops, after each of which the robot uses so much, with the shares up to which it charges.
+
+    What is to be charged before the past is charged after it.
+    """
     battery = problem.robots[i].battery
+    past = {problem.tasks[j].id for j in problem.beginning(i)}
     level = 0.0 if battery is None else problem.levels[i] if problem.levels else battery.level_at_start
-    details, left = [], whole
+    details: list[tuple[float | None, float]] = []
+    left = whole
     stations = {station.id: station for station in problem.stations}
     for stop, rest in zip(stops, after, strict=True):
         at_stop = level - (left - rest)  # work of a task included
         left, level = rest, at_stop
         if not stop.is_station:
+            if battery is not None and stop.name in past:
+                details = [(until and level / battery.capacity, after_it) for until, after_it in details]
             continue
         until = None
         if battery is not None and stop.charged is not None:
@@ -77,6 +84,5 @@ def _calls(
         elif battery is not None and stations[stop.name].gives_energy:
             level = battery.capacity
         details.append((until, rest))
-    past = {problem.tasks[j].id for j in problem.beginning(i)}
     names = [stop.name for stop in stops if stop.name not in past]
-    return tasks_and_calls(names, stations, details)[1]
+    return in_one_visit(tasks_and_calls(names, stations, details)[1])

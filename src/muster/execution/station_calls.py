@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 
@@ -55,6 +55,33 @@ def tasks_and_calls(
         ahead = []
         tasks.append(name)
     return tuple(tasks), tuple(calls)
+
+
+def without_tasks(route: Sequence[str], calls: Sequence[Call], gone: Container[str]) -> tuple[list[str], list[Call]]:
+    """A route and its calls without some tasks; a call before one of them comes before the next that is left."""
+    following: dict[str | None, str | None] = {None: None}
+    after = None
+    for task in reversed(route):
+        after = after if task in gone else task
+        following[task] = after
+    left = [task for task in route if task not in gone]
+    return left, [replace(call, before=following.get(call.before, call.before)) for call in calls]
+
+
+def as_one(visit: Call, following: Call) -> Call:
+    """A visit under way and a call at the same station that comes next: one visit, up to the higher level."""
+    full = visit.until is None or following.until is None
+    return replace(following, until=None if full else max(visit.until or 0.0, following.until or 0.0))
+
+
+def in_one_visit(calls: Iterable[Call]) -> tuple[Call, ...]:
+    """The calls, of which several at one station with no task between them are one."""
+    found: list[Call] = []
+    for call in calls:
+        if found and (found[-1].station, found[-1].before) == (call.station, call.before):
+            call = as_one(found.pop(), call)
+        found.append(call)
+    return tuple(found)
 
 
 def next_call(route: Sequence[str], calls: Sequence[Call]) -> Call | None:

@@ -162,21 +162,28 @@ class StationService:
         if state.charged_idle and has_tasks_without_robot(self.ledger, self.stations.crew):
             self.ask([Change("robot_charged", {"robot": state.robot.id, "station": station.id})])
 
+    def extend(self, state: RobotState, now: float) -> None:
+        """Charge on, beyond what the service under way was to bring, as far as the robot's call says now."""
+        if state.energy is None or self.stations.known[state.station].charge_per_s is None:
+            return
+        state.note_energy()
+        left_s = _takes_s(self.stations, state) - (0.0 if state.energy.told else now - state.begun_s)
+        if left_s > state.service_left_s(now):
+            self._stay(state, left_s, now)
+
+    def _stay(self, state: RobotState, left_s: float, now: float) -> None:
+        begun = state.begun_s
+        hold = Waypoint(state.position, hold_s=left_s, label=state.station, uses=0.0, service=state.station)
+        state.send(now, Activity.SERVED, [hold])
+        state.begun_s, state.service_s = begun, now - begun + left_s
+
     def _goes_on(self, state: RobotState, before: float, now: float) -> bool:
         """Go on where telemetry tells that less was added than was to be, as long as anything is."""
         missing = _to_add(self.stations, state)
         energy = state.energy
         if energy is None or missing <= _MISSING * energy.battery.capacity or energy.level <= before:
             return False
-        begun = state.begun_s
-        again_s = _takes_s(self.stations, state)
-        state.send(
-            now,
-            Activity.SERVED,
-            [Waypoint(state.position, hold_s=again_s, label=state.station, uses=0.0, service=state.station)],
-        )
-        state.service_s += again_s
-        state.begun_s = begun
+        self._stay(state, _takes_s(self.stations, state), now)
         return True
 
 
