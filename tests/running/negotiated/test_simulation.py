@@ -59,7 +59,7 @@ def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and
             Event(at_s=8.5, robot_fails="r_1"),
             Event(at_s=20, new_task=new),
             Event(at_s=50, robot_returns="r_1"),
-            Event(at_s=70, new_task=Task(id="last", position=(20.0, 5.0))),
+            Event(at_s=58, new_task=Task(id="last", position=(20.0, 5.0))),
         ]
     )
     file = tmp_path / "record.mcap"
