@@ -84,6 +84,7 @@ def test_in_json(muster):
         "unknown": False,
         "unseen": [],
         "blocked": [],
+        "cut_off": [],
     }
 
 
@@ -103,7 +104,15 @@ def test_when_all_can_be_done(muster):
         "",
     )
     answer = json.loads(muster("check", "m.yaml", "--format", "json")[1])
-    nothing = {"errors": [], "impossible": [], "conflict": None, "unknown": False, "unseen": [], "blocked": []}
+    nothing = {
+        "errors": [],
+        "impossible": [],
+        "conflict": None,
+        "unknown": False,
+        "unseen": [],
+        "blocked": [],
+        "cut_off": [],
+    }
     assert answer == nothing
 
 
@@ -120,6 +129,29 @@ def test_what_is_not_known(muster):
     assert json.loads(muster("check", "m.yaml", "--time-limit", "0.1", "--format", "json")[1])["unknown"] is True
 
 
+DOCK = """\
+schema: muster/1
+map: {boundary: [[-10, -10], [30, -10], [30, 10], [-10, 10]], zones: [{polygon: [[4, 4], [8, 4], [8, 8], [4, 8]]}]}
+robots: [{id: r, position: [0, 0], radius_m: 0.3, battery: {capacity: 100}}]
+stations: [{id: dock, position: PLACE, services: [charge], charge_per_s: 1}]
+tasks: [{id: a, position: [20, 0]}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("place", "why"),
+    [
+        ("[6, 6]", "inside zone 0"), ("[500, 0]", "outside the boundary"),
+        ("[3.9, 6]", "0.1 m from zone 0, radius 0.3 m"), ("[9, 0]", None),
+    ],
+)  # fmt: skip
+def test_a_station_that_no_robot_gets_to(muster, place, why):
+    code, _, err = muster("check", write(DOCK.replace("PLACE", place)))
+    assert (code, err) == (0, f"warning: station dock: no robot gets there: {why}\n" if why else "")
+    found = json.loads(muster("check", "m.yaml", "--format", "json")[1])["cut_off"]
+    assert found == ([{"station": "dock", "detail": why}] if why else [])
+
+
 def test_no_time(muster):
     """Nothing is said that is not known."""
     code, out, err = muster("check", write(TWO), "--time-limit", "0")
@@ -130,7 +162,7 @@ def test_no_time(muster):
 def test_errors_in_json_have_all_keys(muster):
     code, out, err = muster("check", write("schema: muster/1\n"), "--format", "json")
     assert (code, err) == (2, "")
-    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown", "unseen", "blocked"]
+    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown", "unseen", "blocked", "cut_off"]
 
 
 SEARCH = """\

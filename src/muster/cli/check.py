@@ -96,6 +96,8 @@ def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[st
         _print_checked(mission, lost, len(errors))
         _print_never_used(mission, ignored_rules(ignore))
         _print_touching(mission)
+        for one in found.cut_off:
+            click.echo(f"warning: station {one.station}: no robot gets there: {one.detail}", err=True)
         _print_unseen(found.unseen, errors)
         _print_blocked(found.blocked)
         if len(lost) < len(mission.tasks):

@@ -26,7 +26,7 @@ class Missions:
     async def check(self, text: str, files: object) -> dict[str, Any]:
         self.checked.append(text)
         await asyncio.sleep(0.01)
-        return {"errors": [], "impossible": [], "mission": {"name": text}, "floor": None}
+        return {"errors": [], "impossible": [], "cut_off": [], "mission": {"name": text}, "floor": None}
 
     async def edit(self, text: str, change: str, *arguments: str) -> str:
         await asyncio.sleep(0)

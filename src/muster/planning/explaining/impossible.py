@@ -15,6 +15,7 @@ from muster.mission.plan import Reason, Unassigned
 from muster.motion.actions.coverage import Unseen
 from muster.planning.explaining.crossings import BlockedWay, blocked_ways
 from muster.planning.explaining.explanations import admits
+from muster.planning.explaining.stations import CutOff, cut_off_stations
 from muster.planning.explaining.unseen_searches import unseen_searches
 
 
@@ -32,12 +33,15 @@ class Possible:
         raster searches of which robots that may do them do not see all.
     blocked
         robots that cannot get past each other, and lanes that do not lead where robots must go.
+    cut_off
+        stations to which no robot has a way.
     """
 
     impossible: tuple[Unassigned, ...] = ()
     together: Together = Together()
     unseen: tuple[Unseen, ...] = ()
     blocked: tuple[BlockedWay, ...] = ()
+    cut_off: tuple[CutOff, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Return what `muster check --format json` prints of it."""
@@ -48,6 +52,7 @@ class Possible:
             "unknown": self.together.unknown,
             "unseen": [asdict(item) for item in self.unseen],
             "blocked": [asdict(item) for item in self.blocked],
+            "cut_off": [asdict(item) for item in self.cut_off],
         }
 
     @classmethod
@@ -59,11 +64,12 @@ class Possible:
         )
         unseen = tuple(Unseen(**item) for item in data.get("unseen", ()))
         blocked = tuple(BlockedWay(**{**item, "robots": tuple(item["robots"])}) for item in data.get("blocked", ()))
-        return cls(tuple(lost), Together(_conflict(data["conflict"]), data["unknown"]), unseen, blocked)
+        cut_off = tuple(CutOff(**item) for item in data.get("cut_off", ()))
+        return cls(tuple(lost), Together(_conflict(data["conflict"]), data["unknown"]), unseen, blocked, cut_off)
 
 
 def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float | None = None) -> Possible:
-    """Find the tasks of a mission that can never be done, and the searches that leave something unseen.
+    """Find the tasks of a mission that can never be done, and what else of it cannot be as it seems meant.
 
     Parameters
     ----------
@@ -81,9 +87,10 @@ def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float
     budget = Stop(time_limit=time_limit)
     problem = Problem.compile(mission, ignored=ignored).ready()  # which reads the map
     lost, unseen, blocked = impossible(problem), unseen_searches(problem), blocked_ways(problem)
-    if budget.time_left_s is None:
-        return Possible(lost, Together(unknown=True), unseen, blocked)
-    return Possible(lost, together(problem, admits, time_limit=budget.time_left_s), unseen, blocked)
+    cut_off, all_others = cut_off_stations(problem), Together(unknown=True)
+    if budget.time_left_s is not None:
+        all_others = together(problem, admits, time_limit=budget.time_left_s)
+    return Possible(lost, all_others, unseen, blocked, cut_off)
 
 
 def _conflict(data: Mapping[str, Any] | None) -> Conflict | None:

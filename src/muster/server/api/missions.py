@@ -65,6 +65,7 @@ class Checked:
     `conflict` are tasks that no single plan can do together; `unknown` is true if that was not checked or not decided.
     `unseen` are raster searches of which robots that may do them do not see all.
     `blocked` are robots that cannot get past each other, and lanes that do not lead where robots must go.
+    `cut_off` are stations to which no robot has a way.
     `floor` is the image of the mission's map, one of its files, with its resolution and origin.
     """
 
@@ -74,6 +75,7 @@ class Checked:
     unknown: bool
     unseen: list[dict[str, Any]]
     blocked: list[dict[str, Any]]
+    cut_off: list[dict[str, Any]]
     summary: dict[str, Any] | None
     mission: dict[str, Any] | None
     floor: dict[str, Any] | None

@@ -17,12 +17,13 @@ _QUIET_S = 0.35  # without a change, before a text is checked
 
 @dataclass(frozen=True)
 class Checked:
-    """The result of a check: errors, tasks that can never be done, and the mission as plain data.
+    """The result of a check: errors, stations and tasks that nobody gets to or can do, and the mission as plain data.
 
     `mission` and `floor` are of the last text that could be read, or None. `text` is the checked text, or None.
     """
 
     errors: Sequence[Mapping[str, Any]] = ()
+    cut_off: Sequence[Mapping[str, Any]] = ()
     impossible: Sequence[Mapping[str, Any]] = ()
     mission: Mapping[str, Any] | None = None
     floor: Mapping[str, Any] | None = None
@@ -171,7 +172,7 @@ class Draft:
             self._checking = False
         before = self.checked
         mission, floor = (found["mission"], found["floor"]) if found["mission"] else (before.mission, before.floor)
-        self.checked = Checked(found["errors"], found["impossible"], mission, floor, text)
+        self.checked = Checked(found["errors"], found["cut_off"], found["impossible"], mission, floor, text)
         for listener in self.on_check:
             listener()
 

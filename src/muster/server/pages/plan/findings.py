@@ -21,7 +21,7 @@ class Findings:
     def show(self, checked: Checked) -> None:
         """Show what a check found."""
         self._strip.clear()
-        if not checked.errors and not checked.impossible:
+        if not checked.errors and not checked.impossible and not checked.cut_off:
             self._strip.props("hidden")
             return
         self._strip.props(remove="hidden")
@@ -32,6 +32,9 @@ class Findings:
                 for error in checked.errors[:_MOST]:
                     with ui.element("li"):
                         self._error(error.get("line"), f"{error['field']}: " if error["field"] else "", error)
+                for station in checked.cut_off[:_MOST]:
+                    with ui.element("li"):
+                        ui.label(f"no robot gets to station {station['station']}: {station['detail']}")
                 for task in checked.impossible[:_MOST]:
                     with ui.element("li"):
                         ui.label(f"task {task['task']} can never be done: {_why(task['reasons'])}")
@@ -50,8 +53,12 @@ class Findings:
 
     def _title(self, checked: Checked) -> str:
         parts = [
-            f"{len(found)} {word}{'' if len(found) == 1 else 's'}"
-            for found, word in ((checked.errors, "error"), (checked.impossible, "impossible task"))
+            f"{len(found)} {one if len(found) == 1 else several}"
+            for found, one, several in (
+                (checked.errors, "error", "errors"),
+                (checked.cut_off, "station out of reach", "stations out of reach"),
+                (checked.impossible, "impossible task", "impossible tasks"),
+            )
             if found
         ]
         return " and ".join(parts)
