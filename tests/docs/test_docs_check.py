@@ -101,6 +101,7 @@ def test_numbers_of_a_region_are_those_of_its_command(check):
 def test_numbers():
     assert numbers("22,853.5 m, +0.4 %, v1.2.3, 7 of 9, (4.36)") == ["22853.5", "0.4", "4.36"]
     assert unknown_numbers("1.3 and 1.4", "1.345") == ["1.4"]
+    assert unknown_numbers("-1.3, +2.5, 0.7", "1.345 2.5 -0.7") == ["-1.3", "0.7"]
 
 
 def test_pictures_are_compared_by_their_data(check, tmp_path, monkeypatch):

@@ -18,8 +18,8 @@ _NUMBER = re.compile(r"(?<![\w.])[-+]?\d[\d,]*\.\d+(?![\w.]*\d)")
 
 
 def numbers(text: str) -> list[str]:
-    """The numbers of a text that have a decimal point, without sign and separators of thousands."""
-    return [found.replace(",", "").lstrip("+-") for found in _NUMBER.findall(text)]
+    """The numbers of a text that have a decimal point, without separators of thousands."""
+    return [found.replace(",", "").lstrip("+") for found in _NUMBER.findall(text)]
 
 
 def unknown_numbers(text: str, output: str) -> list[str]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from muster.allocation.conflicts import Together
-    from muster.motion.actions.coverage import Unseen
+    from muster.motion.actions.unseen_places import Unseen
     from muster.planning.explaining import Possible
     from muster.planning.explaining.crossings import BlockedWay
 

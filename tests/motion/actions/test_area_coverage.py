@@ -9,7 +9,7 @@ import shapely
 
 from muster.mission.model import Action, Camera, Robot, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
-from muster.motion.actions.coverage import seen
+from muster.motion.actions.unseen_places import seen
 from muster.motion.actions.footprint import footprint_of
 
 AREA = ((0, 0), (60, 5), (70, 40), (35, 25), (5, 45))

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from muster.motion.areas.region import Floats
 
-WAYS = 4
+CORNERS = 4
 """From how many corners a cell can be begun."""
 
 

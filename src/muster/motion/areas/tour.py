@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from muster.motion.areas.cells import WAYS, Cell
+from muster.motion.areas.cells import CORNERS, Cell
 from muster.motion.areas.region import Floats
 from muster.motion.areas.transit import Transit
 
@@ -26,20 +26,20 @@ _NEAR = 6
 
 def tour(cells: Sequence[Cell], short: Floats, transit: Transit) -> Floats:
     """(n, 2, 2) all lanes as they are driven, one after the other: those of cells, and short ones (m, 2, 2)."""
-    driven = [cells[k].begun_from(way) for k, way in _ordered(cells, transit)] if cells else []
+    driven = [cells[k].begun_from(corner) for k, corner in _ordered(cells, transit)] if cells else []
     whole = np.concatenate(driven) if driven else np.empty((0, 2, 2))
     return _with_short_lanes(whole, short, transit)
 
 
 def _ordered(cells: Sequence[Cell], transit: Transit) -> list[tuple[int, int]]:
     """The cells in order, each with the corner from which it is begun."""
-    ways = np.array([[cell.begun_from(way)[[0, -1], [0, 1]] for way in range(WAYS)] for cell in cells])
-    entries, exits = ways[:, :, 0].reshape(-1, 2), ways[:, :, 1].reshape(-1, 2)
-    between = transit.lengths(exits, entries).reshape(len(cells), WAYS, len(cells), WAYS)
+    ends = np.array([[cell.begun_from(corner)[[0, -1], [0, 1]] for corner in range(CORNERS)] for cell in cells])
+    entries, exits = ends[:, :, 0].reshape(-1, 2), ends[:, :, 1].reshape(-1, 2)
+    between = transit.lengths(exits, entries).reshape(len(cells), CORNERS, len(cells), CORNERS)
     starts = np.unique(np.linspace(0, len(cells) - 1, _MOST_STARTS).round().astype(int))
     orders = [_nearest(between, int(first)) for first in starts]
-    order = _improved(min(orders, key=lambda order: _best_ways(between, order)[0]), between)
-    return list(zip(order, _best_ways(between, order)[1], strict=True))
+    order = _improved(min(orders, key=lambda order: _best_corners(between, order)[0]), between)
+    return list(zip(order, _best_corners(between, order)[1], strict=True))
 
 
 def _nearest(between: Floats, first: int) -> list[int]:
@@ -53,28 +53,28 @@ def _nearest(between: Floats, first: int) -> list[int]:
     return order
 
 
-def _best_ways(between: Floats, order: Sequence[int]) -> tuple[float, list[int]]:
+def _best_corners(between: Floats, order: Sequence[int]) -> tuple[float, list[int]]:
     """The length of the ways between cells in an order, and the corners from which that is least."""
-    costs, chosen = np.zeros(WAYS), []
+    costs, chosen = np.zeros(CORNERS), []
     for here, there in pairwise(order):
         whole = costs[:, None] + between[here, :, there, :]
         chosen.append(whole.argmin(axis=0))
         costs = whole.min(axis=0)
-    ways = [int(costs.argmin())]
+    corners = [int(costs.argmin())]
     for choice in reversed(chosen):
-        ways.append(int(choice[ways[-1]]))
-    return float(costs.min()), ways[::-1]
+        corners.append(int(choice[corners[-1]]))
+    return float(costs.min()), corners[::-1]
 
 
 def _improved(order: list[int], between: Floats) -> list[int]:
     """The order with stretches moved and turned around as long as that makes it shorter."""
-    best, orders = _best_ways(between, order)[0], _MOST_STEPS // len(order)
+    best, orders = _best_corners(between, order)[0], _MOST_STEPS // len(order)
     improving = True
     while improving:
         improving = False
         for other in _neighbours(order):
             orders -= 1
-            length = _best_ways(between, other)[0]
+            length = _best_corners(between, other)[0]
             if length < best * (1 - 1e-9):
                 order, best, improving = other, length, True
                 break
@@ -103,33 +103,35 @@ def _with_short_lanes(driven: Floats, short: Floats, transit: Transit) -> Floats
         if not order:
             order.append(lane)
             continue
-        at, way = _cheapest_place(np.array(order), lane, transit)
-        order.insert(at, way)
+        at, turned = _cheapest_place(np.array(order), lane, transit)
+        order.insert(at, turned)
     return np.array(order).reshape(-1, 2, 2)
 
 
 def _cheapest_place(driven: Floats, lane: Floats, transit: Transit) -> tuple[int, Floats]:
     """Before which of the lanes, and in which direction."""
-    ways = np.array([lane, lane[::-1]])
-    to = np.linalg.norm(driven[None, :, 1] - ways[:, None, 0], axis=2)
-    on = np.linalg.norm(driven[None, :, 0] - ways[:, None, 1], axis=2)
+    directions = np.array([lane, lane[::-1]])
+    to = np.linalg.norm(driven[None, :, 1] - directions[:, None, 0], axis=2)
+    on = np.linalg.norm(driven[None, :, 0] - directions[:, None, 1], axis=2)
     gaps = np.linalg.norm(driven[1:, 0] - driven[:-1, 1], axis=1)
     straight = np.hstack([on[:, :1], to[:, :-1] + on[:, 1:] - gaps, to[:, -1:]])
     least, found = math.inf, (len(driven), lane)
     for place in np.argsort(straight, axis=None, kind="stable")[:_NEAR]:
-        way, at = divmod(int(place), len(driven) + 1)
-        if straight[way, at] >= least:
+        turn, at = divmod(int(place), len(driven) + 1)
+        if straight[turn, at] >= least:
             break
-        cost = _added(driven, ways[way], at, transit)
+        cost = _added(driven, directions[turn], at, transit)
         if cost < least:
-            least, found = cost, (at, ways[way])
+            least, found = cost, (at, directions[turn])
     return found
 
 
-def _added(driven: Floats, way: Floats, at: int, transit: Transit) -> float:
+def _added(driven: Floats, lane: Floats, at: int, transit: Transit) -> float:
     """By how much the way between lanes becomes longer with one more before the lane of that number."""
-    before = None if at == 0 else driven[at - 1, 1]
-    after = None if at == len(driven) else driven[at, 0]
-    added = 0.0 if before is None else transit.length(before, way[0])
-    added += 0.0 if after is None else transit.length(way[1], after)
-    return added - (0.0 if before is None or after is None else transit.length(before, after))
+    if at == 0:
+        return transit.length(lane[1], driven[0, 0])
+    before = driven[at - 1, 1]
+    if at == len(driven):
+        return transit.length(before, lane[0])
+    to, on, spared = transit.pairs([(before, lane[0]), (lane[1], driven[at, 0]), (before, driven[at, 0])])
+    return to + on - spared

@@ -12,7 +12,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.mission.plan import Reason, Unassigned
-from muster.motion.actions.coverage import Unseen
+from muster.motion.actions.unseen_places import Unseen
 from muster.planning.explaining.crossings import BlockedWay, blocked_ways
 from muster.planning.explaining.explanations import admits
 from muster.planning.explaining.stations import CutOff, cut_off_stations

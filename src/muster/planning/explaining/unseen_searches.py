@@ -12,7 +12,7 @@ from muster.mission.model import Camera, Mission, Task
 from muster.mission.plan import Plan
 from muster.mission.records import findings
 from muster.mission.value_types import Fault
-from muster.motion.actions.coverage import Unseen, unseen
+from muster.motion.actions.unseen_places import Unseen, unseen
 from muster.motion.actions.raster_search import RasterSearch
 
 

@@ -116,6 +116,6 @@ def _places(task: Task, side: float, motion: TaskMotion) -> Floats:
     lanes = np.unique([point[1] - y for point in motion.points])
     between = (lanes[1:] + lanes[:-1]) / 2
     between = between[np.abs(between) <= side / 2]
-    between = between[:: max(1, len(between) // _BETWEEN)]
+    between = between[:: max(1, -(-len(between) // _BETWEEN))]
     norths, easts = np.meshgrid(np.concatenate([even, between]), even)
     return np.column_stack([x + easts.ravel(), y + norths.ravel()])
