@@ -9,8 +9,8 @@ import shapely
 
 from muster.mission.model import Action, Camera, Robot, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
-from muster.motion.actions.unseen_places import seen
 from muster.motion.actions.footprint import footprint_of
+from muster.motion.actions.unseen_places import seen
 
 AREA = ((0, 0), (60, 5), (70, 40), (35, 25), (5, 45))
 HOLE = ((20, 10), (30, 10), (28, 18))

@@ -12,8 +12,8 @@ from tests.mission.strategies import examples
 from muster.mission.errors import MissionError
 from muster.mission.model import Action, Camera, Robot, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
-from muster.motion.actions.unseen_places import unseen
 from muster.motion.actions.footprint import footprint_of
+from muster.motion.actions.unseen_places import unseen
 from muster.perception.camera import View, intrinsics_of_mission, mount_of_mission
 from muster.perception.localisation import on_ground
 

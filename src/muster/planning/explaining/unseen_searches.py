@@ -12,8 +12,8 @@ from muster.mission.model import Camera, Mission, Task
 from muster.mission.plan import Plan
 from muster.mission.records import findings
 from muster.mission.value_types import Fault
-from muster.motion.actions.unseen_places import Unseen, unseen
 from muster.motion.actions.raster_search import RasterSearch
+from muster.motion.actions.unseen_places import Unseen, unseen
 
 
 def unseen_searches(problem: Problem) -> tuple[Unseen, ...]:
