@@ -24,6 +24,7 @@ Places = NDArray[np.float64]
 class RobotLines:
     """One robot's route as lines.
 
+    `numbers` are those of the tasks in the route, stations counted with them, as sheets count them.
     `travel` runs from the start through tasks and stations, from exit to entry, over a map along the paths that are
     driven.
     `work` runs along the way points of a task's action, else from its entry through its position to its exit, where
@@ -35,6 +36,7 @@ class RobotLines:
     robot: Robot
     figures: RouteFigures
     tasks: tuple[Task, ...]
+    numbers: tuple[int, ...]
     positions: Places
     travel: Places
     work: Places
@@ -108,6 +110,7 @@ def _lines_of(
         robot=robot,
         figures=figures,
         tasks=tasks,
+        numbers=tuple(number for number, stop in enumerate(route, 1) if isinstance(stop, Task)),
         positions=places((marked_place(task, robot) for task in tasks), dimensions),
         travel=_polylines(travel, dimensions),
         work=_polylines(work, dimensions),

@@ -80,6 +80,6 @@ def draw_tasks(ax: Any, lines: RobotLines, detail: Detail) -> None:
     )
     if detail.numbers:
         look: dict[str, Any] = {"color": style.ink, "fontweight": "bold", "zorder": zorder + 0.5e-5}
-        for order, (task, place) in enumerate(zip(lines.tasks, lines.positions, strict=True), 1):
+        for order, task, place in zip(lines.numbers, lines.tasks, lines.positions, strict=True):
             font = detail.mark * (0.6 if order < 10 else 0.53 if order < 100 else 0.43)
             write(ax, place, str(order), gid=f"order-{task.id}", fontsize=font, **look)
