@@ -143,3 +143,27 @@ def test_one_height_for_each_robot():
 def test_options_are_checked(options, line):
     with pytest.raises(ParameterError, match=line):
         ExportOptions(**options)
+
+
+PLANE = """\
+schema: muster/1
+name: plane
+origin_wgs84: {lat_deg: 48.1, lon_deg: 11.5}
+robots: [{id: b, position: [0, -20], kind: air, camera: {fov_deg: 60, tilt_deg: 90}}]
+tasks:
+  - {id: f, action: {name: coverage, area: [[-30, 0], [30, 0], [30, 60], [-30, 60]], height_m: 20}}
+  - {id: gate, position: [3, 3]}
+"""
+
+
+@pytest.mark.parametrize(("altitude", "survey_m"), [(5, 20), (30, 30)])
+def test_in_the_plane_work_is_done_at_its_own_height(crossing, altitude, survey_m):
+    mission, _ = crossing(PLANE)
+    verdict = verify(mission, plan_of({"b": ["f", "gate"]}))
+    found = exported(mission, verdict, "qgc", ExportOptions(altitude=altitude))
+    items = json.loads(found.texts["b.plan"])["mission"]["items"]
+    (survey,) = [item["TransectStyleComplexItem"] for item in items if item["type"] == "ComplexItem"]
+    assert survey["CameraCalc"]["DistanceToSurface"] == pytest.approx(survey_m, abs=0.01)
+    assert items[0]["params"][6] == altitude
+    raised = "b: does f at its height of flight, not lower as the mission says"
+    assert (raised in found.messages) == (survey_m > 20)

@@ -37,8 +37,9 @@ _METHODS = (
     "1e-9 of themselves are equal. A run that failed is behind every plan.",
     "The gap of a run is by how many per cent its objective is above that of the best run on its mission. It is "
     "counted where the run completes as much weight as the best; “as much done” is the share of such runs. It is "
-    "infinite (inf) where the best objective is 0 and its own is not; figures leave such runs out. The mean gap is the mean over missions of their means, with a 95 % interval by the bootstrap over missions "
-    "(percentiles, 9,999 samples); of a single mission over its runs.",
+    "infinite (inf) where the best objective is 0 and its own is not; figures leave such runs out. The mean gap is "
+    "the mean over missions of their means, with a 95 % interval by the bootstrap over missions (percentiles, 9,999 "
+    "samples); of a single mission over its runs.",
     "Wins, ties and losses count missions, each by the run in the middle of an allocator's seeds: against the "
     "best of all others, and of the two in a pair. Missions that an allocator cannot take (n/a) are not counted "
     "for it.",

@@ -40,6 +40,17 @@ def altitudes_of(mission: Mission, options: ExportOptions) -> dict[str, float]:
     return {name: float(options.altitudes.get(name, height)) for name, height in layers.items()}
 
 
+def at_work(mission: Mission, whole: Sequence[Itinerary]) -> tuple[Itinerary, ...]:
+    """The itineraries of a mission in the plane with each drone's work at the `height_m` of its action.
+
+    In space they are as they are: heights of actions are in them.
+    """
+    if mission.dimensions == 3:
+        return tuple(whole)
+    heights = {task.id: task.action.height_m for task in mission.tasks if task.action and task.action.height_m}
+    return tuple(itinerary.with_heights(heights) if itinerary.robot.kind == "air" else itinerary for itinerary in whole)
+
+
 def raised(itinerary: Itinerary, altitudes: Mapping[str, float]) -> Itinerary:
     """The itinerary of a drone at its height; of other robots as it is."""
     height = altitudes.get(itinerary.robot.id)
@@ -50,7 +61,7 @@ def raised_team(
     mission: Mission, verdict: Verdict, altitudes: Mapping[str, float], options: ExportOptions
 ) -> tuple[tuple[Itinerary, ...], tuple[str, ...]]:
     """The itineraries of all robots, drones at their heights, and what is to be said of that."""
-    whole = itineraries(mission, verdict)
+    whole = at_work(mission, itineraries(mission, verdict))
     team = tuple(raised(itinerary, altitudes) for itinerary in whole)
     return team, tuple(height_notes(mission, whole, team, options)) if options.separates else ()
 
@@ -65,17 +76,18 @@ def height_notes(
     whole, team
         the itineraries before and after drones were given their heights.
     """
-    if mission.dimensions == 3:
-        for before, after in zip(whole, team, strict=True):
-            yield from _raised_tasks(before, after)
+    for before, after in zip(whole, team, strict=True):
+        yield from _raised_tasks(before, after, anywhere=mission.dimensions == 3)
     if options.altitude_step or options.altitudes:
         yield from _shared_heights(team, options.clearance)
     yield from (f"warning: {meeting}" for meeting in meetings(team, options.clearance))
 
 
-def _raised_tasks(before: Itinerary, after: Itinerary) -> Iterator[str]:
+def _raised_tasks(before: Itinerary, after: Itinerary, *, anywhere: bool) -> Iterator[str]:
+    """Tasks that are done higher than the mission says; `anywhere`: also those on the ground."""
     pairs = zip(before.under_way, after.under_way, strict=True)
-    tasks = dict.fromkeys(was.task for was, now in pairs if was.task is not None and was.place[2] < now.place[2])
+    higher = [was for was, now in pairs if was.place[2] < now.place[2] and (anywhere or was.place[2])]
+    tasks = [task for task in dict.fromkeys(was.task for was in higher) if task is not None]
     if tasks:
         told = f"{', '.join(list(tasks)[:3])}{', ...' if len(tasks) > 3 else ''}"
         yield f"{before.robot.id}: does {told} at its height of flight, not lower as the mission says"

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from muster.exchange.altitudes import altitudes_of, height_notes, raised, raised_team
+from muster.exchange.altitudes import altitudes_of, at_work, height_notes, raised, raised_team
 from muster.exchange.antimeridian import crosses
 from muster.exchange.earth import Earth
 from muster.exchange.export_request import FORMATS, OPTIONS_OF, ExportOptions, Files
@@ -112,7 +112,8 @@ def plan_files(
     earth = Earth.of(mission, "--to qgc")
     robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
     altitudes = altitudes_of(mission, options)
-    whole = [_thinned(i, robot_paths, options.tolerance) for i in itineraries(mission, verdict, robot_paths)]
+    straight = [_thinned(i, robot_paths, options.tolerance) for i in itineraries(mission, verdict, robot_paths)]
+    whole = at_work(mission, straight)
     _require_heights(mission, whole, altitudes)
     team = [raised(itinerary, altitudes) for itinerary in whole]
     busy = [itinerary for itinerary in team if len(itinerary.passages) > 1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 
@@ -64,6 +64,13 @@ class Itinerary:
     def under_way(self) -> tuple[Passage, ...]:
         """The passages between the start and the end of the route."""
         return self.passages[1:-1] if self.has_end else self.passages[1:]
+
+    def with_heights(self, heights_m: Mapping[str, float]) -> Itinerary:
+        """The itinerary with the work of some tasks, by their names, at a height above the ground of the map frame."""
+        passages = [
+            replace(p, place=(*p.place[:2], heights_m[p.task])) if p.task in heights_m else p for p in self.passages
+        ]
+        return replace(self, passages=tuple(passages))
 
     def at_least(self, height_m: float) -> Itinerary:
         """The itinerary with every passage under way at least so many metres above the start."""
