@@ -100,6 +100,16 @@ def test_lines_are_lanes_that_meet_where_they_share_a_point(tmp_path, robots):
     assert "pieces of lines along which lanes lead already are left out: features[2] (2)" in found.notes
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "metres_a_second"),
+    [("maxspeed", 36, 10), ("maxspeed", "30 mph", 13.4112), ("Max speed", 36, 36), ("speed", "36", 36)],
+)
+def test_the_speeds_of_openstreetmap_are_in_kilometres_an_hour(tmp_path, robots, key, value, metres_a_second):
+    line = feature("LineString", [[8.5416, 47.3768], [8.5417, 47.3770]], **{key: value})
+    (lane,) = site(tmp_path, robots, line, *points()).mission.lanes.edges
+    assert lane.speed_mps == pytest.approx(metres_a_second)
+
+
 def test_a_second_line_adds_the_direction_that_the_first_lacks(tmp_path, robots):
     line = [[8.5416, 47.3768], [8.5417, 47.3770]]
     there, both = feature("LineString", line, oneway="yes"), feature("LineString", line, maxspeed="2 m/s")

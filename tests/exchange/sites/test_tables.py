@@ -138,6 +138,22 @@ def test_units_in_headings_and_beside_numbers(tmp_path, heading, cell, metres_a_
     assert read(tmp_path, robots, "id,x,y\n1,3,4\n").mission.robots[0].speed_mps == pytest.approx(metres_a_second)
 
 
+@pytest.mark.parametrize("headings", ["lat [\u00b0],lon [\u00b0]", "lat (deg),lon (deg)", "Lat (WGS84),Lon (WGS84)"])
+def test_degrees_in_headings(tmp_path, robots, headings):
+    found = read(tmp_path, robots, f"name,{headings}\na,47.3775,8.5417\n", origin=(47.3775, 8.5417))
+    assert found.mission.tasks[0].position == (0, 0)
+
+
+@pytest.mark.parametrize(("heading", "load"), [("Weight (kg)", 25), ("Mass (g)", 0.025), ("Load (boxes)", 25)])
+def test_a_mass_is_a_load_and_no_priority(tmp_path, heading, load):
+    robots = tmp_path / "robots.csv"
+    robots.write_text("name,x,y,Capacity (kg)\nr,0,0,40\n", encoding="utf-8")
+    mission = read(tmp_path, robots, f"name,x,y,{heading}\na,1,2,25\n").mission
+    assert (mission.tasks[0].load, mission.tasks[0].priority) == (load, 1)
+    assert (mission.robots[0].load_capacity, mission.robots[0].work_capacity) == (40, None)
+    assert read(tmp_path, robots, "name,x,y,weight\na,1,2,25\n").mission.tasks[0].priority == 25
+
+
 def test_columns_named_by_hand_are_stronger(tmp_path, robots):
     text = "Breite,Hoehe,lat,no\n47.3,8.5,1,7\n"
     found = read(tmp_path, robots, text, columns={"latitude": "Breite", "lon": "Hoehe"}, origin=(47.3, 8.5))
@@ -181,6 +197,8 @@ def test_what_the_mission_refuses_is_named_by_the_column(tmp_path, robots):
     [
         ("name,latitude,lat,lon\na,1,2,3\n", "lat: means lat, as latitude does; expected one column that says lat"),
         ("name,x (kg),y\na,1,2\n", r"x \(kg\): a unit that does not fit; expected m, km, cm or ft"),
+        ("name,lat (km),lon (km)\na,1,2\n", r"^[^\n]*lat \(km\): a unit that [^\n]*\n[^\n]*lon \(km\)[^\n]*$"),
+        ("name,lat,lon,priority (%)\na,1,2,3\n", r"priority \(%\): a unit that does not fit; expected no unit"),
         ("name,lat,lon,duration (km)\na,1,2,3\n", r"duration \(km\): a unit that does not fit; expected s, min or h"),
         ("name,lat,lon\na,1,2,3\n", 'column 4: "3" without a heading'),
         ("name,lat,lon,opens,window\na,47.4,8.5,5,10-20\n", "window: a window; expected it, or opens, not both"),
@@ -205,6 +223,14 @@ def test_titles_above_the_headings_are_passed_over_and_named(tmp_path, robots):
 def test_separators_are_not_taken_from_titles_or_decimal_commas(tmp_path, robots, title, rows):
     found = read(tmp_path, robots, f"{title}\n\nname;lat;lon;note\n{rows}\n", origin=(47.4, 8.5))
     assert found.mission.tasks[0].position == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("separator", [";", "\t", ","])
+def test_headings_in_quotes(tmp_path, robots, separator):
+    rows = [["name", "x", "y"], ["A", "1", "2"]]
+    text = "".join(separator.join(f'"{cell}"' for cell in row) + "\n" for row in rows)
+    (task,) = read(tmp_path, robots, text, origin=(47.4, 8.5)).mission.tasks
+    assert (task.id, task.position) == ("A", (1, 2))
 
 
 @pytest.mark.parametrize("count", [1, 8])
@@ -266,6 +292,37 @@ def test_a_cell_of_a_workbook_is_named_by_sheet_and_row(tmp_path):
     writers.write_workbook(book, {"Robots": [["id", "x", "y", "speed"], ["r", 0, 0, "fast"]]})
     with pytest.raises(MissionError, match=r"site.xlsx:2: sheet Robots, speed: fast; expected a number in m/s, km/h"):
         read_site(book)
+
+
+def test_cells_of_workbooks_without_values_are_named(tmp_path):
+    book = tmp_path / "site.xlsx"
+    rows = [
+        ["name", "x", "y", "duration", "remark"],
+        ["a", '=1+1&"<"', "#DIV/0!", None, "=A2"],
+        ["b", 1, 2, "=NOW()", None],
+    ]
+    writers.write_workbook(
+        book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], "Tasks": [[], *[[None, *r] for r in rows]]}
+    )
+    with pytest.raises(MissionError) as caught:
+        read_site(book)
+    stored, error = "open the workbook in the spreadsheet program and save it", "a value in place of this error"
+    told = [(f.line, f.field, f.value) for f in caught.value.findings]
+    assert told == [
+        (3, "sheet Tasks, x", '=1+1&"<"'), (3, "sheet Tasks, y", "#DIV/0!"), (4, "sheet Tasks, duration", "=NOW()"),
+    ]  # fmt: skip
+    assert [stored in f.expected for f in caught.value.findings] == [True, False, True]
+    assert error in caught.value.findings[1].expected
+
+
+def test_merged_cells_over_rows_of_data_are_told(tmp_path):
+    book = tmp_path / "site.xlsx"
+    tasks = [["Plan of the year"], ["name", "x", "y", "type"], ["a", 1, 2, "dig"], ["b", 2, 2], ["c", 3, 2]]
+    merged = {"Tasks": ["A1:D1", "D3:D5"]}
+    writers.write_workbook(book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], "Tasks": tasks}, merged)
+    found = read_site(book)
+    assert [task.type for task in found.mission.tasks] == ["dig", None, None]
+    assert f"{book}, Tasks: merged cells D3:D5: only the first cell of each has its value" in found.notes
 
 
 @pytest.mark.parametrize(("module", "extra"), [("python_calamine", "sites"), ("pymap3d", "map")])

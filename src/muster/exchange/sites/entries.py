@@ -19,6 +19,7 @@ _NEAR = 0.75
 _MOST_NAMED = 8
 _IN_DEGREES = ("lat", "lon", "lat_lon", "alt")
 _IN_METRES = ("x", "y", "position")
+_OF_PLACES = (*_IN_DEGREES, *_IN_METRES)
 _EXPECTED_PLACE = "columns of latitude and longitude (or x and y); --column lat=HEADING --column lon=HEADING names them"
 
 
@@ -75,6 +76,7 @@ def entries_of(
     """What a layer holds; what of it is not read is noted."""
     if layer.passed_over:
         notes.append(f"{layer.title}: passed over: {some_of(layer.passed_over)}")
+    notes += [f"{layer.title}: {note}" for note in layer.notes]
     features = list(_with_shapes(layer, findings))
     by_role: dict[str, list[Feature]] = {}
     for feature in features:
@@ -83,6 +85,8 @@ def entries_of(
     unread: list[set[str]] = []
     for role, members in by_role.items():
         columns = columns_of(layer, role, given, findings)
+        if role in AT_POINTS and not columns.wrong.isdisjoint(_OF_PLACES):
+            continue
         if role in AT_POINTS and not _has_places(members, columns):
             if not _passes_over(layer, default, notes):
                 findings.append(_without_places(layer))
@@ -156,7 +160,7 @@ def _entry(role: str, feature: Feature, columns: Columns, findings: list[Finding
     before = len(findings)
     read = {key: column.value(feature, findings) for key, column in columns.by_key.items()}
     values = {key: value for key, value in read.items() if value is not None}
-    own = {key: value for key, value in values.items() if key not in (*_IN_DEGREES, *_IN_METRES, "z", "wkt")}
+    own = {key: value for key, value in values.items() if key not in (*_OF_PLACES, "z", "wkt")}
     entry = Entry(role, feature, columns, own)
     geometry = feature.geometry
     if role not in AT_POINTS:

@@ -64,7 +64,7 @@ class Layer:
     """Features that have their headings in common: a table, a sheet, a folder.
 
     `name` is that of the sheet, folder or layer, if there is one; `headings` are in the order of the file;
-    `passed_over` is what has no place in a mission.
+    `passed_over` is what has no place in a mission; `notes` are what else is to be said of it.
     """
 
     file: str
@@ -72,6 +72,7 @@ class Layer:
     headings: tuple[str, ...]
     features: tuple[Feature, ...]
     passed_over: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
