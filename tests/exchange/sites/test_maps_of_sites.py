@@ -119,6 +119,11 @@ def test_a_second_line_adds_the_direction_that_the_first_lacks(tmp_path, robots)
     ]  # fmt: skip
 
 
+def test_names_are_ids_beside_numbers_of_features(tmp_path, robots):
+    numbered = [{**point, "id": k} for k, point in enumerate(points())]
+    assert [task.id for task in site(tmp_path, robots, *numbered).mission.tasks] == ["north", "east", "south"]
+
+
 @pytest.mark.parametrize(("apart_m", "nodes"), [(0.0, 3), (0.004, 3), (0.009, 3), (0.02, 4)])
 def test_points_within_a_centimetre_are_one_node(tmp_path, robots, apart_m, nodes):
     for east in (8.54173, 8.541731, 8.5417321):
@@ -155,6 +160,14 @@ def test_areas_to_survey_are_tasks(tmp_path, robots, coverage):
     assert task.action.value("height_m") == 30
     whole = shapely.Polygon(task.action.value("area"), task.action.value("holes"))
     assert whole.contains(shapely.Point(task.position))
+
+
+def test_what_follows_an_area_in_several_parts_follows_them_all(tmp_path, robots, coverage):
+    parts = [square(8.541 + k / 1000, 47.377)["geometry"]["coordinates"] for k in range(2)]
+    after = feature("Point", [8.5417, 47.3775], name="post", after="field")
+    survey = feature("MultiPolygon", parts, kind="survey", name="field", height_m=30)
+    mission = site(tmp_path, robots, survey, after).mission
+    assert next(task for task in mission.tasks if task.id == "post").prerequisites == ("field", "field-2")
 
 
 def test_areas_to_survey_need_their_action(tmp_path, robots, monkeypatch):

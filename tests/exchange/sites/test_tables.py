@@ -247,6 +247,55 @@ def test_ids_from_names_rows_and_numbers(tmp_path, robots):
     assert [task.id for task in found.mission.tasks] == ["panels-1", "panels-2"]
 
 
+NUMBERED = "id,name,x,y,after\n1,Gate,1,2,\n2,Hall,2,2,Gate\n3,Roof,3,2,1;Hall\n"
+
+
+@pytest.mark.parametrize("heading", ["id", "no", "number"])
+def test_names_are_ids_beside_mere_numbers(tmp_path, robots, heading):
+    found = read(tmp_path, robots, NUMBERED.replace("id", heading), origin=(47, 8))
+    assert [task.id for task in found.mission.tasks] == ["Gate", "Hall", "Roof"]
+    assert [task.prerequisites for task in found.mission.tasks] == [(), ("Gate",), ("Gate", "Hall")]
+    told = f"name is the id, not the numbers under {heading}; --column id={heading} takes those"
+    assert f"{tmp_path}/panels.csv: {told}" in found.notes
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "ids"),
+    [
+        (NUMBERED, {"id": "id"}, ["1", "2", "3"]),
+        (NUMBERED.replace("3,", "C,", 1), {}, ["1", "2", "C"]),
+        (NUMBERED.replace("Roof", ""), {}, ["1", "2", "3"]),
+    ],
+)
+def test_names_beside_ids_are_told_and_may_be_meant(tmp_path, robots, text, columns, ids):
+    found = read(tmp_path, robots, text, origin=(47, 8), columns=columns)
+    assert [task.id for task in found.mission.tasks] == ids
+    assert found.mission.tasks[2].prerequisites == ("1", "2")
+    told = "not read beside id: name; --column id=name takes it for the id"
+    assert f"{tmp_path}/panels.csv: {told}" in found.notes
+
+
+def test_references_mean_what_their_own_file_calls_so(tmp_path, robots):
+    base = tmp_path / "base.yaml"
+    base.write_text(
+        "schema: muster/1\norigin_wgs84: {lat_deg: 47, lon_deg: 8}\nrobots: [{id: r, position: [0, 0]}]\n"
+        "tasks: [{id: A, position: [9, 9]}, {id: C, position: [9, 8]}]\n",
+        encoding="utf-8",
+    )
+    file = tmp_path / "add.csv"
+    file.write_text("name,x,y,after\nA,1,2,\nB,2,2,A C\n", encoding="utf-8")
+    tasks = {task.id: task for task in read_site(base, file).mission.tasks}
+    assert tasks["A-2"].position == (1, 2)
+    assert tasks["B"].prerequisites == ("A-2", "C")
+
+
+def test_a_name_that_stands_twice_cannot_be_meant(tmp_path, robots):
+    text = "name,x,y,after\nA,1,2,\nA,2,2,\nB,3,2,{}\n"
+    with pytest.raises(MissionError, match=r"panels.csv:4: after: A \(ambiguous\); expected .* an id: A, A-2"):
+        read(tmp_path, robots, text.format("A"), origin=(47, 8))
+    assert read(tmp_path, robots, text.format("A-2"), origin=(47, 8)).mission.tasks[2].prerequisites == ("A-2",)
+
+
 def test_what_a_row_is_of_is_its_name_where_no_other_column_is(tmp_path, robots):
     found = read(tmp_path, robots, "Panel,lat,lon\nA1,47,8\nA2,47,8\n", origin=(47, 8))
     assert [task.id for task in found.mission.tasks] == ["A1", "A2"]

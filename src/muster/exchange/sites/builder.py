@@ -13,6 +13,7 @@ from muster.exchange.sites.entries import Entry, some_of
 from muster.exchange.sites.features import Coordinate
 from muster.exchange.sites.frame import FARTHEST_M, Frame
 from muster.exchange.sites.keys import AT_POINTS, COVERAGE, can_survey, keys_of
+from muster.exchange.sites.references import References
 from muster.exchange.sites.roles import role_word
 from muster.exchange.sites.times import KEYS as TIMES
 from muster.exchange.sites.times import chosen_start, robot_times, task_times
@@ -24,7 +25,6 @@ from muster.mission.source import Place
 from muster.mission.value_types import Path, shown
 
 _GROUPS = {"task": "tasks", "robot": "robots", "station": "stations"}
-_ID_LISTS = ("prerequisites", "same_robot_as", "other_robot_than", "starts_with", "only_robots")
 _OWN = frozenset(("id", "name", "kind", "moves", "battery", *TIMES))
 """Keys of entries that do not go into the mission as they are."""
 _AREAS = ("zone", "boundary", "survey")
@@ -77,6 +77,7 @@ class Builder:
         self._options = options
         self._entries = [entry for entry in entries if entry.role != "route"]
         self.built = Built({"schema": SCHEMA, "name": "site", **self._base})
+        self._made: list[tuple[str, Entry, dict[str, Any]]] = []
         passed_over = len(entries) - len(self._entries)
         if passed_over:
             self.built.notes.append(f"routes and areas of a plan passed over: {passed_over}; Muster plans them anew")
@@ -95,8 +96,8 @@ class Builder:
         ids = self._ids(points)
         for entry, position, name in zip(points, positions, ids, strict=True):
             self._add(_GROUPS[entry.role], entry, self._record(entry, name, position))
-        self._split_lists(self._all_ids())
         self._add_areas(spatial)
+        self._resolve_references()
         self._add_lanes()
         self._set_start()
         self._raise_findings()
@@ -244,20 +245,19 @@ class Builder:
             record |= task_times(entry, self.built.findings)
         return record
 
-    def _split_lists(self, known: Sequence[str]) -> None:
-        """Lists of ids with nothing but spaces between them, where the whole is no id."""
-        ids = set(known)
-        for group in ("tasks", "robots"):
-            for record in self.built.data.get(group, ()):
-                for key in _ID_LISTS:
-                    names = record.get(key)
-                    if isinstance(names, list) and all(isinstance(name, str) for name in names):
-                        record[key] = [part for name in names for part in ([name] if name in ids else name.split())]
+    def _resolve_references(self) -> None:
+        groups = {group: [str(one["id"]) for one in self.built.data.get(group, ())] for group in _GROUPS.values()}
+        references = References(groups)
+        for group, entry, record in self._made:
+            references.add(group, entry, record["id"])
+        for _, entry, record in self._made:
+            references.resolve(entry, record, self.built.findings)
 
     def _add(self, group: str, entry: Entry, record: dict[str, Any]) -> None:
         items = self.built.data.setdefault(group, [])
         self._place((group, len(items)), entry)
         items.append(record)
+        self._made.append((group, entry, record))
 
     def _place(self, at: Path, entry: Entry) -> None:
         feature = entry.feature

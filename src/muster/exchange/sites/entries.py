@@ -37,6 +37,8 @@ class Entry:
         whether the third of `degrees` is a height over the ground.
     geometry
         of a line or an area.
+    also
+        another name by which references may mean it.
     """
 
     role: str
@@ -47,6 +49,7 @@ class Entry:
     metres: tuple[float, ...] | None = None
     over_ground: bool = False
     geometry: Geometry | None = None
+    also: str | None = None
 
     def finding(self, key: str, value: object, expected: str) -> Finding:
         """What is wrong with the value of a key."""

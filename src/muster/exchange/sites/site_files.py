@@ -11,6 +11,7 @@ from muster.exchange.sites.builder import Builder, SiteOptions
 from muster.exchange.sites.entries import Entry, entries_of
 from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.headings import given_columns
+from muster.exchange.sites.identities import identified
 from muster.exchange.sites.readers import reader_of
 from muster.exchange.sites.roles import Roles
 from muster.mission.errors import Finding, MissionError
@@ -102,7 +103,10 @@ def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -
     columns = given_columns(options.columns, whole)
     findings: list[Finding] = []
     notes: list[str] = []
-    entries = [e for layer, default in layers for e in entries_of(layer, roles, default, columns, findings, notes)]
+    entries: list[Entry] = []
+    for layer, default in layers:
+        found = entries_of(layer, roles, default, columns, findings, notes)
+        entries += identified(layer, found, columns, notes)
     if findings:
         raise MissionError(sorted(findings, key=lambda finding: (finding.file, finding.line or 0)))
     if whole and not entries:
