@@ -139,6 +139,26 @@ def test_a_zone_that_is_forbidden_to_nobody_is_told(tmp_path, robots):
     assert "zones that are forbidden to nobody are left out: free" in found.notes
 
 
+@pytest.mark.parametrize(
+    ("properties", "file", "forbidden"),
+    [
+        ({"name": "No-fly zone"}, "site", ("air",)),
+        ({"name": "no_fly 2"}, "site", ("air",)),
+        ({"kind": "No-Fly-Zone"}, "site", ("air",)),
+        ({"kind": "noflyzone"}, "site", ("air",)),
+        ({"type": "geofence no fly"}, "site", ("air",)),
+        ({"name": "Mast"}, "NFZ", ("air",)),
+        ({"name": "No-fly zone", "forbidden_to": "ground"}, "site", ("ground",)),
+        ({"name": "Casino flyer"}, "site", ("ground", "air")),
+    ],
+)
+def test_no_fly_zones_are_forbidden_in_the_air_alone(tmp_path, robots, properties, file, forbidden):
+    found = site(tmp_path, robots, area(**properties), *points(), name=f"{file}.geojson")
+    assert found.mission.map.zones[0].closed_to == forbidden
+    told = [note for note in found.notes if "no-fly zones are forbidden to robots in the air alone" in note]
+    assert len(told) == (forbidden == ("air",))
+
+
 @pytest.fixture
 def coverage():
     """The action of surveys, where the model has none."""

@@ -212,6 +212,20 @@ def test_tables_that_cannot_be_meant(tmp_path, robots, text, message):
         read(tmp_path, robots, text)
 
 
+@pytest.mark.parametrize("wrong", [0, 45])
+def test_of_many_places_the_wrong_one_is_named(tmp_path, robots, wrong):
+    rows = [f"t{k},47.{3700 + k},8.5" for k in range(45)]
+    rows.insert(wrong, "Oops,0,0")
+    with pytest.raises(MissionError) as caught:
+        read(tmp_path, robots, "name,lat,lon\n" + "\n".join(rows))
+    (finding,) = caught.value.findings
+    assert (finding.line, finding.value) == (wrong + 2, "latitude 0, longitude 0")
+    origin = "the origin, which is chosen in the middle of all places: latitude 23.6884, longitude 4.2708"
+    assert f"within 100 km of {origin}; this place is 5,3" in finding.expected
+    with pytest.raises(MissionError, match=r"within 100 km of the origin, not 5,3.. km; are latitude and"):
+        read(tmp_path, robots, "name,lat,lon\n" + "\n".join(rows), origin=(47.37, 8.5))
+
+
 def test_titles_above_the_headings_are_passed_over_and_named(tmp_path, robots):
     found = read(tmp_path, robots, "Roof 4;;\n;;\nspring;;\nname;lat;lon\nA;47,4;8,5\n", origin=(47.4, 8.5))
     assert [task.id for task in found.mission.tasks] == ["A"]

@@ -77,6 +77,7 @@ class Builder:
         self._options = options
         self._entries = [entry for entry in entries if entry.role != "route"]
         self.built = Built({"schema": SCHEMA, "name": "site", **self._base})
+        self._chose_origin = False
         self._made: list[tuple[str, Entry, dict[str, Any]]] = []
         passed_over = len(entries) - len(self._entries)
         if passed_over:
@@ -132,6 +133,7 @@ class Builder:
         spatial = not self._options.flat
         altitudes = [e.height for e in self._entries if e.height is not None and not e.over_ground and spatial]
         frame = Frame.around([place for _, place in in_degrees], altitudes)
+        self._chose_origin = True
         self._set_origin(frame)
         self.built.notes.append(
             f"origin_wgs84 chosen: lat_deg {frame.lat}, lon_deg {frame.lon}, alt_m {frame.alt}; --origin says another"
@@ -154,20 +156,32 @@ class Builder:
                 yield from ((entry, place) for piece in entry.geometry.pieces for ring in piece for place in ring)
 
     def _refuse_far(self) -> None:
-        """Refuse places that cannot be meant; the first that is far from the origin, or from all others."""
-        if self._frame is None:
-            return
-        for entry, place in self._degrees():
-            if self._frame.is_far(place):
-                self.built.findings.append(self._far(entry, place))
-                return
+        """Refuse places that cannot be meant: the first that is far from a given origin, or that far from most others.
 
-    def _far(self, entry: Entry, place: Coordinate) -> Finding:
-        assert self._frame is not None
+        An origin that is chosen is far from all others, where one place is wrong.
+        """
+        frame = self._frame
+        if frame is None:
+            return
+        far = next(((entry, place) for entry, place in self._degrees() if frame.is_far(place)), None)
+        if far is None:
+            return
+        limit = f"{FARTHEST_M / 1000:g} km"
+        if not self._chose_origin:
+            told = f"within {limit} of the origin, not {frame.distance(far[1]) / 1000:,.0f}"
+        else:
+            places = list(self._degrees())
+            most = Frame.amid([place for _, place in places])
+            far = max(places, key=lambda one: most.distance(one[1]))
+            origin = (
+                f"the origin, which is chosen in the middle of all places: latitude {frame.lat}, longitude {frame.lon}"
+            )
+            told = f"within {limit} of {origin}; this place is {most.distance(far[1]) / 1000:,.0f} km from most others"
+        entry, place = far
         value = f"latitude {place[1]:g}, longitude {place[0]:g}"
-        apart = self._frame.distance(place) / 1000
-        expected = f"within {FARTHEST_M / 1000:g} km of the origin, not {apart:,.0f}"
-        return entry.feature.finding("", value, f"{expected}; are latitude and longitude swapped, or 0?")
+        self.built.findings.append(
+            entry.feature.finding("", value, f"{told}; are latitude and longitude swapped, or 0?")
+        )
 
     # Points
 

@@ -10,7 +10,7 @@ from typing import Any
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
 from muster.exchange.sites.headings import Columns, columns_of
 from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
-from muster.exchange.sites.roles import Roles, names_role
+from muster.exchange.sites.roles import Roles, is_no_fly, names_role
 from muster.exchange.sites.shapes import from_text
 from muster.mission.errors import Finding
 
@@ -97,9 +97,24 @@ def entries_of(
         unread.append(set(columns.unread))
         for feature in members:
             found += _entry(role, feature, columns, findings)
+    found = _without_flying(layer, found, notes)
     lost = set.intersection(*unread) if unread else set()
     if names := [heading for heading in layer.headings if heading in lost and heading.casefold() != ROLE.name]:
         notes.append(f"{layer.title}: not read: {_told_unread(names, list(by_role))}")
+    return found
+
+
+def _without_flying(layer: Layer, entries: list[Entry], notes: list[str]) -> list[Entry]:
+    """The entries; a no-fly zone is forbidden to robots in the air alone, unless it says to whom it is."""
+    found = [
+        replace(e, values={**e.values, "forbidden_to": ["air"]})
+        if e.role == "zone" and "forbidden_to" not in e.values and is_no_fly(layer, e.feature)
+        else e
+        for e in entries
+    ]
+    changed = [entry.told for entry, before in zip(found, entries, strict=True) if entry is not before]
+    if changed:
+        notes.append(f"{layer.title}: no-fly zones are forbidden to robots in the air alone: {some_of(changed)}")
     return found
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from statistics import median
 
 from muster.exchange.sites.features import Coordinate
 
@@ -34,6 +35,13 @@ class Frame:
         lats = [place[1] for place in places]
         lon = wrapped(round((min(lons) + max(lons)) / 2, _ORIGIN_DECIMALS))
         return cls(round((min(lats) + max(lats)) / 2, _ORIGIN_DECIMALS), lon, round(min(altitudes, default=0.0), 1))
+
+    @classmethod
+    def amid(cls, places: Sequence[Coordinate]) -> Frame:
+        """A frame whose origin is amid most of the places: few that are far off do not move it."""
+        first = places[0][0]
+        lons = median(unwrapped(place[0], first) for place in places)
+        return cls(median(place[1] for place in places), wrapped(lons), 0.0)
 
     def metres(self, places: Sequence[Coordinate], over_ground: bool = False) -> list[list[float]]:
         """Places in metres, each with as many coordinates as it is given in degrees.
