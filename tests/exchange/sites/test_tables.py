@@ -222,7 +222,7 @@ def test_of_many_places_the_wrong_one_is_named(tmp_path, robots, wrong):
     assert (finding.line, finding.value) == (wrong + 2, "latitude 0, longitude 0")
     origin = "the origin, which is chosen in the middle of all places: latitude 23.6884, longitude 4.2708"
     assert f"within 100 km of {origin}; this place is 5,3" in finding.expected
-    with pytest.raises(MissionError, match=r"within 100 km of the origin, not 5,3.. km; are latitude and"):
+    with pytest.raises(MissionError, match=r"within 100 km of the origin, not 5,3..; are latitude and"):
         read(tmp_path, robots, "name,lat,lon\n" + "\n".join(rows), origin=(47.37, 8.5))
 
 
@@ -418,3 +418,29 @@ def test_heights(tmp_path, robots):
     assert found.mission.dimensions == 2
     assert any("heights left out" in note for note in found.notes)
     assert read(tmp_path, robots, "id,lat,lon,height\na,47,8,12\n", flat=True, origin=(47, 8)).mission.dimensions == 2
+
+
+@pytest.mark.parametrize("cell", ["8.30", "830", "0.375"])
+@pytest.mark.parametrize("heading", ["opens", "closes", "due"])
+def test_numbers_among_clock_times_are_named(tmp_path, robots, heading, cell):
+    text = f"name,x,y,{heading}\na,1,2,09:00\nb,2,2,{cell}\nc,2,3,\n"
+    with pytest.raises(MissionError) as caught:
+        read(tmp_path, robots, text, origin=(47, 8), starts_at="2027-03-01T08:00")
+    (finding,) = caught.value.findings
+    assert (finding.line, finding.field, finding.value) == (3, heading, cell)
+    assert finding.expected.startswith('a clock time, as "08:30", as others of the column are')
+
+
+def test_a_clock_time_without_its_colon_is_named(tmp_path, robots):
+    with pytest.raises(MissionError, match='opens: 0830; expected "08:30", or seconds that do not begin with 0'):
+        read(tmp_path, robots, "name,x,y,opens\na,1,2,0830\n", origin=(47, 8))
+
+
+def test_what_is_taken_for_the_next_day_is_told(tmp_path):
+    robots = tmp_path / "robots.csv"
+    robots.write_text("id,x,y,shift\nearly,0,0,06:00-14:00\nlate,0,0,09:00-17:00\n", encoding="utf-8")
+    text = "name,x,y,window\na,1,2,07:00-09:00\nb,1,2,07:00-07:30\n"
+    found = read(tmp_path, robots, text, starts_at="2027-03-01T08:00")
+    told = "begin before starts_at (2027-03-01T08:00), and are the next day's: a (07:00), early (06:00)"
+    assert told in found.notes
+    assert found.mission.robots[0].available_from_s == 22 * 3600

@@ -16,7 +16,7 @@ from muster.exchange.sites.keys import AT_POINTS, COVERAGE, can_survey, keys_of
 from muster.exchange.sites.references import References
 from muster.exchange.sites.roles import role_word
 from muster.exchange.sites.times import KEYS as TIMES
-from muster.exchange.sites.times import chosen_start, robot_times, task_times
+from muster.exchange.sites.times import chosen_start, of_next_day, robot_times, task_times
 from muster.exchange.sites.ways import Ways
 from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.errors import Finding, MissionError
@@ -101,6 +101,7 @@ class Builder:
         self._resolve_references()
         self._add_lanes()
         self._set_start()
+        self._note_next_day()
         self._raise_findings()
         return self.built
 
@@ -384,6 +385,11 @@ class Builder:
             )
             expected = "--starts-at 2027-03-01T08:00, the moment at which the mission begins, beside clock times"
             self.built.findings.append(timed.feature.finding("starts_at", "missing", expected))
+
+    def _note_next_day(self) -> None:
+        starts_at = self.built.data.get("starts_at")
+        if later := of_next_day(self._entries, starts_at):
+            self.built.notes.append(f"begin before starts_at ({starts_at}), and are the next day's: {some_of(later)}")
 
 
 _SAID_AS = {

@@ -29,6 +29,7 @@ _DEGREES = re.compile(
     re.IGNORECASE,
 )
 _CLOCK = re.compile(r"(\d{1,2})(?::([0-5]\d)(?::([0-5]\d(?:\.\d+)?))?)?\s*([ap]\.?m\.?)?", re.IGNORECASE)
+_CLOCK_WITHOUT_COLON = re.compile(r"0\d[0-5]\d")
 _YES = frozenset(("true", "yes", "y", "x", "1", "on"))
 _UNLIMITED = ("inf", ".inf", "infinity", "unlimited", "none")
 _NO = frozenset(("false", "no", "n", "0", "off", "-"))
@@ -192,6 +193,8 @@ def moment(value: object, factor: float = 1.0) -> str | float:
         clock = _CLOCK.fullmatch(told)
         if clock is not None and (clock[2] or clock[4]):
             return _clock(clock, expected)
+        if _CLOCK_WITHOUT_COLON.fullmatch(told):
+            raise CellError(f'"{told[:2]}:{told[2:]}", or seconds that do not begin with 0')
     try:
         seconds = number(value, "time", factor)
     except CellError:

@@ -14,6 +14,7 @@ from muster.exchange.sites.headings import given_columns
 from muster.exchange.sites.identities import identified
 from muster.exchange.sites.readers import reader_of
 from muster.exchange.sites.roles import Roles
+from muster.exchange.sites.times import require_alike
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
@@ -106,6 +107,7 @@ def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -
     entries: list[Entry] = []
     for layer, default in layers:
         found = entries_of(layer, roles, default, columns, findings, notes)
+        require_alike(found, findings)
         entries += identified(layer, found, columns, notes)
     if findings:
         raise MissionError(sorted(findings, key=lambda finding: (finding.file, finding.line or 0)))
