@@ -124,6 +124,20 @@ def test_names_are_ids_beside_numbers_of_features(tmp_path, robots):
     assert [task.id for task in site(tmp_path, robots, *numbered).mission.tasks] == ["north", "east", "south"]
 
 
+def test_features_without_a_geometry_are_passed_over_and_named(tmp_path, robots):
+    gate = {"type": "Feature", "properties": {"name": "Gate"}, "geometry": None}
+    found = site(tmp_path, robots, gate, *points(), feature("MultiPolygon", [], name="none"))
+    assert len(found.mission.tasks) == 3
+    told = "passed over, without a geometry: features[0] (Gate), features[4] (none)"
+    assert f"{tmp_path / 'site.geojson'}: {told}" in found.notes
+    file = tmp_path / "site.gpkg"
+    fences = [(shapely.Polygon(FENCE), {"name": "mast"}), (None, {"name": "roof"})]
+    writers.write_geopackage(file, {"fences": fences, "panels": [(shapely.Point(8.5417, 47.3775), {"name": "a"})]})
+    found = read_site(file, robots=robots)
+    assert len(found.mission.map.zones) == 1
+    assert f"{file}, fences: passed over, without a geometry: layer fences, row 2 (roof)" in found.notes
+
+
 @pytest.mark.parametrize(("apart_m", "nodes"), [(0.0, 3), (0.004, 3), (0.009, 3), (0.02, 4)])
 def test_points_within_a_centimetre_are_one_node(tmp_path, robots, apart_m, nodes):
     for east in (8.54173, 8.541731, 8.5417321):
@@ -188,6 +202,20 @@ def test_what_follows_an_area_in_several_parts_follows_them_all(tmp_path, robots
     survey = feature("MultiPolygon", parts, kind="survey", name="field", height_m=30)
     mission = site(tmp_path, robots, survey, after).mission
     assert next(task for task in mission.tasks if task.id == "post").prerequisites == ("field", "field-2")
+
+
+def test_what_an_area_to_survey_lacks_is_told_once_with_its_name(tmp_path, robots, coverage):
+    parts = [square(8.541 + k / 1000, 47.377)["geometry"]["coordinates"] for k in range(2)]
+    with pytest.raises(MissionError) as caught:
+        site(tmp_path, robots, feature("MultiPolygon", parts, kind="survey", name="Field"))
+    assert [finding.field for finding in caught.value.findings] == ["features[0] (Field), height_m"]
+
+
+def test_where_an_area_crosses_itself_is_told(tmp_path, robots):
+    bow = [(8.54, 47.37), (8.541, 47.371), (8.541, 47.37), (8.54, 47.371)]
+    place = r"features\[0\] \(Bow\), geometry: self-intersection at latitude 47.3705, longitude 8.5405; expected"
+    with pytest.raises(MissionError, match=place):
+        site(tmp_path, robots, area(bow, name="Bow"))
 
 
 def test_areas_to_survey_need_their_action(tmp_path, robots, monkeypatch):

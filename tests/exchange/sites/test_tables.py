@@ -378,6 +378,25 @@ def test_cells_of_workbooks_without_values_are_named(tmp_path):
     assert error in caught.value.findings[1].expected
 
 
+@pytest.mark.parametrize(
+    ("sheet", "rows", "message"),
+    [
+        ("Stations", [["name", "x", "y", "services"], ["s", 1, 2, "charge"]], "sheet Stations, charge_per_s: missing"),
+        ("Stations", [["name", "x", "y"], ["s", 1, 2]], "sheet Stations, services: missing"),
+        (
+            "Tasks",
+            [["name", "x", "y", "duration"], ["a", 1, 2, datetime.datetime(2027, 3, 1, 8, 30)]],
+            "sheet Tasks, duration: 2027-03-01 08:30:00; expected a duration",
+        ),
+    ],
+)
+def test_what_is_missing_or_wrong_in_a_sheet_is_named(tmp_path, sheet, rows, message):
+    book = tmp_path / "site.xlsx"
+    writers.write_workbook(book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], sheet: rows})
+    with pytest.raises(MissionError, match=f"site.xlsx:2: {message}"):
+        read_site(book)
+
+
 def test_merged_cells_over_rows_of_data_are_told(tmp_path):
     book = tmp_path / "site.xlsx"
     tasks = [["Plan of the year"], ["name", "x", "y", "type"], ["a", 1, 2, "dig"], ["b", 2, 2], ["c", 3, 2]]

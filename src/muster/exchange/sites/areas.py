@@ -43,7 +43,9 @@ def areas_of(entry: Entry, frame: Frame, findings: list[Finding]) -> list[shapel
         try:
             found.append(require_valid([frame.metres([place[:2] for place in ring]) for ring in rings]))
         except ValueError as error:
-            findings.append(entry.feature.finding("geometry", str(error), _EXPECTED))
+            told, *places = error.args
+            told += "".join(f" at latitude {lat}, longitude {lon}" for lat, lon in map(frame.degrees, places))
+            findings.append(entry.feature.finding("geometry", told, _EXPECTED))
     return [shapely.orient_polygons(area) for area in found]
 
 

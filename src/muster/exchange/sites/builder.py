@@ -280,6 +280,8 @@ class Builder:
         prefix = f"{feature.where}, " if feature.where else ""
         if prefix:
             self.built.fields[at] = feature.where
+            if entry.role == "survey":
+                self.built.fields[*at, "action"] = feature.where
         for key, column in entry.columns.by_key.items():
             for name in {key, *_SAID_AS.get(key, ())}:
                 self.built.fields[*at, name] = f"{prefix}{column.heading}"

@@ -80,7 +80,7 @@ def entries_of(
     if layer.passed_over:
         notes.append(f"{layer.title}: passed over: {some_of(layer.passed_over)}")
     notes += [f"{layer.title}: {note}" for note in layer.notes]
-    features = list(_with_shapes(layer, findings))
+    features = list(_with_shapes(_without_empty(layer, notes), findings))
     by_role: dict[str, list[Feature]] = {}
     for feature in features:
         by_role.setdefault(roles.role(layer, feature, default, findings), []).append(feature)
@@ -131,6 +131,23 @@ def some_of(names: Sequence[str]) -> str:
     return ", ".join(names[:_MOST_NAMED]) + (
         f", and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
     )
+
+
+def _without_empty(layer: Layer, notes: list[str]) -> Layer:
+    """A layer of a map without the features that have neither a geometry nor a place in their values."""
+    if all(feature.geometry is None for feature in layer.features):
+        return layer
+    columns = columns_of(layer, "task", {}, [])
+    places = {columns.heading(key) for key in (*_OF_PLACES, "wkt") if key in columns}
+    kept: list[Feature] = []
+    lost: list[Feature] = []
+    for feature in layer.features:
+        is_placed = feature.geometry is not None or not places.isdisjoint(feature.values)
+        (kept if is_placed else lost).append(feature)
+    if lost:
+        told = some_of([feature.where or f"line {feature.line}" for feature in lost])
+        notes.append(f"{layer.title}: passed over, without a geometry: {told}")
+    return replace(layer, features=tuple(kept))
 
 
 def _with_shapes(layer: Layer, findings: list[Finding]) -> Iterator[Feature]:

@@ -66,6 +66,13 @@ class Frame:
             [round(c, _DECIMALS) + 0.0 for c in row[: len(place)]] for row, place in zip(found, places, strict=True)
         ]
 
+    def degrees(self, place: Sequence[float]) -> tuple[float, float]:
+        """Latitude and longitude of a place on the ground, as exact as an origin that is chosen."""
+        from muster.mission.geodesy import enu_to_wgs84
+
+        ((lat, lon, _),) = enu_to_wgs84([(place[0], place[1], 0.0)], (self.lat, self.lon, self.alt)).tolist()
+        return round(lat, _ORIGIN_DECIMALS), round(lon, _ORIGIN_DECIMALS)
+
     def is_far(self, place: Coordinate) -> bool:
         """Whether a place is so far away that it cannot be meant."""
         return self.distance(place) > FARTHEST_M
