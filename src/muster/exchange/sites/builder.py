@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import PurePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.exchange.sites.areas import areas_of, around, boundary_of, survey_tasks, zones_of
 from muster.exchange.sites.entries import Entry, some_of
@@ -23,6 +23,9 @@ from muster.mission.errors import Finding, MissionError
 from muster.mission.model import SCHEMA
 from muster.mission.source import Place
 from muster.mission.value_types import Path, shown
+
+if TYPE_CHECKING:
+    import shapely
 
 _GROUPS = {"task": "tasks", "robot": "robots", "station": "stations"}
 _OWN = frozenset(("id", "name", "kind", "moves", "battery", *TIMES))
@@ -81,7 +84,13 @@ class Builder:
         self._made: list[tuple[str, Entry, dict[str, Any]]] = []
         passed_over = len(entries) - len(self._entries)
         if passed_over:
-            self.built.notes.append(f"routes and areas of a plan passed over: {passed_over}; Muster plans them anew")
+            self.built.notes.append(f"routes of a plan passed over: {passed_over}; Muster plans them anew")
+
+    @property
+    def read(self) -> list[Entry]:
+        """What was read, once for each thing in the mission: of an area to survey in several parts once for each."""
+        times = Counter(id(entry) for _, entry, _ in self._made if entry.role == "survey")
+        return [one for entry in self._entries for one in [entry] * max(1, times[id(entry)])]
 
     def build(self) -> Built:
         """The whole mission."""
@@ -301,9 +310,8 @@ class Builder:
             assert self._frame is not None
             areas = areas_of(entry, self._frame, self.built.findings)
             if entry.role == "survey":
-                for task, name in zip(
-                    survey_tasks(entry, areas, spatial), self._ids([entry] * len(areas)), strict=True
-                ):
+                tasks = survey_tasks(entry, areas, self._holes(entry), self._middle(entry, spatial))
+                for task, name in zip(tasks, self._ids([entry] * len(areas)), strict=True):
                     record = self._record(entry, name, task["position"])
                     kept = {key: value for key, value in record.items() if key not in ACTION_KEYS[COVERAGE].names}
                     self._add("tasks", entry, kept | task_times(entry, self.built.findings) | task)
@@ -319,6 +327,17 @@ class Builder:
         if open_zones:
             told = some_of([entry.told for entry in open_zones])
             self.built.notes.append(f"zones that are forbidden to nobody are left out: {told}")
+
+    def _holes(self, entry: Entry) -> list[shapely.Polygon]:
+        """The holes that a plan has beside an area."""
+        assert self._frame is not None
+        return [hole for one in entry.holes for hole in areas_of(one, self._frame, self.built.findings)]
+
+    def _middle(self, entry: Entry, spatial: bool) -> list[float]:
+        """Where the task over an area is, as far as it is said: in space on the ground."""
+        if entry.middle is not None:
+            return self._positions([entry.middle], spatial)[0]
+        return [0.0] if spatial else []
 
     def _set_map(
         self, bounds: Sequence[tuple[Entry, list[list[float]]]], zones: Sequence[tuple[Entry, dict[str, Any]]]

@@ -10,7 +10,7 @@ from typing import Any
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
 from muster.exchange.sites.headings import Columns, columns_of
 from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
-from muster.exchange.sites.roles import Roles, is_no_fly, names_role
+from muster.exchange.sites.roles import Roles, is_no_fly, is_of_plan, names_role
 from muster.exchange.sites.shapes import from_text
 from muster.mission.errors import Finding
 
@@ -19,6 +19,10 @@ _NEAR = 0.75
 _MOST_NAMED = 8
 _IN_DEGREES = ("lat", "lon", "lat_lon", "alt")
 _IN_METRES = ("x", "y", "position")
+_OF_AREAS = frozenset(("action", "of"))
+"""What exported plans say of areas, and is read by its own name."""
+_OF_PLANS = frozenset(("starts_at", "ends_at", "starts_s", "ends_s"))
+"""What exported plans say of stops: no slips of keys."""
 _OF_PLACES = (*_IN_DEGREES, *_IN_METRES)
 _EXPECTED_PLACE = "columns of latitude and longitude (or x and y); --column lat=HEADING --column lon=HEADING names them"
 
@@ -39,6 +43,8 @@ class Entry:
         of a line or an area.
     also
         another name by which references may mean it.
+    holes, middle
+        of an area of a plan, what else the plan has of it: its holes, and where its task is.
     """
 
     role: str
@@ -50,6 +56,8 @@ class Entry:
     over_ground: bool = False
     geometry: Geometry | None = None
     also: str | None = None
+    holes: tuple[Entry, ...] = ()
+    middle: Entry | None = None
 
     def finding(self, key: str, value: object, expected: str) -> Finding:
         """What is wrong with the value of a key."""
@@ -87,7 +95,7 @@ def entries_of(
     found: list[Entry] = []
     unread: list[set[str]] = []
     for role, members in by_role.items():
-        columns = columns_of(layer, role, given, findings)
+        columns = columns_of(layer, role, given, findings, members)
         if role in AT_POINTS and not columns.wrong.isdisjoint(_OF_PLACES):
             continue
         if role in AT_POINTS and not _has_places(members, columns):
@@ -99,6 +107,7 @@ def entries_of(
             found += _entry(role, feature, columns, findings)
     found = _without_flying(layer, found, notes)
     lost = set.intersection(*unread) if unread else set()
+    lost -= _OF_AREAS if any(is_of_plan(feature, kind) for feature in features for kind in ("area", "hole")) else set()
     if names := [heading for heading in layer.headings if heading in lost and heading.casefold() != ROLE.name]:
         notes.append(f"{layer.title}: not read: {_told_unread(names, list(by_role))}")
     return found
@@ -121,7 +130,10 @@ def _without_flying(layer: Layer, entries: list[Entry], notes: list[str]) -> lis
 def _told_unread(names: list[str], roles: list[str]) -> str:
     """Headings that mean nothing, and for those that are nearly a key what that may be."""
     known = [key for role in roles for key in keys_of(role)]
-    near = {name: get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR) for name in names[:_MOST_NAMED]}
+    near = {
+        name: [] if name in _OF_PLANS else get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR)
+        for name in names[:_MOST_NAMED]
+    }
     told = [f"{name} (did you mean {found[0]}?)" if found else name for name, found in near.items()]
     return some_of([*told, *names[_MOST_NAMED:]])
 

@@ -78,19 +78,27 @@ class Columns:
         return self.by_key[key].heading if key in self.by_key else key
 
 
-def columns_of(layer: Layer, role: str, given: Mapping[str, str], findings: list[Finding]) -> Columns:
-    """What the headings of a layer mean for a role; `given` names headings by key, stronger than any other meaning."""
+def columns_of(
+    layer: Layer, role: str, given: Mapping[str, str], findings: list[Finding], members: Sequence[Feature] = ()
+) -> Columns:
+    """What the headings of a layer mean for a role; `given` names headings by key, stronger than any other meaning.
+
+    `members` are the features of the role: a heading under which none has a value gives way to one that means the same.
+    """
+    used = {heading for feature in members for heading in feature.values} if members else {*layer.headings}
     keys = keys_of(role)
     chosen = {key: heading for key, heading in given.items() if key in keys and heading in layer.headings}
     found: dict[str, Column] = {}
     unread: list[str] = []
     wrong: set[str] = set()
-    for heading in layer.headings:
+    for heading in sorted(layer.headings, key=lambda heading: heading not in used):
         mine = [key for key, named in chosen.items() if named == heading]
         explicit: list[Column | None] = [_explicit(heading, keys[key]) for key in mine]
         meanings = explicit or [_meaning(heading, keys)]
         for column in meanings:
-            if column is None or (column.key.name in chosen and not mine):
+            is_chosen = column is not None and column.key.name in chosen and not mine
+            gives_way = column is not None and column.key.name in found and heading not in used
+            if column is None or is_chosen or gives_way:
                 unread.append(heading)
             elif column.key.name in found:
                 other = found[column.key.name].heading

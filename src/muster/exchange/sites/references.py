@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from muster.exchange.sites.entries import Entry, some_of
+from muster.exchange.sites.plan_areas import tasks_over
+from muster.exchange.sites.roles import is_of_plan
 from muster.mission.errors import Finding
 
 _OF_TASKS = ("prerequisites", "same_robot_as", "other_robot_than", "starts_with")
@@ -37,8 +39,9 @@ class References:
             first, second = self._names.setdefault((group, file), ({}, {}))
             for told in {name, *([] if own is None else [str(own)])}:
                 first.setdefault(told, {}).setdefault(id(entry), []).append(name)
-            if entry.also is not None:
-                second.setdefault(entry.also, {}).setdefault(id(entry), []).append(name)
+            parts = tasks_over(name, entry) if is_of_plan(entry.feature, "area") else ()
+            for told in {*parts, *([] if entry.also is None else [entry.also])}:
+                second.setdefault(told, {}).setdefault(id(entry), []).append(name)
 
     def resolve(self, entry: Entry, record: dict[str, Any], findings: list[Finding]) -> None:
         """Put ids in place of the names in a record; names with nothing but spaces between them are several."""
@@ -49,7 +52,8 @@ class References:
                 record[key] = found[0] if found is not None and len(found) == 1 else given
             elif isinstance(given, list) and all(isinstance(name, str) for name in given):
                 names = [part for name in given for part in self._split(entry, group, name)]
-                record[key] = [one for name in names for one in self._ids(entry, key, name, findings) or [name]]
+                ids = [one for name in names for one in self._ids(entry, key, name, findings) or [name]]
+                record[key] = list(dict.fromkeys(ids))
 
     def _split(self, entry: Entry, group: str, name: str) -> Sequence[str]:
         return [name] if self._meanings(entry, group, name) or name in self._known.get(group, ()) else name.split()

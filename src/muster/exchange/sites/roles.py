@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import PurePath
 
 from muster.exchange.sites.features import Feature, Layer
-from muster.exchange.sites.keys import AT_POINTS, ROLE, ROLES
+from muster.exchange.sites.keys import AT_POINTS, COVERAGE, ROLE, ROLES
 from muster.mission.errors import Finding, ParameterError
 from muster.mission.near_matches import did_you_mean
 
@@ -38,7 +38,7 @@ _FITTING = {
 _BY_SHAPE = {"point": "task", "line": "lane", "area": "zone"}
 _SAID = {"point": "a point", "line": "a line", "area": "an area"}
 _DRAWN = {"area": "route", "hole": "route"}
-"""Kinds in exported plans of what their tasks cover: passed over as routes are, and no zones."""
+"""Kinds in exported plans of what their tasks cover: no zones. Areas with their action are surveyed again."""
 _NO_FLY = re.compile(r"(?<![^\W_])(?:no[-_ ]?fly|nfz(?![^\W_]))")
 _TOKEN = re.compile(r"[^\W\d_]+")
 
@@ -99,7 +99,7 @@ class Roles:
         for heading, value in feature.values.items():
             if isinstance(value, str) and heading.casefold() in (ROLE.name, *ROLE.names, "type"):
                 word = _compact(value)
-                role = _ROLE_OF.get(word) or _DRAWN.get(word)
+                role = "survey" if is_of_plan(feature, "area") else _ROLE_OF.get(word) or _DRAWN.get(word)
                 point = feature.geometry is None or feature.geometry.shape == "point"
                 if role is not None and not (
                     heading.casefold() == "type" and point and value.casefold() not in AT_POINTS
@@ -116,6 +116,13 @@ def names_role(layer: Layer) -> bool:
 def role_word(value: object) -> bool:
     """Whether a value is the name of a role."""
     return isinstance(value, str) and _compact(value) in _ROLE_OF
+
+
+def is_of_plan(feature: Feature, kind: str) -> bool:
+    """Whether a feature is, in an exported plan, an area that is covered, or a hole of such an area."""
+    values = feature.values
+    said = values.get("action") == COVERAGE if kind == "area" else isinstance(values.get("of"), str)
+    return said and values.get(ROLE.name) == kind
 
 
 def is_no_fly(layer: Layer, feature: Feature) -> bool:
