@@ -1,6 +1,7 @@
 """Areas as survey items of QGroundControl: the keys that it reads, its way points those of the plan."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -31,13 +32,18 @@ rules: {return_to_start: true}
 robots:
   - {id: d0, position: [0, 0, 0], kind: air, speed_mps: 4}
   - {id: d1, position: [5, 0, 0], kind: air, speed_mps: 4}
-  - {id: rover, position: [9, 0, 0]}
+  - {id: rover, position: [9, 0, 0], skills: [arm, big eye]}
 tasks:
   - {id: field, action: {name: coverage, area: [[0, 5], [90, 5], [90, 65], [0, 65]],
      holes: [[[30, 30], [50, 30], [50, 40]]], height_m: 20, fov_deg: 60, front_overlap: 0.5,
      heading_deg: 30, split: 2}, only_robots: [d0, d1]}
   - {id: lawn, only_robots: [rover], action: {name: coverage, width_m: 2,
      area: [[0, -5], [20, -5], [20, -25], [0, -25]]}}
+"""
+POSTS = """\
+  - {id: the post, position: [10, 70, 9], duration_s: 60, priority: 2, prerequisites: [field, lawn],
+     requires: [arm, big eye]}
+  - {id: last, position: [10, 75, 9], prerequisites: [the post]}
 """
 
 
@@ -113,8 +119,10 @@ def test_a_rover_has_way_points(case):
     assert sum(item["command"] == 16 for item in files["rover.plan"]) >= 20
 
 
-def test_areas_and_holes_are_polygons_of_maps_and_no_zones_when_read_again(case, tmp_path):
-    mission, plan, _ = case
+def test_areas_and_holes_are_polygons_of_maps_and_areas_to_survey_when_read_again(tmp_path):
+    (tmp_path / "mission.yaml").write_text(TEXT + POSTS, encoding="utf-8")
+    mission = muster.load(tmp_path / "mission.yaml")
+    plan = muster.solve(mission, iterations=200, seed=1)
     muster.export(mission, plan, "geojson", tmp_path / "field.geojson")
     drawn = json.loads((tmp_path / "field.geojson").read_text(encoding="utf-8"))["features"]
     kinds = [one["geometry"]["type"] for one in drawn if one["properties"]["kind"] in ("area", "hole")]
@@ -125,4 +133,23 @@ def test_areas_and_holes_are_polygons_of_maps_and_no_zones_when_read_again(case,
         found = muster.read_site(file)
         assert {task.id for task in found.mission.tasks} == {task.id for task in mission.tasks}
         assert found.mission.map is None
-        assert "routes and areas of a plan passed over: 6; Muster plans them anew" in found.notes
+        assert found.counts == (f"{file}: 2 areas to survey, 2 tasks, 3 robots",)
+        assert "routes of a plan passed over: 3; Muster plans them anew" in found.notes
+        assert not any("did you mean" in note for note in found.notes)
+        assert [robot.skills for robot in found.mission.robots] == [robot.skills for robot in mission.robots]
+        again = {task.id: task for task in found.mission.tasks}
+        for task in mission.tasks:
+            theirs = again[task.id]
+            asked = ("prerequisites", "requires", "duration_s", "priority", "only_robots")
+            assert [getattr(theirs, key) for key in asked] == [getattr(task, key) for key in asked]
+            if task.action is not None:
+                assert_same_action(task.action, theirs.action)
+                assert theirs.position[2] == pytest.approx(task.position[2], abs=0.01)
+
+
+def assert_same_action(action, again):
+    """The same, but for where it is and at which corner of the area its border begins."""
+    assert replace(again, area=action.area, holes=action.holes) == action
+    ours, theirs = (shapely.Polygon(one.area, one.holes) for one in (action, again))
+    assert theirs.area == pytest.approx(ours.area, rel=1e-3)
+    assert [len(hole) for hole in again.holes] == [len(hole) for hole in action.holes]

@@ -9,8 +9,10 @@ from typing import Any
 
 from muster.exchange.earth import Earth, Spot, anticlockwise
 from muster.exchange.itinerary import Itinerary
-from muster.exchange.task_times import clock, station_properties, stops_of, task_properties, utc
-from muster.mission.model import Mission
+from muster.exchange.task_times import asked, clock, station_properties, stops_of, task_properties, utc
+from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.areas import whole_id
+from muster.mission.model import Mission, Robot, Task
 from muster.verification import RouteFigures, Verdict
 
 Properties = dict[str, Any]
@@ -75,10 +77,7 @@ def survey(
     figures = {route.robot: route for route in verdict.routes}
     return Survey(
         mission=mission.name,
-        robots=tuple(
-            feature("robot", r.id, [r.position], {"type": r.type, "moves": r.kind, "speed_mps": r.speed_mps})
-            for r in mission.robots
-        ),
+        robots=tuple(feature("robot", r.id, [r.position], _robot_properties(r)) for r in mission.robots),
         tasks=tuple(
             feature(
                 "task",
@@ -108,6 +107,11 @@ def survey(
     )
 
 
+def _robot_properties(robot: Robot) -> Properties:
+    skills = {"skills": list(robot.skills)} if robot.skills else {}
+    return {"type": robot.type, "moves": robot.kind, "speed_mps": robot.speed_mps} | skills
+
+
 def _times_s(itinerary: Itinerary) -> list[float]:
     """When the robot leaves its start, arrives at each further point, and leaves the last one."""
     start, *others = itinerary.passages
@@ -124,14 +128,34 @@ def _route_properties(mission: Mission, itinerary: Itinerary, figures: RouteFigu
 
 
 def _areas(mission: Mission) -> list[tuple[str, str, list[tuple[float, ...]], Properties]]:
-    covered = dict.fromkeys((t.action.area, t.action.holes) for t in mission.tasks if t.action and t.action.area)
-    fields = [("area", f"area {k}", anticlockwise(area), Properties()) for k, (area, _) in enumerate(covered) if area]
-    fields += [
-        ("hole", f"hole {n} of area {k}", anticlockwise(hole), Properties())
-        for k, (_, holes) in enumerate(covered)
-        for n, hole in enumerate(holes)
-    ]
+    fields = []
+    for name, task in _tasks_over_areas(mission).items():
+        assert task.action is not None
+        assert task.action.area is not None
+        fields.append(("area", name, anticlockwise(task.action.area), _survey_properties(task)))
+        fields += [
+            ("hole", f"hole {n} of {name}", anticlockwise(hole), Properties({"of": name}))
+            for n, hole in enumerate(task.action.holes)
+        ]
     return [*_map_areas(mission), *fields]
+
+
+def _tasks_over_areas(mission: Mission) -> dict[str, Task]:
+    """By the name of each area a task that covers it; those that cover its parts are one."""
+    found: dict[str, Task] = {}
+    for task in mission.tasks:
+        if task.action is not None and task.action.area is not None:
+            found.setdefault(whole_id(task), task)
+    return found
+
+
+def _survey_properties(task: Task) -> Properties:
+    """What an area asks for, as a mission file has it; with it the area can be read again as one to survey."""
+    assert task.action is not None
+    keys = [key for key in ACTION_KEYS[task.action.name].names if key not in ("area", "holes", "part")]
+    given = {key: value for key in keys if (value := task.action.value(key)) not in (None, False)}
+    own: Properties = {"action": task.action.name, "type": task.type}
+    return own | given | asked(task)
 
 
 def _map_areas(mission: Mission) -> list[tuple[str, str, list[tuple[float, ...]], Properties]]:

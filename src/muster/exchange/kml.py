@@ -9,6 +9,7 @@ none where the mission does not start at a time in a zone.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -19,6 +20,9 @@ from muster.exchange.earth import Spot
 from muster.exchange.geographic_features import AREAS, Feature, Survey
 from muster.exchange.xml_text import add, decimal, text_of, time_text
 
+_IN_NAMES = re.compile(r"[\s;,|\[]")
+_OF_WORDS = ("requires", "skills")
+"""Properties that are read as one where nothing but spaces stands in them."""
 _NAMESPACE = "http://www.opengis.net/kml/2.2"
 
 
@@ -47,7 +51,7 @@ def _placemark(folder: Tree.Element, feature: Feature) -> None:
     data = add(mark, "ExtendedData")
     for name, value in feature.properties.items():
         if name != "name" and value is not None:
-            add(add(data, "Data", name=name), "value", _listed(value) if isinstance(value, list) else value)
+            add(add(data, "Data", name=name), "value", _listed(name, value) if isinstance(value, list) else value)
     heights = (0.0,) * len(feature.spots) if feature.heights_m is None or feature.kind in AREAS else feature.heights_m
     spots = [replace(spot, alt=height) for spot, height in zip(feature.spots, heights, strict=True)]
     if feature.kind in AREAS:
@@ -66,9 +70,10 @@ def _placemark(folder: Tree.Element, feature: Feature) -> None:
         add(shape, "coordinates", _coordinates(line))
 
 
-def _listed(items: Sequence[Any]) -> str:
-    """Names one after another; lists of numbers as JSON."""
-    return " ".join(items) if all(isinstance(item, str) for item in items) else json.dumps(items)
+def _listed(name: str, items: Sequence[Any]) -> str:
+    """Names one after another; as JSON lists of numbers, of skills, and of names with spaces or separators in them."""
+    plain = all(isinstance(item, str) and not _IN_NAMES.search(item) for item in items) and name not in _OF_WORDS
+    return " ".join(items) if plain else json.dumps(items, ensure_ascii=False)
 
 
 def _parent(mark: Tree.Element, pieces: Sequence[Sequence[Spot]]) -> Tree.Element:

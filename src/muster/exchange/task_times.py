@@ -59,9 +59,25 @@ def task_properties(mission: Mission, task: Task, stops: tuple[Stop, ...]) -> di
             "ends_at": clock(mission, ends),
             "late_s": late_s(task, ends),
         }
-    carried = {"load": _load(task.load), "delivers": task.delivers}
+    return {name: value for name, value in found.items() if value is not None} | asked(task)
+
+
+def asked(task: Task) -> dict[str, Any]:
+    """What a task asks of time and robots, under the keys of a mission file."""
     windows = [list(window) for window in task.window_s]
-    found |= {"window_s": windows or None, "deadline_s": task.deadline_s, "due_s": task.due_s} | carried
+    found = {
+        "window_s": windows or None,
+        "deadline_s": task.deadline_s,
+        "due_s": task.due_s,
+        "load": _load(task.load),
+        "delivers": task.delivers,
+        "duration_s": task.duration_s,
+        "priority": None if task.priority == 1 else task.priority,
+        "prerequisites": list(task.prerequisites) or None,
+        "requires": list(task.requires) or None,
+        "only_robots": None if task.only_robots is None else list(task.only_robots),
+        "robots_needed": task.robots_needed,
+    }
     return {name: value for name, value in found.items() if value is not None}
 
 

@@ -99,6 +99,11 @@ def part_ids(task: Task) -> tuple[str, ...]:
     return tuple(f"{task.id}.{k}" for k in range(1, (task.action.split or 1) + 1))
 
 
+def whole_id(task: Task) -> str:
+    """The id of the task of whose parts a task is one; its own where it is none."""
+    return task.id.rpartition(".")[0] if task.action is not None and task.action.part is not None else task.id
+
+
 def _action_over_area(work: Work) -> Action | None:
     return work.action if work.action is not None and work.action.area is not None else None
 

@@ -364,7 +364,7 @@ def findings(faults: Iterable[Fault], source: Source) -> list[Finding]:
         )
         for fault in faults
     ]
-    return sorted(found, key=lambda finding: (finding.file, finding.line or 0))
+    return sorted(dict.fromkeys(found), key=lambda finding: (finding.file, finding.line or 0))
 
 
 def path_text(path: Path) -> str:

@@ -41,9 +41,13 @@ class Source:
         return self.file, None
 
     def name_in_file(self, path: Path) -> str | None:
-        """What the file calls a value, or the nearest thing around it that has a name of its own."""
+        """What the file calls a value, or the nearest thing around it that has a name of its own, and the key in it."""
         path = self.path(path)
-        return next((self.fields[path[:k]] for k in range(len(path), 0, -1) if path[:k] in self.fields), None)
+        length = next((k for k in range(len(path), 0, -1) if path[:k] in self.fields), None)
+        if length is None:
+            return None
+        key = path[length] if length < len(path) else None
+        return f"{self.fields[path[:length]]}, {key}" if isinstance(key, str) else self.fields[path[:length]]
 
     def path(self, path: Path) -> Path:
         """The path of a value in the file; records that were made of one have its number there."""

@@ -100,6 +100,16 @@ def test_lines_are_lanes_that_meet_where_they_share_a_point(tmp_path, robots):
     assert "pieces of lines along which lanes lead already are left out: features[2] (2)" in found.notes
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "metres_a_second"),
+    [("maxspeed", 36, 10), ("maxspeed", "30 mph", 13.4112), ("Max speed", 36, 36), ("speed", "36", 36)],
+)
+def test_the_speeds_of_openstreetmap_are_in_kilometres_an_hour(tmp_path, robots, key, value, metres_a_second):
+    line = feature("LineString", [[8.5416, 47.3768], [8.5417, 47.3770]], **{key: value})
+    (lane,) = site(tmp_path, robots, line, *points()).mission.lanes.edges
+    assert lane.speed_mps == pytest.approx(metres_a_second)
+
+
 def test_a_second_line_adds_the_direction_that_the_first_lacks(tmp_path, robots):
     line = [[8.5416, 47.3768], [8.5417, 47.3770]]
     there, both = feature("LineString", line, oneway="yes"), feature("LineString", line, maxspeed="2 m/s")
@@ -107,6 +117,25 @@ def test_a_second_line_adds_the_direction_that_the_first_lacks(tmp_path, robots)
     assert [(lane.start, lane.end, lane.both_ways, lane.speed_mps) for lane in lanes.edges] == [
         ("n1", "n2", False, None), ("n2", "n1", False, 2),
     ]  # fmt: skip
+
+
+def test_names_are_ids_beside_numbers_of_features(tmp_path, robots):
+    numbered = [{**point, "id": k} for k, point in enumerate(points())]
+    assert [task.id for task in site(tmp_path, robots, *numbered).mission.tasks] == ["north", "east", "south"]
+
+
+def test_features_without_a_geometry_are_passed_over_and_named(tmp_path, robots):
+    gate = {"type": "Feature", "properties": {"name": "Gate"}, "geometry": None}
+    found = site(tmp_path, robots, gate, *points(), feature("MultiPolygon", [], name="none"))
+    assert len(found.mission.tasks) == 3
+    told = "passed over, without a geometry: features[0] (Gate), features[4] (none)"
+    assert f"{tmp_path / 'site.geojson'}: {told}" in found.notes
+    file = tmp_path / "site.gpkg"
+    fences = [(shapely.Polygon(FENCE), {"name": "mast"}), (None, {"name": "roof"})]
+    writers.write_geopackage(file, {"fences": fences, "panels": [(shapely.Point(8.5417, 47.3775), {"name": "a"})]})
+    found = read_site(file, robots=robots)
+    assert len(found.mission.map.zones) == 1
+    assert f"{file}, fences: passed over, without a geometry: layer fences, row 2 (roof)" in found.notes
 
 
 @pytest.mark.parametrize(("apart_m", "nodes"), [(0.0, 3), (0.004, 3), (0.009, 3), (0.02, 4)])
@@ -122,6 +151,26 @@ def test_a_zone_that_is_forbidden_to_nobody_is_told(tmp_path, robots):
     found = site(tmp_path, robots, area(FENCE, kind="zone", name="free", forbidden_to="[]"), *points())
     assert found.mission.map is None
     assert "zones that are forbidden to nobody are left out: free" in found.notes
+
+
+@pytest.mark.parametrize(
+    ("properties", "file", "forbidden"),
+    [
+        ({"name": "No-fly zone"}, "site", ("air",)),
+        ({"name": "no_fly 2"}, "site", ("air",)),
+        ({"kind": "No-Fly-Zone"}, "site", ("air",)),
+        ({"kind": "noflyzone"}, "site", ("air",)),
+        ({"type": "geofence no fly"}, "site", ("air",)),
+        ({"name": "Mast"}, "NFZ", ("air",)),
+        ({"name": "No-fly zone", "forbidden_to": "ground"}, "site", ("ground",)),
+        ({"name": "Casino flyer"}, "site", ("ground", "air")),
+    ],
+)
+def test_no_fly_zones_are_forbidden_in_the_air_alone(tmp_path, robots, properties, file, forbidden):
+    found = site(tmp_path, robots, area(**properties), *points(), name=f"{file}.geojson")
+    assert found.mission.map.zones[0].closed_to == forbidden
+    told = [note for note in found.notes if "no-fly zones are forbidden to robots in the air alone" in note]
+    assert len(told) == (forbidden == ("air",))
 
 
 @pytest.fixture
@@ -145,6 +194,28 @@ def test_areas_to_survey_are_tasks(tmp_path, robots, coverage):
     assert task.action.value("height_m") == 30
     whole = shapely.Polygon(task.action.value("area"), task.action.value("holes"))
     assert whole.contains(shapely.Point(task.position))
+
+
+def test_what_follows_an_area_in_several_parts_follows_them_all(tmp_path, robots, coverage):
+    parts = [square(8.541 + k / 1000, 47.377)["geometry"]["coordinates"] for k in range(2)]
+    after = feature("Point", [8.5417, 47.3775], name="post", after="field")
+    survey = feature("MultiPolygon", parts, kind="survey", name="field", height_m=30)
+    mission = site(tmp_path, robots, survey, after).mission
+    assert next(task for task in mission.tasks if task.id == "post").prerequisites == ("field", "field-2")
+
+
+def test_what_an_area_to_survey_lacks_is_told_once_with_its_name(tmp_path, robots, coverage):
+    parts = [square(8.541 + k / 1000, 47.377)["geometry"]["coordinates"] for k in range(2)]
+    with pytest.raises(MissionError) as caught:
+        site(tmp_path, robots, feature("MultiPolygon", parts, kind="survey", name="Field"))
+    assert [finding.field for finding in caught.value.findings] == ["features[0] (Field), height_m"]
+
+
+def test_where_an_area_crosses_itself_is_told(tmp_path, robots):
+    bow = [(8.54, 47.37), (8.541, 47.371), (8.541, 47.37), (8.54, 47.371)]
+    place = r"features\[0\] \(Bow\), geometry: self-intersection at latitude 47.3705, longitude 8.5405; expected"
+    with pytest.raises(MissionError, match=place):
+        site(tmp_path, robots, area(bow, name="Bow"))
 
 
 def test_areas_to_survey_need_their_action(tmp_path, robots, monkeypatch):

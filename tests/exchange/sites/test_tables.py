@@ -138,6 +138,22 @@ def test_units_in_headings_and_beside_numbers(tmp_path, heading, cell, metres_a_
     assert read(tmp_path, robots, "id,x,y\n1,3,4\n").mission.robots[0].speed_mps == pytest.approx(metres_a_second)
 
 
+@pytest.mark.parametrize("headings", ["lat [\u00b0],lon [\u00b0]", "lat (deg),lon (deg)", "Lat (WGS84),Lon (WGS84)"])
+def test_degrees_in_headings(tmp_path, robots, headings):
+    found = read(tmp_path, robots, f"name,{headings}\na,47.3775,8.5417\n", origin=(47.3775, 8.5417))
+    assert found.mission.tasks[0].position == (0, 0)
+
+
+@pytest.mark.parametrize(("heading", "load"), [("Weight (kg)", 25), ("Mass (g)", 0.025), ("Load (boxes)", 25)])
+def test_a_mass_is_a_load_and_no_priority(tmp_path, heading, load):
+    robots = tmp_path / "robots.csv"
+    robots.write_text("name,x,y,Capacity (kg)\nr,0,0,40\n", encoding="utf-8")
+    mission = read(tmp_path, robots, f"name,x,y,{heading}\na,1,2,25\n").mission
+    assert (mission.tasks[0].load, mission.tasks[0].priority) == (load, 1)
+    assert (mission.robots[0].load_capacity, mission.robots[0].work_capacity) == (40, None)
+    assert read(tmp_path, robots, "name,x,y,weight\na,1,2,25\n").mission.tasks[0].priority == 25
+
+
 def test_columns_named_by_hand_are_stronger(tmp_path, robots):
     text = "Breite,Hoehe,lat,no\n47.3,8.5,1,7\n"
     found = read(tmp_path, robots, text, columns={"latitude": "Breite", "lon": "Hoehe"}, origin=(47.3, 8.5))
@@ -181,6 +197,8 @@ def test_what_the_mission_refuses_is_named_by_the_column(tmp_path, robots):
     [
         ("name,latitude,lat,lon\na,1,2,3\n", "lat: means lat, as latitude does; expected one column that says lat"),
         ("name,x (kg),y\na,1,2\n", r"x \(kg\): a unit that does not fit; expected m, km, cm or ft"),
+        ("name,lat (km),lon (km)\na,1,2\n", r"^[^\n]*lat \(km\): a unit that [^\n]*\n[^\n]*lon \(km\)[^\n]*$"),
+        ("name,lat,lon,priority (%)\na,1,2,3\n", r"priority \(%\): a unit that does not fit; expected no unit"),
         ("name,lat,lon,duration (km)\na,1,2,3\n", r"duration \(km\): a unit that does not fit; expected s, min or h"),
         ("name,lat,lon\na,1,2,3\n", 'column 4: "3" without a heading'),
         ("name,lat,lon,opens,window\na,47.4,8.5,5,10-20\n", "window: a window; expected it, or opens, not both"),
@@ -192,6 +210,20 @@ def test_what_the_mission_refuses_is_named_by_the_column(tmp_path, robots):
 def test_tables_that_cannot_be_meant(tmp_path, robots, text, message):
     with pytest.raises(MissionError, match=message):
         read(tmp_path, robots, text)
+
+
+@pytest.mark.parametrize("wrong", [0, 45])
+def test_of_many_places_the_wrong_one_is_named(tmp_path, robots, wrong):
+    rows = [f"t{k},47.{3700 + k},8.5" for k in range(45)]
+    rows.insert(wrong, "Oops,0,0")
+    with pytest.raises(MissionError) as caught:
+        read(tmp_path, robots, "name,lat,lon\n" + "\n".join(rows))
+    (finding,) = caught.value.findings
+    assert (finding.line, finding.value) == (wrong + 2, "latitude 0, longitude 0")
+    origin = "the origin, which is chosen in the middle of all places: latitude 23.6884, longitude 4.2708"
+    assert f"within 100 km of {origin}; this place is 5,3" in finding.expected
+    with pytest.raises(MissionError, match=r"within 100 km of the origin, not 5,3..; are latitude and"):
+        read(tmp_path, robots, "name,lat,lon\n" + "\n".join(rows), origin=(47.37, 8.5))
 
 
 def test_titles_above_the_headings_are_passed_over_and_named(tmp_path, robots):
@@ -207,6 +239,14 @@ def test_separators_are_not_taken_from_titles_or_decimal_commas(tmp_path, robots
     assert found.mission.tasks[0].position == (0.0, 0.0)
 
 
+@pytest.mark.parametrize("separator", [";", "\t", ","])
+def test_headings_in_quotes(tmp_path, robots, separator):
+    rows = [["name", "x", "y"], ["A", "1", "2"]]
+    text = "".join(separator.join(f'"{cell}"' for cell in row) + "\n" for row in rows)
+    (task,) = read(tmp_path, robots, text, origin=(47.4, 8.5)).mission.tasks
+    assert (task.id, task.position) == ("A", (1, 2))
+
+
 @pytest.mark.parametrize("count", [1, 8])
 def test_a_table_of_one_column_has_no_titles(tmp_path, robots, count):
     rows = "".join(f'"47.4, 8.5{k}"\n' for k in range(count))
@@ -219,6 +259,55 @@ def test_ids_from_names_rows_and_numbers(tmp_path, robots):
     assert "names that stand several times are numbered: p (2 times)" in found.notes
     found = read(tmp_path, robots, "lat,lon\n47,8\n47,8\n", origin=(47, 8))
     assert [task.id for task in found.mission.tasks] == ["panels-1", "panels-2"]
+
+
+NUMBERED = "id,name,x,y,after\n1,Gate,1,2,\n2,Hall,2,2,Gate\n3,Roof,3,2,1;Hall\n"
+
+
+@pytest.mark.parametrize("heading", ["id", "no", "number"])
+def test_names_are_ids_beside_mere_numbers(tmp_path, robots, heading):
+    found = read(tmp_path, robots, NUMBERED.replace("id", heading), origin=(47, 8))
+    assert [task.id for task in found.mission.tasks] == ["Gate", "Hall", "Roof"]
+    assert [task.prerequisites for task in found.mission.tasks] == [(), ("Gate",), ("Gate", "Hall")]
+    told = f"name is the id, not the numbers under {heading}; --column id={heading} takes those"
+    assert f"{tmp_path}/panels.csv: {told}" in found.notes
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "ids"),
+    [
+        (NUMBERED, {"id": "id"}, ["1", "2", "3"]),
+        (NUMBERED.replace("3,", "C,", 1), {}, ["1", "2", "C"]),
+        (NUMBERED.replace("Roof", ""), {}, ["1", "2", "3"]),
+    ],
+)
+def test_names_beside_ids_are_told_and_may_be_meant(tmp_path, robots, text, columns, ids):
+    found = read(tmp_path, robots, text, origin=(47, 8), columns=columns)
+    assert [task.id for task in found.mission.tasks] == ids
+    assert found.mission.tasks[2].prerequisites == ("1", "2")
+    told = "not read beside id: name; --column id=name takes it for the id"
+    assert f"{tmp_path}/panels.csv: {told}" in found.notes
+
+
+def test_references_mean_what_their_own_file_calls_so(tmp_path, robots):
+    base = tmp_path / "base.yaml"
+    base.write_text(
+        "schema: muster/1\norigin_wgs84: {lat_deg: 47, lon_deg: 8}\nrobots: [{id: r, position: [0, 0]}]\n"
+        "tasks: [{id: A, position: [9, 9]}, {id: C, position: [9, 8]}]\n",
+        encoding="utf-8",
+    )
+    file = tmp_path / "add.csv"
+    file.write_text("name,x,y,after\nA,1,2,\nB,2,2,A C\n", encoding="utf-8")
+    tasks = {task.id: task for task in read_site(base, file).mission.tasks}
+    assert tasks["A-2"].position == (1, 2)
+    assert tasks["B"].prerequisites == ("A-2", "C")
+
+
+def test_a_name_that_stands_twice_cannot_be_meant(tmp_path, robots):
+    text = "name,x,y,after\nA,1,2,\nA,2,2,\nB,3,2,{}\n"
+    with pytest.raises(MissionError, match=r"panels.csv:4: after: A \(ambiguous\); expected .* an id: A, A-2"):
+        read(tmp_path, robots, text.format("A"), origin=(47, 8))
+    assert read(tmp_path, robots, text.format("A-2"), origin=(47, 8)).mission.tasks[2].prerequisites == ("A-2",)
 
 
 def test_what_a_row_is_of_is_its_name_where_no_other_column_is(tmp_path, robots):
@@ -268,6 +357,56 @@ def test_a_cell_of_a_workbook_is_named_by_sheet_and_row(tmp_path):
         read_site(book)
 
 
+def test_cells_of_workbooks_without_values_are_named(tmp_path):
+    book = tmp_path / "site.xlsx"
+    rows = [
+        ["name", "x", "y", "duration", "remark"],
+        ["a", '=1+1&"<"', "#DIV/0!", None, "=A2"],
+        ["b", 1, 2, "=NOW()", None],
+    ]
+    writers.write_workbook(
+        book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], "Tasks": [[], *[[None, *r] for r in rows]]}
+    )
+    with pytest.raises(MissionError) as caught:
+        read_site(book)
+    stored, error = "open the workbook in the spreadsheet program and save it", "a value in place of this error"
+    told = [(f.line, f.field, f.value) for f in caught.value.findings]
+    assert told == [
+        (3, "sheet Tasks, x", '=1+1&"<"'), (3, "sheet Tasks, y", "#DIV/0!"), (4, "sheet Tasks, duration", "=NOW()"),
+    ]  # fmt: skip
+    assert [stored in f.expected for f in caught.value.findings] == [True, False, True]
+    assert error in caught.value.findings[1].expected
+
+
+@pytest.mark.parametrize(
+    ("sheet", "rows", "message"),
+    [
+        ("Stations", [["name", "x", "y", "services"], ["s", 1, 2, "charge"]], "sheet Stations, charge_per_s: missing"),
+        ("Stations", [["name", "x", "y"], ["s", 1, 2]], "sheet Stations, services: missing"),
+        (
+            "Tasks",
+            [["name", "x", "y", "duration"], ["a", 1, 2, datetime.datetime(2027, 3, 1, 8, 30)]],
+            "sheet Tasks, duration: 2027-03-01 08:30:00; expected a duration",
+        ),
+    ],
+)
+def test_what_is_missing_or_wrong_in_a_sheet_is_named(tmp_path, sheet, rows, message):
+    book = tmp_path / "site.xlsx"
+    writers.write_workbook(book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], sheet: rows})
+    with pytest.raises(MissionError, match=f"site.xlsx:2: {message}"):
+        read_site(book)
+
+
+def test_merged_cells_over_rows_of_data_are_told(tmp_path):
+    book = tmp_path / "site.xlsx"
+    tasks = [["Plan of the year"], ["name", "x", "y", "type"], ["a", 1, 2, "dig"], ["b", 2, 2], ["c", 3, 2]]
+    merged = {"Tasks": ["A1:D1", "D3:D5"]}
+    writers.write_workbook(book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], "Tasks": tasks}, merged)
+    found = read_site(book)
+    assert [task.type for task in found.mission.tasks] == ["dig", None, None]
+    assert f"{book}, Tasks: merged cells D3:D5: only the first cell of each has its value" in found.notes
+
+
 @pytest.mark.parametrize(("module", "extra"), [("python_calamine", "sites"), ("pymap3d", "map")])
 def test_without_a_library_the_extra_is_named(tmp_path, robots, monkeypatch, module, extra):
     book = tmp_path / "site.xlsx"
@@ -298,3 +437,29 @@ def test_heights(tmp_path, robots):
     assert found.mission.dimensions == 2
     assert any("heights left out" in note for note in found.notes)
     assert read(tmp_path, robots, "id,lat,lon,height\na,47,8,12\n", flat=True, origin=(47, 8)).mission.dimensions == 2
+
+
+@pytest.mark.parametrize("cell", ["8.30", "830", "0.375"])
+@pytest.mark.parametrize("heading", ["opens", "closes", "due"])
+def test_numbers_among_clock_times_are_named(tmp_path, robots, heading, cell):
+    text = f"name,x,y,{heading}\na,1,2,09:00\nb,2,2,{cell}\nc,2,3,\n"
+    with pytest.raises(MissionError) as caught:
+        read(tmp_path, robots, text, origin=(47, 8), starts_at="2027-03-01T08:00")
+    (finding,) = caught.value.findings
+    assert (finding.line, finding.field, finding.value) == (3, heading, cell)
+    assert finding.expected.startswith('a clock time, as "08:30", as others of the column are')
+
+
+def test_a_clock_time_without_its_colon_is_named(tmp_path, robots):
+    with pytest.raises(MissionError, match='opens: 0830; expected "08:30", or seconds that do not begin with 0'):
+        read(tmp_path, robots, "name,x,y,opens\na,1,2,0830\n", origin=(47, 8))
+
+
+def test_what_is_taken_for_the_next_day_is_told(tmp_path):
+    robots = tmp_path / "robots.csv"
+    robots.write_text("id,x,y,shift\nearly,0,0,06:00-14:00\nlate,0,0,09:00-17:00\n", encoding="utf-8")
+    text = "name,x,y,window\na,1,2,07:00-09:00\nb,1,2,07:00-07:30\n"
+    found = read(tmp_path, robots, text, starts_at="2027-03-01T08:00")
+    told = "begin before starts_at (2027-03-01T08:00), and are the next day's: a (07:00), early (06:00)"
+    assert told in found.notes
+    assert found.mission.robots[0].available_from_s == 22 * 3600

@@ -69,14 +69,16 @@ def write_kmz(path, text, name="doc.kml"):
         archive.writestr(name, text)
 
 
-def write_workbook(path, sheets):
-    """Sheets by name, each a list of rows."""
+def write_workbook(path, sheets, merged=None):
+    """Sheets by name, each a list of rows; `merged` are ranges of cells by sheet."""
     book = openpyxl.Workbook()
     book.remove(book.active)
     for name, rows in sheets.items():
         sheet = book.create_sheet(name)
         for row in rows:
             sheet.append(row)
+        for cells in (merged or {}).get(name, ()):
+            sheet.merge_cells(cells)
     book.save(path)
 
 

@@ -43,7 +43,9 @@ def areas_of(entry: Entry, frame: Frame, findings: list[Finding]) -> list[shapel
         try:
             found.append(require_valid([frame.metres([place[:2] for place in ring]) for ring in rings]))
         except ValueError as error:
-            findings.append(entry.feature.finding("geometry", str(error), _EXPECTED))
+            told, *places = error.args
+            told += "".join(f" at latitude {lat}, longitude {lon}" for lat, lon in map(frame.degrees, places))
+            findings.append(entry.feature.finding("geometry", told, _EXPECTED))
     return [shapely.orient_polygons(area) for area in found]
 
 
@@ -112,19 +114,24 @@ def boundary_of(
     return _corners(area.exterior), [{"polygon": _corners(hole)} for hole in area.interiors]
 
 
-def survey_tasks(entry: Entry, areas: Sequence[shapely.Polygon], spatial: bool) -> list[dict[str, Any]]:
-    """Tasks to survey areas; what the action is to know comes from the entry, under the names of its keys."""
+def survey_tasks(
+    entry: Entry, areas: Sequence[shapely.Polygon], holes: Sequence[shapely.Polygon], at: Sequence[float]
+) -> list[dict[str, Any]]:
+    """Tasks to survey areas; what the action is to know comes from the entry, under the names of its keys.
+
+    `holes` are those beside the ones in the areas; `at` is where the task is, or only its height, if it has any.
+    """
     from muster.mission.action_keys import ACTION_KEYS
 
     keys = ACTION_KEYS[COVERAGE].names
     found = []
     for area in areas:
         action: dict[str, Any] = {"name": COVERAGE, "area": _corners(area.exterior)}
-        if area.interiors:
-            action["holes"] = [_corners(hole) for hole in area.interiors]
+        if rings := [*area.interiors, *(hole.exterior for hole in holes)]:
+            action["holes"] = [_corners(ring) for ring in rings]
         action |= {key: value for key, value in entry.values.items() if key in keys}
         inside = area.representative_point()
-        place = [round(inside.x, 4), round(inside.y, 4), *([0.0] if spatial else [])]
+        place = list(at) if len(at) > 1 else [round(inside.x, 4), round(inside.y, 4), *at]
         found.append({"position": place, "action": action})
     return found
 

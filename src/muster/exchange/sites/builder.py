@@ -6,16 +6,17 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import PurePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.exchange.sites.areas import areas_of, around, boundary_of, survey_tasks, zones_of
 from muster.exchange.sites.entries import Entry, some_of
 from muster.exchange.sites.features import Coordinate
 from muster.exchange.sites.frame import FARTHEST_M, Frame
 from muster.exchange.sites.keys import AT_POINTS, COVERAGE, can_survey, keys_of
+from muster.exchange.sites.references import References
 from muster.exchange.sites.roles import role_word
 from muster.exchange.sites.times import KEYS as TIMES
-from muster.exchange.sites.times import chosen_start, robot_times, task_times
+from muster.exchange.sites.times import chosen_start, of_next_day, robot_times, task_times
 from muster.exchange.sites.ways import Ways
 from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.errors import Finding, MissionError
@@ -23,8 +24,10 @@ from muster.mission.model import SCHEMA
 from muster.mission.source import Place
 from muster.mission.value_types import Path, shown
 
+if TYPE_CHECKING:
+    import shapely
+
 _GROUPS = {"task": "tasks", "robot": "robots", "station": "stations"}
-_ID_LISTS = ("prerequisites", "same_robot_as", "other_robot_than", "starts_with", "only_robots")
 _OWN = frozenset(("id", "name", "kind", "moves", "battery", *TIMES))
 """Keys of entries that do not go into the mission as they are."""
 _AREAS = ("zone", "boundary", "survey")
@@ -77,9 +80,17 @@ class Builder:
         self._options = options
         self._entries = [entry for entry in entries if entry.role != "route"]
         self.built = Built({"schema": SCHEMA, "name": "site", **self._base})
+        self._chose_origin = False
+        self._made: list[tuple[str, Entry, dict[str, Any]]] = []
         passed_over = len(entries) - len(self._entries)
         if passed_over:
-            self.built.notes.append(f"routes and areas of a plan passed over: {passed_over}; Muster plans them anew")
+            self.built.notes.append(f"routes of a plan passed over: {passed_over}; Muster plans them anew")
+
+    @property
+    def read(self) -> list[Entry]:
+        """What was read, once for each thing in the mission: of an area to survey in several parts once for each."""
+        times = Counter(id(entry) for _, entry, _ in self._made if entry.role == "survey")
+        return [one for entry in self._entries for one in [entry] * max(1, times[id(entry)])]
 
     def build(self) -> Built:
         """The whole mission."""
@@ -95,10 +106,11 @@ class Builder:
         ids = self._ids(points)
         for entry, position, name in zip(points, positions, ids, strict=True):
             self._add(_GROUPS[entry.role], entry, self._record(entry, name, position))
-        self._split_lists(self._all_ids())
         self._add_areas(spatial)
+        self._resolve_references()
         self._add_lanes()
         self._set_start()
+        self._note_next_day()
         self._raise_findings()
         return self.built
 
@@ -131,6 +143,7 @@ class Builder:
         spatial = not self._options.flat
         altitudes = [e.height for e in self._entries if e.height is not None and not e.over_ground and spatial]
         frame = Frame.around([place for _, place in in_degrees], altitudes)
+        self._chose_origin = True
         self._set_origin(frame)
         self.built.notes.append(
             f"origin_wgs84 chosen: lat_deg {frame.lat}, lon_deg {frame.lon}, alt_m {frame.alt}; --origin says another"
@@ -153,20 +166,32 @@ class Builder:
                 yield from ((entry, place) for piece in entry.geometry.pieces for ring in piece for place in ring)
 
     def _refuse_far(self) -> None:
-        """Refuse places that cannot be meant; the first that is far from the origin, or from all others."""
-        if self._frame is None:
-            return
-        for entry, place in self._degrees():
-            if self._frame.is_far(place):
-                self.built.findings.append(self._far(entry, place))
-                return
+        """Refuse places that cannot be meant: the first that is far from a given origin, or that far from most others.
 
-    def _far(self, entry: Entry, place: Coordinate) -> Finding:
-        assert self._frame is not None
+        An origin that is chosen is far from all others, where one place is wrong.
+        """
+        frame = self._frame
+        if frame is None:
+            return
+        far = next(((entry, place) for entry, place in self._degrees() if frame.is_far(place)), None)
+        if far is None:
+            return
+        limit = f"{FARTHEST_M / 1000:g} km"
+        if not self._chose_origin:
+            told = f"within {limit} of the origin, not {frame.distance(far[1]) / 1000:,.0f}"
+        else:
+            places = list(self._degrees())
+            most = Frame.amid([place for _, place in places])
+            far = max(places, key=lambda one: most.distance(one[1]))
+            origin = (
+                f"the origin, which is chosen in the middle of all places: latitude {frame.lat}, longitude {frame.lon}"
+            )
+            told = f"within {limit} of {origin}; this place is {most.distance(far[1]) / 1000:,.0f} km from most others"
+        entry, place = far
         value = f"latitude {place[1]:g}, longitude {place[0]:g}"
-        apart = self._frame.distance(place) / 1000
-        expected = f"within {FARTHEST_M / 1000:g} km of the origin, not {apart:,.0f}"
-        return entry.feature.finding("", value, f"{expected}; are latitude and longitude swapped, or 0?")
+        self.built.findings.append(
+            entry.feature.finding("", value, f"{told}; are latitude and longitude swapped, or 0?")
+        )
 
     # Points
 
@@ -244,20 +269,19 @@ class Builder:
             record |= task_times(entry, self.built.findings)
         return record
 
-    def _split_lists(self, known: Sequence[str]) -> None:
-        """Lists of ids with nothing but spaces between them, where the whole is no id."""
-        ids = set(known)
-        for group in ("tasks", "robots"):
-            for record in self.built.data.get(group, ()):
-                for key in _ID_LISTS:
-                    names = record.get(key)
-                    if isinstance(names, list) and all(isinstance(name, str) for name in names):
-                        record[key] = [part for name in names for part in ([name] if name in ids else name.split())]
+    def _resolve_references(self) -> None:
+        groups = {group: [str(one["id"]) for one in self.built.data.get(group, ())] for group in _GROUPS.values()}
+        references = References(groups)
+        for group, entry, record in self._made:
+            references.add(group, entry, record["id"])
+        for _, entry, record in self._made:
+            references.resolve(entry, record, self.built.findings)
 
     def _add(self, group: str, entry: Entry, record: dict[str, Any]) -> None:
         items = self.built.data.setdefault(group, [])
         self._place((group, len(items)), entry)
         items.append(record)
+        self._made.append((group, entry, record))
 
     def _place(self, at: Path, entry: Entry) -> None:
         feature = entry.feature
@@ -265,6 +289,8 @@ class Builder:
         prefix = f"{feature.where}, " if feature.where else ""
         if prefix:
             self.built.fields[at] = feature.where
+            if entry.role == "survey":
+                self.built.fields[*at, "action"] = feature.where
         for key, column in entry.columns.by_key.items():
             for name in {key, *_SAID_AS.get(key, ())}:
                 self.built.fields[*at, name] = f"{prefix}{column.heading}"
@@ -284,9 +310,8 @@ class Builder:
             assert self._frame is not None
             areas = areas_of(entry, self._frame, self.built.findings)
             if entry.role == "survey":
-                for task, name in zip(
-                    survey_tasks(entry, areas, spatial), self._ids([entry] * len(areas)), strict=True
-                ):
+                tasks = survey_tasks(entry, areas, self._holes(entry), self._middle(entry, spatial))
+                for task, name in zip(tasks, self._ids([entry] * len(areas)), strict=True):
                     record = self._record(entry, name, task["position"])
                     kept = {key: value for key, value in record.items() if key not in ACTION_KEYS[COVERAGE].names}
                     self._add("tasks", entry, kept | task_times(entry, self.built.findings) | task)
@@ -302,6 +327,17 @@ class Builder:
         if open_zones:
             told = some_of([entry.told for entry in open_zones])
             self.built.notes.append(f"zones that are forbidden to nobody are left out: {told}")
+
+    def _holes(self, entry: Entry) -> list[shapely.Polygon]:
+        """The holes that a plan has beside an area."""
+        assert self._frame is not None
+        return [hole for one in entry.holes for hole in areas_of(one, self._frame, self.built.findings)]
+
+    def _middle(self, entry: Entry, spatial: bool) -> list[float]:
+        """Where the task over an area is, as far as it is said: in space on the ground."""
+        if entry.middle is not None:
+            return self._positions([entry.middle], spatial)[0]
+        return [0.0] if spatial else []
 
     def _set_map(
         self, bounds: Sequence[tuple[Entry, list[list[float]]]], zones: Sequence[tuple[Entry, dict[str, Any]]]
@@ -370,6 +406,11 @@ class Builder:
             )
             expected = "--starts-at 2027-03-01T08:00, the moment at which the mission begins, beside clock times"
             self.built.findings.append(timed.feature.finding("starts_at", "missing", expected))
+
+    def _note_next_day(self) -> None:
+        starts_at = self.built.data.get("starts_at")
+        if later := of_next_day(self._entries, starts_at):
+            self.built.notes.append(f"begin before starts_at ({starts_at}), and are the next day's: {some_of(later)}")
 
 
 _SAID_AS = {

@@ -10,6 +10,7 @@ import json
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
 from typing import Any
 
@@ -28,6 +29,7 @@ _DEGREES = re.compile(
     re.IGNORECASE,
 )
 _CLOCK = re.compile(r"(\d{1,2})(?::([0-5]\d)(?::([0-5]\d(?:\.\d+)?))?)?\s*([ap]\.?m\.?)?", re.IGNORECASE)
+_CLOCK_WITHOUT_COLON = re.compile(r"0\d[0-5]\d")
 _YES = frozenset(("true", "yes", "y", "x", "1", "on"))
 _UNLIMITED = ("inf", ".inf", "infinity", "unlimited", "none")
 _NO = frozenset(("false", "no", "n", "0", "off", "-"))
@@ -35,6 +37,17 @@ _NO = frozenset(("false", "no", "n", "0", "off", "-"))
 
 class CellError(ValueError):
     """A cell holds something else than was expected; `args[0]` says what that is."""
+
+
+@dataclass(frozen=True)
+class NoValue:
+    """What stands in a cell that has no value, as an error does; and what was expected."""
+
+    told: str
+    expected: str
+
+    def __str__(self) -> str:
+        return self.told
 
 
 def text(value: object) -> str:
@@ -180,6 +193,8 @@ def moment(value: object, factor: float = 1.0) -> str | float:
         clock = _CLOCK.fullmatch(told)
         if clock is not None and (clock[2] or clock[4]):
             return _clock(clock, expected)
+        if _CLOCK_WITHOUT_COLON.fullmatch(told):
+            raise CellError(f'"{told[:2]}:{told[2:]}", or seconds that do not begin with 0')
     try:
         seconds = number(value, "time", factor)
     except CellError:
@@ -241,24 +256,27 @@ def json_value(value: object, expected: str) -> Any:
     return value
 
 
-def degrees(value: object, most: float) -> float:
-    """A latitude (`most` 90) or a longitude (180): decimal degrees, or degrees, minutes and seconds with N, S, E, W."""
+def degrees(value: object, most: float, factor: float = 1.0) -> float:
+    """A latitude (`most` 90) or a longitude (180): decimal degrees, or degrees, minutes and seconds with N, S, E, W.
+
+    A plain number is so many degrees of `factor`.
+    """
     axis = "latitude" if most == 90 else "longitude"
     expected = f"a {axis} from -{most:g} to {most:g} degrees"
     if isinstance(value, str):
-        found = _degrees_in(value.translate(_SPACES).strip(), "NS" if most == 90 else "EW", expected)
+        found = _degrees_in(value.translate(_SPACES).strip(), "NS" if most == 90 else "EW", expected, factor)
     else:
-        found = number(value)
+        found = number(value, "angle", factor)
     if not abs(found) <= most:
         raise CellError(expected)
     return found
 
 
-def _degrees_in(told: str, sides: str, expected: str) -> float:
+def _degrees_in(told: str, sides: str, expected: str, factor: float) -> float:
     match = _DEGREES.fullmatch(told)
-    if match is None:
+    if match is None or (factor != 1.0 and _NUMBER.fullmatch(told)):
         try:
-            return number(told, "angle")
+            return number(told, "angle", factor)
         except CellError:
             raise CellError(expected) from None
     side = (match["first"] or match["last"] or "").upper()
@@ -271,8 +289,11 @@ def _degrees_in(told: str, sides: str, expected: str) -> float:
     return -size if (match["sign"] == "-") != (side in ("S", "W")) else size
 
 
-def lat_lon(value: object) -> tuple[float, ...]:
-    """Latitude and longitude, and perhaps an altitude, in one cell: `35.53, 24.06`, `35,53; 24,06`, `N35.53 E24.06`."""
+def lat_lon(value: object, factor: float = 1.0) -> tuple[float, ...]:
+    """Latitude and longitude, and perhaps an altitude, in one cell: `35.53, 24.06`, `35,53; 24,06`, `N35.53 E24.06`.
+
+    Plain numbers are so many degrees of `factor`.
+    """
     expected = "latitude and longitude in degrees, as 35.53, 24.06"
     parts: list[Any]
     if isinstance(value, str):
@@ -291,7 +312,7 @@ def lat_lon(value: object) -> tuple[float, ...]:
         raise CellError(expected)
     try:
         altitude = [number(parts[2], "length")] if len(parts) == 3 else []
-        return (degrees(parts[0], 90), degrees(parts[1], 180), *altitude)
+        return (degrees(parts[0], 90, factor), degrees(parts[1], 180, factor), *altitude)
     except CellError as error:
         raise CellError(f"{expected}: {error.args[0]}") from None
 

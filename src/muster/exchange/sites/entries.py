@@ -10,7 +10,7 @@ from typing import Any
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
 from muster.exchange.sites.headings import Columns, columns_of
 from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
-from muster.exchange.sites.roles import Roles, names_role
+from muster.exchange.sites.roles import Roles, is_no_fly, is_of_plan, names_role
 from muster.exchange.sites.shapes import from_text
 from muster.mission.errors import Finding
 
@@ -19,6 +19,11 @@ _NEAR = 0.75
 _MOST_NAMED = 8
 _IN_DEGREES = ("lat", "lon", "lat_lon", "alt")
 _IN_METRES = ("x", "y", "position")
+_OF_AREAS = frozenset(("action", "of"))
+"""What exported plans say of areas, and is read by its own name."""
+_OF_PLANS = frozenset(("starts_at", "ends_at", "starts_s", "ends_s"))
+"""What exported plans say of stops: no slips of keys."""
+_OF_PLACES = (*_IN_DEGREES, *_IN_METRES)
 _EXPECTED_PLACE = "columns of latitude and longitude (or x and y); --column lat=HEADING --column lon=HEADING names them"
 
 
@@ -36,6 +41,10 @@ class Entry:
         whether the third of `degrees` is a height over the ground.
     geometry
         of a line or an area.
+    also
+        another name by which references may mean it.
+    holes, middle
+        of an area of a plan, what else the plan has of it: its holes, and where its task is.
     """
 
     role: str
@@ -46,6 +55,9 @@ class Entry:
     metres: tuple[float, ...] | None = None
     over_ground: bool = False
     geometry: Geometry | None = None
+    also: str | None = None
+    holes: tuple[Entry, ...] = ()
+    middle: Entry | None = None
 
     def finding(self, key: str, value: object, expected: str) -> Finding:
         """What is wrong with the value of a key."""
@@ -75,14 +87,17 @@ def entries_of(
     """What a layer holds; what of it is not read is noted."""
     if layer.passed_over:
         notes.append(f"{layer.title}: passed over: {some_of(layer.passed_over)}")
-    features = list(_with_shapes(layer, findings))
+    notes += [f"{layer.title}: {note}" for note in layer.notes]
+    features = list(_with_shapes(_without_empty(layer, notes), findings))
     by_role: dict[str, list[Feature]] = {}
     for feature in features:
         by_role.setdefault(roles.role(layer, feature, default, findings), []).append(feature)
     found: list[Entry] = []
     unread: list[set[str]] = []
     for role, members in by_role.items():
-        columns = columns_of(layer, role, given, findings)
+        columns = columns_of(layer, role, given, findings, members)
+        if role in AT_POINTS and not columns.wrong.isdisjoint(_OF_PLACES):
+            continue
         if role in AT_POINTS and not _has_places(members, columns):
             if not _passes_over(layer, default, notes):
                 findings.append(_without_places(layer))
@@ -90,16 +105,35 @@ def entries_of(
         unread.append(set(columns.unread))
         for feature in members:
             found += _entry(role, feature, columns, findings)
+    found = _without_flying(layer, found, notes)
     lost = set.intersection(*unread) if unread else set()
+    lost -= _OF_AREAS if any(is_of_plan(feature, kind) for feature in features for kind in ("area", "hole")) else set()
     if names := [heading for heading in layer.headings if heading in lost and heading.casefold() != ROLE.name]:
         notes.append(f"{layer.title}: not read: {_told_unread(names, list(by_role))}")
+    return found
+
+
+def _without_flying(layer: Layer, entries: list[Entry], notes: list[str]) -> list[Entry]:
+    """The entries; a no-fly zone is forbidden to robots in the air alone, unless it says to whom it is."""
+    found = [
+        replace(e, values={**e.values, "forbidden_to": ["air"]})
+        if e.role == "zone" and "forbidden_to" not in e.values and is_no_fly(layer, e.feature)
+        else e
+        for e in entries
+    ]
+    changed = [entry.told for entry, before in zip(found, entries, strict=True) if entry is not before]
+    if changed:
+        notes.append(f"{layer.title}: no-fly zones are forbidden to robots in the air alone: {some_of(changed)}")
     return found
 
 
 def _told_unread(names: list[str], roles: list[str]) -> str:
     """Headings that mean nothing, and for those that are nearly a key what that may be."""
     known = [key for role in roles for key in keys_of(role)]
-    near = {name: get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR) for name in names[:_MOST_NAMED]}
+    near = {
+        name: [] if name in _OF_PLANS else get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR)
+        for name in names[:_MOST_NAMED]
+    }
     told = [f"{name} (did you mean {found[0]}?)" if found else name for name, found in near.items()]
     return some_of([*told, *names[_MOST_NAMED:]])
 
@@ -109,6 +143,23 @@ def some_of(names: Sequence[str]) -> str:
     return ", ".join(names[:_MOST_NAMED]) + (
         f", and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
     )
+
+
+def _without_empty(layer: Layer, notes: list[str]) -> Layer:
+    """A layer of a map without the features that have neither a geometry nor a place in their values."""
+    if all(feature.geometry is None for feature in layer.features):
+        return layer
+    columns = columns_of(layer, "task", {}, [])
+    places = {columns.heading(key) for key in (*_OF_PLACES, "wkt") if key in columns}
+    kept: list[Feature] = []
+    lost: list[Feature] = []
+    for feature in layer.features:
+        is_placed = feature.geometry is not None or not places.isdisjoint(feature.values)
+        (kept if is_placed else lost).append(feature)
+    if lost:
+        told = some_of([feature.where or f"line {feature.line}" for feature in lost])
+        notes.append(f"{layer.title}: passed over, without a geometry: {told}")
+    return replace(layer, features=tuple(kept))
 
 
 def _with_shapes(layer: Layer, findings: list[Finding]) -> Iterator[Feature]:
@@ -156,7 +207,7 @@ def _entry(role: str, feature: Feature, columns: Columns, findings: list[Finding
     before = len(findings)
     read = {key: column.value(feature, findings) for key, column in columns.by_key.items()}
     values = {key: value for key, value in read.items() if value is not None}
-    own = {key: value for key, value in values.items() if key not in (*_IN_DEGREES, *_IN_METRES, "z", "wkt")}
+    own = {key: value for key, value in values.items() if key not in (*_OF_PLACES, "z", "wkt")}
     entry = Entry(role, feature, columns, own)
     geometry = feature.geometry
     if role not in AT_POINTS:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import date, time, timedelta
+from textwrap import shorten
 from typing import Literal
 
 from muster.mission.errors import Finding, MissionError
@@ -14,6 +16,8 @@ Coordinate = tuple[float, ...]
 Ring = tuple[Coordinate, ...]
 """The coordinates of a line; of an area its corners, the first of them again at the end."""
 Shape = Literal["point", "line", "area"]
+
+_LONGEST_NAME = 40
 
 
 @dataclass(frozen=True)
@@ -56,7 +60,7 @@ class Feature:
     def finding(self, heading: str, value: object, expected: str) -> Finding:
         """What is wrong with a value of it."""
         field = ", ".join(part for part in (self.where, heading) if part)
-        return Finding(self.file, self.line, field, value if isinstance(value, str) else shown(value), expected)
+        return Finding(self.file, self.line, field, _told(value), expected)
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,7 @@ class Layer:
     """Features that have their headings in common: a table, a sheet, a folder.
 
     `name` is that of the sheet, folder or layer, if there is one; `headings` are in the order of the file;
-    `passed_over` is what has no place in a mission.
+    `passed_over` is what has no place in a mission; `notes` are what else is to be said of it.
     """
 
     file: str
@@ -72,11 +76,25 @@ class Layer:
     headings: tuple[str, ...]
     features: tuple[Feature, ...]
     passed_over: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
         """The layer as messages name it."""
         return f"{self.file}, {self.name}" if self.name else self.file
+
+
+def _told(value: object) -> str:
+    if isinstance(value, str):
+        return value
+    return str(value) if isinstance(value, date | time | timedelta) else shown(value)
+
+
+def with_name(where: str, values: Mapping[str, object]) -> str:
+    """Where a feature is in its file, with its name, if it has one."""
+    name = next((v for k, v in values.items() if k.casefold() in ("name", "title") and isinstance(v, str)), "")
+    name = shorten(name, _LONGEST_NAME, placeholder=" ...")
+    return f"{where} ({name})".strip() if name else where
 
 
 def layer_of(file: str, name: str, features: list[Feature]) -> Layer:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from statistics import median
 
 from muster.exchange.sites.features import Coordinate
 
@@ -35,6 +36,13 @@ class Frame:
         lon = wrapped(round((min(lons) + max(lons)) / 2, _ORIGIN_DECIMALS))
         return cls(round((min(lats) + max(lats)) / 2, _ORIGIN_DECIMALS), lon, round(min(altitudes, default=0.0), 1))
 
+    @classmethod
+    def amid(cls, places: Sequence[Coordinate]) -> Frame:
+        """A frame whose origin is amid most of the places: few that are far off do not move it."""
+        first = places[0][0]
+        lons = median(unwrapped(place[0], first) for place in places)
+        return cls(median(place[1] for place in places), wrapped(lons), 0.0)
+
     def metres(self, places: Sequence[Coordinate], over_ground: bool = False) -> list[list[float]]:
         """Places in metres, each with as many coordinates as it is given in degrees.
 
@@ -57,6 +65,13 @@ class Frame:
         return [
             [round(c, _DECIMALS) + 0.0 for c in row[: len(place)]] for row, place in zip(found, places, strict=True)
         ]
+
+    def degrees(self, place: Sequence[float]) -> tuple[float, float]:
+        """Latitude and longitude of a place on the ground, as exact as an origin that is chosen."""
+        from muster.mission.geodesy import enu_to_wgs84
+
+        ((lat, lon, _),) = enu_to_wgs84([(place[0], place[1], 0.0)], (self.lat, self.lon, self.alt)).tolist()
+        return round(lat, _ORIGIN_DECIMALS), round(lon, _ORIGIN_DECIMALS)
 
     def is_far(self, place: Coordinate) -> bool:
         """Whether a place is so far away that it cannot be meant."""

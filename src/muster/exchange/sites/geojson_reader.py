@@ -13,7 +13,17 @@ from typing import Any, cast
 
 from muster.exchange.sites.coordinate_systems import to_wgs84
 from muster.exchange.sites.csv_reader import decoded
-from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, Ring, Shape, layer_of, refused
+from muster.exchange.sites.features import (
+    Coordinate,
+    Feature,
+    Geometry,
+    Layer,
+    Ring,
+    Shape,
+    layer_of,
+    refused,
+    with_name,
+)
 from muster.exchange.sites.file_sizes import read_bytes
 from muster.mission.json_reader import JsonPlaces
 from muster.mission.value_types import Path as Where
@@ -98,12 +108,11 @@ class _Reading:
         values = {str(key): value for key, value in (properties or {}).items() if value not in (None, "")}
         if isinstance(item.get("id"), str | int) and not isinstance(item["id"], bool):
             values.setdefault("id", item["id"])
-        line = self._line(at)
-        if item.get("geometry") is None:
-            yield Feature(values, self._file, line, where)
-            return
-        for geometry in self._geometries(item["geometry"], geometry_at, f"{where}.geometry".lstrip(".")):
-            yield Feature(values, self._file, line, where, geometry)
+        given, inside = item.get("geometry"), f"{where}.geometry".lstrip(".")
+        found: list[Geometry | None] = []
+        found += [] if given is None else self._geometries(given, geometry_at, inside)
+        for geometry in found or [None]:
+            yield Feature(values, self._file, self._line(at), with_name(where, values), geometry)
 
     def _geometries(self, data: Any, at: Where, where: str) -> Iterator[Geometry]:
         kind = data.get("type") if isinstance(data, dict) else None

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from muster.exchange.sites.coordinate_systems import to_wgs84
-from muster.exchange.sites.features import Coordinate, Feature, Layer, refused
+from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, refused, with_name
 from muster.exchange.sites.file_sizes import read_bytes
 from muster.exchange.sites.shapes import geometries_of
 from muster.exchange.sites.tables import MOST_ROWS
@@ -96,16 +96,14 @@ class _Table:
         values = {
             name: value for name, value in row.items() if value not in (None, "") and not isinstance(value, bytes)
         }
-        if blob is None:
-            yield Feature(values, self._file, None, where)
-            return
+        found: list[Geometry | None] = []
         try:
-            found = geometries_of(_well_known(blob), self._transform)
+            found += [] if blob is None else geometries_of(_well_known(blob), self._transform)
         except ValueError as error:
             told = " ".join(str(error).split())
             raise refused(self._file, None, f"{where}, {self._column}", told, "a geometry of a GeoPackage") from None
-        for geometry in found:
-            yield Feature(values, self._file, None, where, geometry)
+        for geometry in found or [None]:
+            yield Feature(values, self._file, None, with_name(where, values), geometry)
 
 
 def _well_known(blob: object) -> Any:

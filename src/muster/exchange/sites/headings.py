@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from muster.exchange.sites.cells import CellError
+from muster.exchange.sites.cells import CellError, NoValue
 from muster.exchange.sites.features import Feature, Layer
 from muster.exchange.sites.keys import ROLES, SiteKey, keys_of
 from muster.exchange.sites.units import ALL_UNITS, UNITS, units_text
@@ -49,6 +49,9 @@ class Column:
         cell = feature.values.get(self.heading)
         if cell is None:
             return None
+        if isinstance(cell, NoValue):
+            findings.append(feature.finding(self.heading, cell.told, cell.expected))
+            return None
         try:
             return self.key.read(cell, factor=self.factor) if self.key.dimension else self.key.read(cell)
         except CellError as error:
@@ -58,10 +61,14 @@ class Column:
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of a layer for features of one role, by key; and the headings that mean nothing for it."""
+    """The columns of a layer for features of one role, by key; and the headings that mean nothing for it.
+
+    `wrong` are the keys whose headings have a unit that does not fit.
+    """
 
     by_key: Mapping[str, Column]
     unread: tuple[str, ...]
+    wrong: frozenset[str] = frozenset()
 
     def __contains__(self, key: str) -> bool:
         return key in self.by_key
@@ -71,24 +78,34 @@ class Columns:
         return self.by_key[key].heading if key in self.by_key else key
 
 
-def columns_of(layer: Layer, role: str, given: Mapping[str, str], findings: list[Finding]) -> Columns:
-    """What the headings of a layer mean for a role; `given` names headings by key, stronger than any other meaning."""
+def columns_of(
+    layer: Layer, role: str, given: Mapping[str, str], findings: list[Finding], members: Sequence[Feature] = ()
+) -> Columns:
+    """What the headings of a layer mean for a role; `given` names headings by key, stronger than any other meaning.
+
+    `members` are the features of the role: a heading under which none has a value gives way to one that means the same.
+    """
+    used = {heading for feature in members for heading in feature.values} if members else {*layer.headings}
     keys = keys_of(role)
     chosen = {key: heading for key, heading in given.items() if key in keys and heading in layer.headings}
     found: dict[str, Column] = {}
     unread: list[str] = []
-    for heading in layer.headings:
+    wrong: set[str] = set()
+    for heading in sorted(layer.headings, key=lambda heading: heading not in used):
         mine = [key for key, named in chosen.items() if named == heading]
         explicit: list[Column | None] = [_explicit(heading, keys[key]) for key in mine]
         meanings = explicit or [_meaning(heading, keys)]
         for column in meanings:
-            if column is None or (column.key.name in chosen and not mine):
+            is_chosen = column is not None and column.key.name in chosen and not mine
+            gives_way = column is not None and column.key.name in found and heading not in used
+            if column is None or is_chosen or gives_way:
                 unread.append(heading)
             elif column.key.name in found:
                 other = found[column.key.name].heading
                 expected = f"one column that says {column.key.name}: --column {column.key.name}={other}"
                 findings.append(_of_layer(layer, heading, f"means {column.key.name}, as {other} does", expected))
             elif column.factor == 0:
+                wrong.add(column.key.name)
                 told = units_text(column.key.dimension)
                 findings.append(
                     _of_layer(layer, heading, "a unit that does not fit", f"{told}, or nothing in brackets")
@@ -100,7 +117,7 @@ def columns_of(layer: Layer, role: str, given: Mapping[str, str], findings: list
         if subject is not None:
             unread.remove(subject)
             found["name"] = Column(subject, keys["name"], 1.0)
-    return Columns(found, tuple(dict.fromkeys(unread)))
+    return Columns(found, tuple(dict.fromkeys(unread)), frozenset(wrong))
 
 
 def given_columns(given: Mapping[str, str], layers: Sequence[Layer]) -> dict[str, str]:
@@ -160,10 +177,12 @@ def _readings(heading: str, key: SiteKey) -> Iterator[tuple[str, float]]:
     bracketed = _BRACKETED.match(heading)
     base, unit = (bracketed[1], bracketed[2].casefold()) if bracketed and bracketed[1] else (heading, "")
     units = UNITS[key.dimension]
+    unstated = key.unstated.get(heading.strip().casefold(), 1.0)
     words = [word.casefold() for word in _WORD.findall(_CAMEL.sub(" ", base))]
     for start in (0, 1) if len(words) > 1 and words[0] in _SUBJECTS else (0,):
         own = words[start:]
-        yield "".join(own), units.get(unit, 0.0 if unit in ALL_UNITS or (unit and key.dimension) else 1.0)
+        is_wrong = unit in ALL_UNITS or (unit and key.dimension and not key.is_free)
+        yield "".join(own), units.get(unit, 0.0 if is_wrong else unstated)
         if not unit and len(own) > 1:
             beside = own[-1] if len(own) < 3 or own[-2:] not in (["km", "h"], ["m", "s"]) else f"{own[-2]}/{own[-1]}"
             name = own[: -2 if "/" in beside else -1]

@@ -7,12 +7,12 @@ site's builder makes of them.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cache, partial
 from typing import Any
 
 from muster.exchange.sites import cells
-from muster.exchange.sites.units import Dimension
+from muster.exchange.sites.units import UNITS, Dimension
 from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.records import key_of, specified
 from muster.mission.value_types import Choice, Flag, Kind, Many, Number, OneOrMany, Text, Whole
@@ -33,16 +33,30 @@ class SiteKey:
         makes of a cell, and of what one unit of the heading is in SI units where it has a dimension, the value.
     names
         headings that mean it, besides its own name; lower case, without spaces and marks.
+    is_free
+        whether other words than units may stand in brackets: `load (boxes)`, `lat (WGS84)`.
+    unstated
+        headings with what one unit of their numbers is where they do not say it.
     """
 
     name: str
     read: Read
     dimension: Dimension = ""
     names: tuple[str, ...] = ()
+    is_free: bool = False
+    unstated: Mapping[str, float] = field(default_factory=dict)
 
 
 def _length(name: str, *names: str) -> SiteKey:
     return SiteKey(name, partial(_number, "length"), "length", names)
+
+
+def _angle(name: str, read: Read, *names: str) -> SiteKey:
+    return SiteKey(name, read, "angle", names, is_free=True)
+
+
+def _mass(name: str, *names: str) -> SiteKey:
+    return SiteKey(name, partial(_number, "mass"), "mass", names, is_free=True)
 
 
 def _number(dimension: Dimension, value: object, factor: float = 1.0) -> float:
@@ -59,18 +73,16 @@ def _choices(value: object) -> list[str]:
 
 
 PLACE = (
-    SiteKey(
-        "lat", partial(cells.degrees, most=90.0), names=("latitude", "latdeg", "latitudedeg", "latwgs84", "gpslat")
-    ),
-    SiteKey(
+    _angle("lat", partial(cells.degrees, most=90.0), "latitude", "latdeg", "latitudedeg", "latwgs84", "gpslat"),
+    _angle(
         "lon",
         partial(cells.degrees, most=180.0),
-        names=("lng", "long", "longitude", "londeg", "lngdeg", "longitudedeg", "lonwgs84", "gpslon", "gpslong"),
+        *("lng", "long", "longitude", "londeg", "lngdeg", "longitudedeg", "lonwgs84", "gpslon", "gpslong"),
     ),
-    SiteKey(
+    _angle(
         "lat_lon",
         cells.lat_lon,
-        names=("latlng", "latlong", "latitudelongitude", "coordinates", "coordinate", "coords", "gps"),
+        *("latlng", "latlong", "latitudelongitude", "coordinates", "coordinate", "coords", "gps"),
     ),
     _length("alt", "altitude", "elevation", "ele", "altm"),
     _length("x", "east"),
@@ -123,7 +135,7 @@ _TASK = (
     ),
     SiteKey("actuation_cost", cells.number, names=("cost", "workcost")),
     SiteKey("robots_needed", cells.whole, names=("robotsneeded", "teamsize", "crew")),
-    SiteKey("load", cells.number, names=("demand", "amount", "quantity")),
+    _mass("load", "demand", "amount", "quantity", "weight", "mass"),
 )
 _ROBOT = (
     SiteKey("id", cells.text, names=(*IDENTITY[0].names, "robot", "callsign")),
@@ -134,7 +146,7 @@ _ROBOT = (
     SiteKey("skills", cells.words, names=("skill", "capabilities", "equipment")),
     _length("radius_m", "radius"),
     SiteKey("heading_deg", partial(_number, "angle"), "angle", ("heading", "yaw")),
-    SiteKey("load_capacity", cells.number, names=("payload",)),
+    _mass("load_capacity", "payload", "capacity"),
     SiteKey("battery", cells.number, names=("batterycapacity",)),
     SiteKey("climb_mps", partial(_number, "speed"), "speed", ("climb", "climbspeed")),
     SiteKey("starts", cells.moment, "time", ("from", "availablefrom", "shiftstart", "start", "earliest")),
@@ -157,7 +169,13 @@ _ZONE = (
 _LANE = (
     _DOOR,
     _length("width_m", "width"),
-    SiteKey("speed_mps", partial(_number, "speed"), "speed", ("speed", "maxspeed", "speedlimit")),
+    SiteKey(
+        "speed_mps",
+        partial(_number, "speed"),
+        "speed",
+        ("speed", "maxspeed", "speedlimit"),
+        unstated={"maxspeed": UNITS["speed"]["km/h"]},  # that of OpenStreetMap
+    ),
     SiteKey("capacity", cells.whole),
     SiteKey("one_way", cells.flag, names=("oneway",)),
     SiteKey("both_ways", cells.flag, names=("bothways", "bidirectional", "twoway")),

@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import PurePath
 
 from muster.exchange.sites.features import Feature, Layer
-from muster.exchange.sites.keys import AT_POINTS, ROLE, ROLES
+from muster.exchange.sites.keys import AT_POINTS, COVERAGE, ROLE, ROLES
 from muster.mission.errors import Finding, ParameterError
 from muster.mission.near_matches import did_you_mean
 
@@ -22,7 +22,8 @@ _WORDS: Mapping[str, str] = {
     "task": "tasks job jobs waypoint waypoints poi pois goal goals target targets",
     "robot": "robots drone drones rover rovers vehicle vehicles fleet uav uavs ugv ugvs",
     "station": "stations dock docks charger chargers",
-    "zone": "zones fence fences nofly obstacle obstacles keepout exclusion restricted wall walls building buildings",
+    "zone": "zones fence fences nofly noflyzone noflyzones nfz obstacle obstacles keepout exclusion restricted "
+    "wall walls building buildings",
     "boundary": "boundaries perimeter arena border outline inclusion",
     "survey": "surveys coverage",
     "lane": "lanes road roads path paths way ways corridor corridors aisle aisles track tracks",
@@ -37,7 +38,8 @@ _FITTING = {
 _BY_SHAPE = {"point": "task", "line": "lane", "area": "zone"}
 _SAID = {"point": "a point", "line": "a line", "area": "an area"}
 _DRAWN = {"area": "route", "hole": "route"}
-"""Kinds in exported plans of what their tasks cover: passed over as routes are, and no zones."""
+"""Kinds in exported plans of what their tasks cover: no zones. Areas with their action are surveyed again."""
+_NO_FLY = re.compile(r"(?<![^\W_])(?:no[-_ ]?fly|nfz(?![^\W_]))")
 _TOKEN = re.compile(r"[^\W\d_]+")
 
 
@@ -58,7 +60,7 @@ class Roles:
         """The roles that a user gives, by names; raises ParameterError for what is no role."""
         found = {}
         for name, word in given.items():
-            role = _ROLE_OF.get(word.casefold().replace("-", "").replace(" ", ""))
+            role = _ROLE_OF.get(_compact(word))
             if role is None:
                 hint = did_you_mean(word, ROLES)
                 raise ParameterError(f"--as {name}: {word}; expected one of {', '.join(ROLES[:-1])}{hint}")
@@ -96,8 +98,8 @@ class Roles:
                 return role, f"--as {name}"
         for heading, value in feature.values.items():
             if isinstance(value, str) and heading.casefold() in (ROLE.name, *ROLE.names, "type"):
-                word = value.casefold().replace("-", "").replace(" ", "")
-                role = _ROLE_OF.get(word) or _DRAWN.get(word)
+                word = _compact(value)
+                role = "survey" if is_of_plan(feature, "area") else _ROLE_OF.get(word) or _DRAWN.get(word)
                 point = feature.geometry is None or feature.geometry.shape == "point"
                 if role is not None and not (
                     heading.casefold() == "type" and point and value.casefold() not in AT_POINTS
@@ -113,12 +115,33 @@ def names_role(layer: Layer) -> bool:
 
 def role_word(value: object) -> bool:
     """Whether a value is the name of a role."""
-    return isinstance(value, str) and value.casefold().replace("-", "").replace(" ", "") in _ROLE_OF
+    return isinstance(value, str) and _compact(value) in _ROLE_OF
+
+
+def is_of_plan(feature: Feature, kind: str) -> bool:
+    """Whether a feature is, in an exported plan, an area that is covered, or a hole of such an area."""
+    values = feature.values
+    said = values.get("action") == COVERAGE if kind == "area" else isinstance(values.get("of"), str)
+    return said and values.get(ROLE.name) == kind
+
+
+def is_no_fly(layer: Layer, feature: Feature) -> bool:
+    """Whether the kind or name of a zone, or that of its layer or file, says that it is closed to robots in the air."""
+    kinds = [
+        value
+        for heading, value in feature.values.items()
+        if isinstance(value, str) and heading.casefold() in (ROLE.name, *ROLE.names, "type", "name", "title")
+    ]
+    return any(_NO_FLY.search(told.casefold()) for told in (*kinds, *_names_of(layer)))
+
+
+def _compact(word: str) -> str:
+    return re.sub("[-_ ]", "", word.casefold())
 
 
 def _roles_in(name: str) -> list[str]:
     """The roles whose words stand in a name; that a line is the route of a plan only its properties say."""
-    folded = name.casefold().replace("no-fly", "nofly").replace("no fly", "nofly").replace("keep-out", "keepout")
+    folded = _NO_FLY.sub("nofly", name.casefold()).replace("keep-out", "keepout")
     found = [_ROLE_OF[word] for word in _TOKEN.findall(folded) if word in _ROLE_OF]
     return [role for role in found if role != "route"]
 

@@ -68,7 +68,13 @@ def from_text(told: str) -> list[Geometry]:
 
 
 def require_valid(rings: Sequence[Sequence[Sequence[float]]]) -> shapely.Polygon:
-    """The area of an outer ring and its holes, in metres; raises ValueError where it is none."""
+    """The area of an outer ring and its holes, in metres.
+
+    Raises
+    ------
+    ValueError
+        where it is none: with what is wrong, and perhaps the place in metres.
+    """
     import shapely
 
     try:
@@ -76,8 +82,8 @@ def require_valid(rings: Sequence[Sequence[Sequence[float]]]) -> shapely.Polygon
     except (ValueError, shapely.errors.ShapelyError):
         raise ValueError("fewer than 3 corners") from None
     if not area.is_valid:
-        told = str(shapely.is_valid_reason(area)).partition("[")
-        raise ValueError(told[0].strip().lower())
+        told, _, place = str(shapely.is_valid_reason(area)).partition("[")
+        raise ValueError(told.strip().lower(), *[tuple(map(float, place.strip("]").split()))][: bool(place)])
     if area.area == 0:
         raise ValueError("no area")
     return area

@@ -11,8 +11,11 @@ from muster.exchange.sites.builder import Builder, SiteOptions
 from muster.exchange.sites.entries import Entry, entries_of
 from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.headings import given_columns
+from muster.exchange.sites.identities import identified
+from muster.exchange.sites.plan_areas import joined_areas
 from muster.exchange.sites.readers import reader_of
 from muster.exchange.sites.roles import Roles
+from muster.exchange.sites.times import require_alike
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
@@ -92,7 +95,7 @@ def read_site(
         data["suitability"] = suitability_table(suitability, built.places)
     source = Source(main, built.places, built.fields)
     mission = mission_from(data, source, [], base.travel_tables if base is not None else None)
-    return SiteMission(mission, _counts(found, entries), (*notes, *built.notes))
+    return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes))
 
 
 def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -> tuple[list[Entry], list[str]]:
@@ -102,7 +105,12 @@ def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -
     columns = given_columns(options.columns, whole)
     findings: list[Finding] = []
     notes: list[str] = []
-    entries = [e for layer, default in layers for e in entries_of(layer, roles, default, columns, findings, notes)]
+    entries: list[Entry] = []
+    for layer, default in layers:
+        found = entries_of(layer, roles, default, columns, findings, notes)
+        require_alike(found, findings)
+        entries += identified(layer, found, columns, notes)
+    entries = joined_areas(entries)
     if findings:
         raise MissionError(sorted(findings, key=lambda finding: (finding.file, finding.line or 0)))
     if whole and not entries:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from textwrap import shorten
 
+from muster.exchange.sites.cells import NoValue
 from muster.exchange.sites.features import Feature, Layer, refused
 from muster.mission.value_types import shown
 
@@ -30,6 +31,9 @@ def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> L
     if first is None:
         return Layer(file, name, (), ())
     line, head = first
+    lost = next((cell for cell in head if isinstance(cell, NoValue)), None)
+    if lost is not None:
+        raise refused(file, line, _field(where, "headings"), lost.told, lost.expected)
     headings = ["" if is_empty(cell) else " ".join(str(cell).split()) for cell in head]
     named = [heading for heading in headings if heading]
     twice = next((heading for heading in named if named.count(heading) > 1), None)

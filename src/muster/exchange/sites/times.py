@@ -67,6 +67,51 @@ def _pairs(
     return {names[0 if clocks else 1]: [list(pair) for pair in pairs]}
 
 
+def require_alike(entries: Iterable[Entry], findings: list[Finding]) -> None:
+    """Name the bare numbers of a column in which others are clock times: `0830` is no 830 s there."""
+    columns: dict[tuple[str, str], list[Entry]] = {}
+    for entry in entries:
+        for key in entry.values.keys() & set(KEYS):
+            columns.setdefault((entry.role, key), []).append(entry)
+    found: dict[Finding, None] = {}
+    for (_, key), those in columns.items():
+        if not any(isinstance(end, str) for entry in those for end in _moments(entry.values[key])):
+            continue
+        for entry in those:
+            if any(isinstance(end, float | int) for end in _moments(entry.values[key])):
+                told = entry.feature.values.get(entry.columns.heading(key), entry.values[key])
+                expected = 'a clock time, as "08:30", as others of the column are; clock times or seconds, not both'
+                found[entry.finding(key, told, expected)] = None
+    findings += found
+
+
+def _moments(value: object) -> Iterator[object]:
+    """A moment, or the ends of pairs."""
+    if isinstance(value, list):
+        yield from (end for pair in value for end in pair)
+    else:
+        yield value
+
+
+def of_next_day(entries: Iterable[Entry], starts_at: object) -> list[str]:
+    """What is the next day's, as it begins before the clock time at which the mission does, each with that time.
+
+    Shifts, and those windows that are open when the mission begins.
+    """
+    start = moment_in(starts_at)
+    if start is None:
+        return []
+    found = []
+    for entry in entries:
+        for first, second in _ends(entry.values):
+            if not isinstance(first, str) or moment_in(first) is not None or _clock(first) >= start.time():
+                continue
+            later = isinstance(second, str) and moment_in(second) is None and _clock(second) > start.time()
+            if entry.role == "robot" or later:
+                found.append(f"{entry.told} ({first})")
+    return found
+
+
 def chosen_start(entries: Iterable[Entry]) -> tuple[str | None, bool]:
     """The moment at which a mission begins whose files do not say so, and whether one is needed.
 

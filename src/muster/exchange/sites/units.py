@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-Dimension = Literal["", "time", "length", "speed", "angle"]
+Dimension = Literal["", "time", "length", "speed", "angle", "mass"]
 
 UNITS: dict[Dimension, dict[str, float]] = {
     "": {},
@@ -29,9 +29,16 @@ UNITS: dict[Dimension, dict[str, float]] = {
         "mph": 0.44704,
         **dict.fromkeys(("kn", "kt", "kts", "knot", "knots"), 1852 / 3600),
     },
+    "mass": {
+        **dict.fromkeys(("kg", "kgs", "kilogram", "kilograms"), 1.0),
+        "g": 0.001,
+        "t": 1000.0,
+        "lb": 0.45359237,
+        "lbs": 0.45359237,
+    },
     "angle": {**dict.fromkeys(("deg", "degree", "degrees", "°"), 1.0), "rad": 180 / math.pi},
 }
-"""By dimension the units by name; angles are in degrees, as in the names of a mission's keys."""
+"""By dimension the units by name; angles are in degrees, as in the names of a mission's keys; masses in kg."""
 
 _WORDS: dict[Dimension, str] = {
     "": "no unit",
@@ -39,8 +46,10 @@ _WORDS: dict[Dimension, str] = {
     "length": "m, km, cm or ft",
     "speed": "m/s, km/h, mph or kn",
     "angle": "deg or rad",
+    "mass": "kg, g, t or lb",
 }
-ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units)
+ALL_UNITS = frozenset((*(unit for units in UNITS.values() for unit in units), "%", "percent"))
+"""Units that are known, those of no key included."""
 
 
 def units_text(dimension: Dimension) -> str:

@@ -1,20 +1,23 @@
 """Workbooks (XLSX, XLSM) as layers, one a sheet; read by calamine (extra `sites`).
 
 Calamine keeps every cell between the first and the last that are used, and ends the process where there is no memory
-for so many. So the last cell is looked for before.
+for so many. So the last cell is looked for before. It reads as empty what has no value; that is looked for as well.
 """
 
 from __future__ import annotations
 
 import re
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from muster.exchange.sites.entries import some_of
 from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.file_sizes import open_archive, unpacked
-from muster.exchange.sites.tables import MOST_ROWS, Row, table_layer
+from muster.exchange.sites.tables import MOST_ROWS, table_layer
+from muster.exchange.sites.workbook_cells import Marks, column_number, marks_in, sheet_names
 from muster.mission.errors import MissingExtraError
 
 _WHAT = "a workbook (XLSX)"
@@ -40,10 +43,13 @@ def read_workbook_layers(path: Path) -> Sequence[Layer]:
         raise MissingExtraError("sites", "reading a workbook") from None
     file = str(path)
     with open_archive(path, _WHAT) as archive:
-        _require_moderate(archive, path)
+        marks = _marks(archive, path)
     try:
         workbook = python_calamine.CalamineWorkbook.from_path(file)
-        layers = [_layer(file, name, workbook.get_sheet_by_name(name)) for name in workbook.sheet_names]
+        layers = [
+            _layer(file, name, workbook.get_sheet_by_name(name), marks.get(name, Marks()))
+            for name in workbook.sheet_names
+        ]
     except (python_calamine.CalamineError, OSError, ValueError) as error:
         told = " ".join(str(error).split()) or type(error).__name__
         raise refused(file, None, "", f"cannot be read ({told})", _WHAT) from None
@@ -53,26 +59,32 @@ def read_workbook_layers(path: Path) -> Sequence[Layer]:
     return found
 
 
-def _layer(file: str, name: str, sheet: Any) -> Layer:
-    rows: Iterator[Row] = enumerate(sheet.iter_rows(), 1)
-    return table_layer(file, name, rows, where=f"sheet {name}")
+def _layer(file: str, name: str, sheet: Any, marks: Marks) -> Layer:
+    layer = table_layer(file, name, marks.rows(sheet), where=f"sheet {name}")
+    filled = {feature.line for feature in layer.features}
+    merged = [told for told, first, last in marks.merged if not filled.isdisjoint(range(first, last + 1))]
+    if not merged:
+        return layer
+    return replace(layer, notes=(f"merged cells {some_of(merged)}: only the first cell of each has its value",))
 
 
-def _require_moderate(archive: zipfile.ZipFile, path: Path) -> None:
-    """Refuse a workbook with a sheet whose last cell is far out."""
-    for name in filter(_SHEETS.fullmatch, archive.namelist()):
-        data = unpacked(archive, name, path, _WHAT)
-        cells = _CELL.findall(data)
-        width = max((_number(letters) for letters, _ in cells), default=0)
-        height = max((int(row) for row in (*(row for _, row in cells), *_ROW.findall(data))), default=0)
-        if height > MOST_ROWS or height * width > _MOST_CELLS:
-            told = f"{height:,} rows of {width:,} cells"
-            raise refused(str(path), None, name, told, f"at most {MOST_ROWS:,} rows, and {_MOST_CELLS:,} cells")
+def _marks(archive: zipfile.ZipFile, path: Path) -> dict[str, Marks]:
+    """The marks of sheets by their names; a workbook with a sheet whose last cell is far out is refused."""
+    found: dict[str, Marks] = {}
+    for member in filter(_SHEETS.fullmatch, archive.namelist()):
+        data = unpacked(archive, member, path, _WHAT)
+        _require_moderate(data, member, path)
+        found[member] = marks_in(data)
+    if not any(marks.cells or marks.merged for marks in found.values()):
+        return {}
+    names = sheet_names(archive, path, _WHAT)
+    return {names[member]: marks for member, marks in found.items() if member in names}
 
 
-def _number(letters: bytes) -> int:
-    """The number of a column: A is 1, AA 27."""
-    found = 0
-    for letter in letters.upper():
-        found = 26 * found + letter - 64
-    return found
+def _require_moderate(data: bytes, member: str, path: Path) -> None:
+    cells = _CELL.findall(data)
+    width = max((column_number(letters) for letters, _ in cells), default=0)
+    height = max((int(row) for row in (*(row for _, row in cells), *_ROW.findall(data))), default=0)
+    if height > MOST_ROWS or height * width > _MOST_CELLS:
+        told = f"{height:,} rows of {width:,} cells"
+        raise refused(str(path), None, member, told, f"at most {MOST_ROWS:,} rows, and {_MOST_CELLS:,} cells")
