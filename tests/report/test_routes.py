@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from tests import carry_charge
 
 from muster.mission.errors import MissingExtraError
-from muster.mission.model import Action, Map, Mission, Robot, Rules, Station, Task, Zone
+from muster.mission.model import Action, Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.plan import Plan, Route
 from muster.report import plot_routes
 from muster.report.styles import LEFT_OUT, robot_style
@@ -353,7 +353,7 @@ def test_routes_pass_through_stations_which_have_a_mark_and_a_name(transport, dr
     np.testing.assert_array_equal(drawn(ax, "travel-r")[0].get_xydata(), [(0, 0), (2, 0), (6, 0), (9, 0)])
     np.testing.assert_array_equal(drawn(ax, "stations")[0].get_xydata(), [(6, 0), (3, 0)])
     assert [name.get_text() for name in drawn(ax, "station-name")] == ["[dock]", "[depot]"]
-    assert [order.get_text() for order in drawn(ax, "order")] == ["1", "2"]
+    assert [order.get_text() for order in drawn(ax, "order")] == ["1", "3"]  # as sheets count
     assert {"[station]", "transport"} <= set(legend_of(ax))
 
 
@@ -367,15 +367,3 @@ def test_what_is_carried_is_an_arrow_from_pick_up_to_delivery(transport, drawn):
 def test_without_stations_there_is_no_mark(mission, plan, verdict, drawn):
     ax = plot_routes(mission, plan, verdict)
     assert drawn(ax, "stations") == drawn(ax, "transport") == []
-
-
-def test_numbers_count_stations_as_sheets_do(drawn):
-    dock = Station(id="dock", position=(5, 0), services=("charge",), charge_per_s=1)
-    mission = Mission(
-        robots=(Robot(id="ada", position=(0, 0)),),
-        tasks=(Task(id="a", position=(1, 0)), Task(id="b", position=(9, 0))),
-        stations=(dock,),
-    )
-    plan = Plan(routes=(Route("ada", ("a", "dock", "b")),))
-    ax = plot_routes(mission, plan, verify(mission, plan))
-    assert [text.get_text() for text in drawn(ax, "order")] == ["1", "3"]
