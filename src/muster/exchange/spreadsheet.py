@@ -1,8 +1,4 @@
-"""A plan as CSV for spreadsheets: a line for each stop in the order of routes, then one for each task left out.
-
-Spreadsheets run a cell that begins with =, +, - or @ as a formula, even in quotes. Such an id gets a leading
-apostrophe, which marks text (OWASP, "CSV Injection").
-"""
+"""A plan as CSV for spreadsheets: a line for each stop in the order of routes, then one for each task left out."""
 
 from __future__ import annotations
 
@@ -11,14 +7,12 @@ import io
 from collections.abc import Iterator, Mapping
 
 from muster.exchange.earth import Earth
+from muster.exchange.formula_cells import cell
 from muster.exchange.task_times import Stop, clock, late_s, stops_of
 from muster.mission.goods import shown_amounts
 from muster.mission.model import Mission, Point, Task
 from muster.verification import Stop as TimedStop
 from muster.verification import Verdict
-
-_BEGIN_FORMULAS = ("=", "+", "-", "@", "\t", "\r")
-
 
 _TIMES = ("arrives_s", "starts_s", "ends_s")
 _CLOCKS = ("arrives_at", "starts_at", "ends_at")
@@ -85,11 +79,6 @@ def _figures(mission: Mission, tasks: Mapping[str, Task], stop: Stop, usage: flo
     yield cell(" ".join(stop.others))
     if mission.starts_at is not None:
         yield from (clock(mission, seconds) for seconds in times)
-
-
-def cell(name: str) -> str:
-    """An id as a cell that no spreadsheet runs as a formula."""
-    return f"'{name}" if name.startswith(_BEGIN_FORMULAS) else name
 
 
 def _places(mission: Mission, earth: Earth | None) -> dict[str, tuple[object, ...]]:

@@ -2,8 +2,9 @@
 
 A task may have `window`, `deadline` and `due` in place of `window_s`, `deadline_s` and `due_s`, a robot `shift` in
 place of `available_from_s` and `available_until_s`. A clock time ("10:00") is in the zone of `starts_at`; one that is
-earlier is the next day's, and the second time of a pair is the first such after the first. A full date and time by
-ISO 8601 may stand in its place; a window or shift that began before the start begins at the start.
+earlier is the next day's, and the second time of a pair is the first such after the first; "24:00" is the end of a
+day. A full date and time by ISO 8601 may stand in its place; a window or shift that began before the start begins at
+the start.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from muster.mission.raw_records import robots_in, tasks_in
 from muster.mission.time_types import Windows, is_pair, moment_in, pair_or_pairs
 from muster.mission.value_types import INVALID, Fault, JsonSchema, Path, refuse, shown
 
-_CLOCK = re.compile(r"([01]?\d|2[0-3]):[0-5]\d(:[0-5]\d(\.\d+)?)?")
+_CLOCK = re.compile(r"([01]?\d|2[0-3]):[0-5]\d(:[0-5]\d(\.\d+)?)?|24:00(:00)?")
 _TEXT: JsonSchema = {"type": "string", "pattern": f"^({_CLOCK.pattern})$|^\\d{{4}}"}
 _A_TIME = 'a clock time, as "10:00", or a date and a time, as 2027-03-01T10:00'
 
@@ -172,6 +173,8 @@ class _Clock:
                 return None
             return moment if moment.tzinfo is not None else moment.replace(tzinfo=self._start.tzinfo)
         local = after.astimezone(self._start.tzinfo) if self._start.tzinfo is not None else after
+        if text.startswith("24:"):
+            return datetime.combine(local.date() + timedelta(days=1), time(), self._start.tzinfo)
         moment = datetime.combine(local.date(), time.fromisoformat(text.rjust(5, "0") if text[1] == ":" else text))
         moment = moment.replace(tzinfo=self._start.tzinfo)
         return moment + timedelta(days=1) if moment < local else moment

@@ -200,7 +200,9 @@ def test_what_follows_an_area_in_several_parts_follows_them_all(tmp_path, robots
     parts = [square(8.541 + k / 1000, 47.377)["geometry"]["coordinates"] for k in range(2)]
     after = feature("Point", [8.5417, 47.3775], name="post", after="field")
     survey = feature("MultiPolygon", parts, kind="survey", name="field", height_m=30)
-    mission = site(tmp_path, robots, survey, after).mission
+    found = site(tmp_path, robots, survey, after)
+    mission = found.mission
+    assert found.counts[0] == f"{tmp_path / 'site.geojson'}: 2 areas to survey, 1 task"
     assert next(task for task in mission.tasks if task.id == "post").prerequisites == ("field", "field-2")
 
 

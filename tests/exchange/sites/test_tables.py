@@ -7,6 +7,7 @@ import pytest
 from tests.exchange.sites import writers
 
 from muster import MissingExtraError, MissionError, ParameterError, load, read_site
+from muster.exchange.formula_cells import cell
 from muster.exchange.sites.cells import CellError, duration, lat_lon, moment, number, pairs, words
 
 
@@ -59,6 +60,35 @@ def test_durations(value, seconds):
 def test_what_is_no_duration(value):
     with pytest.raises(CellError, match="a duration"):
         duration(value)
+
+
+@pytest.mark.parametrize(
+    ("told", "read"),
+    [
+        ("01.03.2027 08:30", "2027-03-01T08:30:00"),
+        ("1.3.2027, 8:30:15 Uhr", "2027-03-01T08:30:15"),
+        ("8:30 Uhr", "08:30"),
+        ("8.30 Uhr", "08:30"),
+        ("17 uhr", "17:00"),
+        ("24:00", "24:00"),
+    ],
+)
+def test_moments_as_germans_write_them(told, read):
+    assert moment(told) == read
+
+
+@pytest.mark.parametrize("told", ["31.02.2027 08:30", "01.13.2027 08:30", "24:01", "25 Uhr", "03/01/2027 08:30"])
+def test_what_is_no_moment(told):
+    with pytest.raises(CellError, match="a clock time"):
+        moment(told)
+
+
+def test_the_end_of_a_day(tmp_path, robots):
+    text = "name,x,y,window,due\na,1,2,00:00-24:00,24:00\n"
+    (task,) = read(tmp_path, robots, text, starts_at="2027-03-01T00:00", origin=(47, 8)).mission.tasks
+    assert (task.window_s, task.due_s) == (((0, 86400),), 86400)
+    found = read(tmp_path, robots, text.replace("00:00-", "10:00-"), origin=(47, 8))
+    assert found.mission.starts_at == "2000-01-01T10:00"
 
 
 def test_moments_and_windows():
@@ -308,6 +338,19 @@ def test_a_name_that_stands_twice_cannot_be_meant(tmp_path, robots):
     with pytest.raises(MissionError, match=r"panels.csv:4: after: A \(ambiguous\); expected .* an id: A, A-2"):
         read(tmp_path, robots, text.format("A"), origin=(47, 8))
     assert read(tmp_path, robots, text.format("A-2"), origin=(47, 8)).mission.tasks[2].prerequisites == ("A-2",)
+
+
+def test_columns_that_mean_nothing_may_have_one_name(tmp_path, robots):
+    found = read(tmp_path, robots, "name,x,y,color,color\na,1,2,red,blue\n", origin=(47, 8))
+    assert f"{tmp_path}/panels.csv: not read: color, color (2)" in found.notes
+    with pytest.raises(MissionError, match=r"panels.csv:1: x: a heading for the second time"):
+        read(tmp_path, robots, "name,x,y,x\na,1,2,3\n")
+
+
+@pytest.mark.parametrize("name", ["=SUM(A1)", "-x", "@a", "'tis"])
+def test_ids_that_spreadsheets_would_run_come_back(tmp_path, robots, name):
+    found = read(tmp_path, robots, f"task,x,y\n{cell(name)},1,2\n", origin=(47, 8))
+    assert [task.id for task in found.mission.tasks] == [name]
 
 
 def test_what_a_row_is_of_is_its_name_where_no_other_column_is(tmp_path, robots):

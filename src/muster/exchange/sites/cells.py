@@ -29,6 +29,8 @@ _DEGREES = re.compile(
     re.IGNORECASE,
 )
 _CLOCK = re.compile(r"(\d{1,2})(?::([0-5]\d)(?::([0-5]\d(?:\.\d+)?))?)?\s*([ap]\.?m\.?)?", re.IGNORECASE)
+_OF_CLOCK = re.compile(r"\s*uhr$", re.IGNORECASE)
+_DATED = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})[\s,]+(\d{1,2}):(\d\d)(?::(\d\d))?(?:\s*uhr)?", re.IGNORECASE)
 _CLOCK_WITHOUT_COLON = re.compile(r"0\d[0-5]\d")
 _YES = frozenset(("true", "yes", "y", "x", "1", "on"))
 _UNLIMITED = ("inf", ".inf", "infinity", "unlimited", "none")
@@ -180,7 +182,10 @@ def _in_unit(part: re.Match[str], expected: str) -> float:
 
 
 def moment(value: object, factor: float = 1.0) -> str | float:
-    """A clock time (`10:00`, `2:30 pm`) or a date and a time, as a text of ISO 8601; or seconds, from numbers."""
+    """A clock time (`10:00`, `2:30 pm`, `8.30 Uhr`) or a date and a time, by ISO 8601; or seconds, from numbers.
+
+    Dates may be by ISO 8601, or `01.03.2027 08:30`, with the day first.
+    """
     expected = 'a clock time, as "10:00", a date and a time, as 2027-03-01T10:00, or seconds from the start'
     if isinstance(value, datetime):
         return value.isoformat()
@@ -190,8 +195,11 @@ def moment(value: object, factor: float = 1.0) -> str | float:
         told = value.translate(_SPACES).strip()
         if moment_in(told) is not None:
             return told
-        clock = _CLOCK.fullmatch(told)
-        if clock is not None and (clock[2] or clock[4]):
+        if (dated := _DATED.fullmatch(told)) is not None:
+            return _dated(dated, expected)
+        own = _OF_CLOCK.sub("", told)
+        clock = _CLOCK.fullmatch(own if own == told else own.replace(".", ":"))
+        if clock is not None and (clock[2] or clock[4] or own != told):
             return _clock(clock, expected)
         if _CLOCK_WITHOUT_COLON.fullmatch(told):
             raise CellError(f'"{told[:2]}:{told[2:]}", or seconds that do not begin with 0')
@@ -204,12 +212,20 @@ def moment(value: object, factor: float = 1.0) -> str | float:
     return seconds
 
 
+def _dated(found: re.Match[str], expected: str) -> str:
+    day, month, year, hour, minute, second = (int(part or 0) for part in found.groups())
+    try:
+        return datetime(year, month, day, hour, minute, second).isoformat()
+    except ValueError:
+        raise CellError(expected) from None
+
+
 def _clock(found: re.Match[str], expected: str) -> str:
     hour, half = int(found[1]), (found[4] or "").replace(".", "").casefold()
     if half and not 1 <= hour <= 12:
         raise CellError(expected)
     hour = hour % 12 + (12 if half == "pm" else 0) if half else hour
-    if hour > 23:
+    if hour > 23 and (hour, found[2], found[3] or "00") != (24, "00", "00"):
         raise CellError(expected)
     return f"{hour:02}:{found[2] or '00'}" + (f":{found[3]}" if found[3] else "")
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 
+from muster.exchange.formula_cells import text_in
 from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.file_sizes import read_bytes
 from muster.exchange.sites.tables import MOST_TITLES, Row, table_layer
@@ -68,7 +69,7 @@ def _rows(text: str, file: str) -> Iterator[Row]:
             if skips and any(map(str.strip, cells)):
                 skips = False
             else:
-                yield begins, cells
+                yield begins, [text_in(cell) for cell in cells]
             begins = reader.line_num + 1
     except csv.Error as error:
         raise refused(file, begins, "", str(error), "CSV: a cell with separators or quotes in quotes") from None

@@ -120,6 +120,12 @@ def columns_of(
     return Columns(found, tuple(dict.fromkeys(unread)), frozenset(wrong))
 
 
+def means_something(heading: str) -> bool:
+    """Whether a heading means a key of anything."""
+    of_subject = heading.strip().casefold() in _SUBJECTS
+    return of_subject or any(_meaning(heading, keys_of(role)) is not None for role in ROLES)
+
+
 def given_columns(given: Mapping[str, str], layers: Sequence[Layer]) -> dict[str, str]:
     """Headings by the keys that a user names, synonyms included.
 

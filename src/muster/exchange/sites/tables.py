@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from textwrap import shorten
 
 from muster.exchange.sites.cells import NoValue
 from muster.exchange.sites.features import Feature, Layer, refused
+from muster.exchange.sites.headings import means_something
 from muster.mission.value_types import shown
 
 Row = tuple[int, Sequence[object]]
@@ -24,7 +26,7 @@ def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> L
     Raises
     ------
     MissionError
-        if a row has a cell beyond the headings, or a heading stands twice.
+        if a row has a cell beyond the headings, or a heading that means something stands twice.
     """
     titles, filled = _split_titles(row for row in rows if any(not is_empty(cell) for cell in row[1]))
     first = next(filled, None)
@@ -36,9 +38,10 @@ def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> L
         raise refused(file, line, _field(where, "headings"), lost.told, lost.expected)
     headings = ["" if is_empty(cell) else " ".join(str(cell).split()) for cell in head]
     named = [heading for heading in headings if heading]
-    twice = next((heading for heading in named if named.count(heading) > 1), None)
+    twice = next((heading for heading in named if named.count(heading) > 1 and means_something(heading)), None)
     if twice is not None:
         raise refused(file, line, _field(where, twice), "a heading for the second time", "each heading once")
+    headings = _numbered(headings)
     features: list[Feature] = []
     for number, cells in filled:
         if len(features) >= MOST_ROWS:
@@ -46,7 +49,17 @@ def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> L
         _require_headings(file, number, cells, headings, where)
         values = {heading: _tidy(cell) for heading, cell in zip(headings, cells, strict=False) if not is_empty(cell)}
         features.append(Feature(values, file, number, where))
-    return Layer(file, name, tuple(named), tuple(features), tuple(map(_told_title, titles)))
+    return Layer(file, name, tuple(filter(None, headings)), tuple(features), tuple(map(_told_title, titles)))
+
+
+def _numbered(headings: Sequence[str]) -> list[str]:
+    """The headings; those that stand before already have their number."""
+    counts: Counter[str] = Counter()
+    found = []
+    for heading in headings:
+        counts[heading] += 1
+        found.append(heading if counts[heading] == 1 or not heading else f"{heading} ({counts[heading]})")
+    return found
 
 
 def _split_titles(filled: Iterator[Row]) -> tuple[list[Row], Iterator[Row]]:

@@ -158,4 +158,4 @@ def _is_next_day(first: str, second: str) -> bool:
 
 
 def _clock(told: str) -> time:
-    return time.fromisoformat(told)
+    return time.max if told.startswith("24:") else time.fromisoformat(told)

@@ -18,8 +18,8 @@ import numpy as np
 
 from muster.exchange.antimeridian import cut_line
 from muster.exchange.earth import Earth, Spot
+from muster.exchange.formula_cells import cell
 from muster.exchange.geojson import one_or_many
-from muster.exchange.spreadsheet import cell
 from muster.exchange.xml_text import add, decimal, text_of
 from muster.mission.event_descriptions import event_line
 from muster.report.record import Recording
