@@ -39,14 +39,16 @@ _METHODS = (
     "counted where the run completes as much weight as the best; “as much done” is the share of such runs. It is "
     "infinite (inf) where the best objective is 0 and its own is not; figures leave such runs out. The mean gap is "
     "the mean over missions of their means, with a 95 % interval by the bootstrap over missions (percentiles, 9,999 "
-    "samples); of a single mission over its runs.",
+    "samples); of a single mission over its runs, where they differ.",
     "Wins, ties and losses count missions, each by the run in the middle of an allocator's seeds: against the "
-    "best of all others, and of the two in a pair. Missions that an allocator cannot take (n/a) are not counted "
-    "for it.",
-    "Pairs are tested by Wilcoxon's signed ranks, two-sided, over missions; of a single mission over seeds. "
-    "Differences are ordered lexicographically too: a plan beside none, then shares of weight, then ratios of "
+    "best of all others, and of the two in a pair. Of an even number of seeds that is the mean of the two in the "
+    "middle, which is failed if one of them is. In pairs of a single mission they count seeds. Missions that an "
+    "allocator cannot take (n/a) are not counted for it.",
+    "Pairs are tested by Wilcoxon's signed ranks, two-sided, over missions; of a single mission over seeds, which are "
+    "one observation where they change neither allocator. With less than two observations there is nothing to test "
+    "(-). Differences are ordered lexicographically too: a plan beside none, then shares of weight, then ratios of "
     "objectives. The test is exact up to 50 differences, up to 12 where some are equal, else by the normal "
-    "approximation. p (Holm) is corrected for all pairs in the table; an allocator is called better below 0.05.",
+    "approximation. p (Holm) is corrected for all pairs that are tested; an allocator is called better below 0.05.",
     "The performance profile shows for each ratio the share of an allocator's runs whose objective is at most so "
     "many times the best on the mission. Runs that failed, complete less or are n/a never get there: the curve "
     "ends below 1.",
