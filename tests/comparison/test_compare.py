@@ -124,6 +124,41 @@ def test_results_made_otherwise_are_refused(tmp_path):
         muster.compare(small(), "greedy", seeds=1, iterations=20, jobs=1, results=file)
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("status", "dnoe", "status: dnoe; expected done or not-applicable or failed or invalid"),
+        ("value", "", "value: nothing; expected a number"),
+        ("value", "nan", "value: nan; expected a number"),
+        ("weight_completed", "inf", "weight_completed: inf; expected a number"),
+        ("tasks_completed", "6.5", "tasks_completed: 6.5; expected a whole number"),
+        ("seed", "", "seed: nothing; expected a whole number"),
+        ("cut_short", "", "cut_short: nothing; expected True or False"),
+    ],
+)
+def test_damaged_results_are_refused(name, value, said, tmp_path):
+    file, options = tmp_path / "r.csv", {"seeds": 1, "iterations": 20, "jobs": 1}
+    muster.compare(small(), "greedy", results=file, **options)
+    head, first, second = file.read_text().splitlines()
+    cells = second.split(",")
+    cells[head.split(",").index(name)] = value
+    file.write_text("\n".join([head, first, ",".join(cells), ""]))
+    with pytest.raises(InputError, match=rf"r.csv:3: {said}$"):
+        muster.compare(small(), "greedy", results=file, **options)
+
+
+def test_results_saved_by_a_spreadsheet_are_read_and_those_of_another_version_are_refused(tmp_path):
+    file, made, options = tmp_path / "r.csv", [], {"seeds": 1, "iterations": 20, "jobs": 1}
+    first = muster.compare(small(), "greedy", results=file, **options)
+    text = file.read_text()
+    file.write_text(text.replace("False", "FALSE").replace("\n", "\r\n"), encoding="utf-8-sig", newline="")
+    again = muster.compare(small(), "greedy", results=file, on_run=lambda *run: made.append(run), **options)
+    assert (made, again.runs) == ([], first.runs)
+    file.write_text(text.replace(",cut_short", "").replace(",False", ""))
+    with pytest.raises(InputError, match=r"r.csv:1: no column cut_short; expected results of this version of Muster"):
+        muster.compare(small(), "greedy", results=file, **options)
+
+
 def test_a_file_of_results_is_written_by_one_comparison_at_once(tmp_path):
     file = tmp_path / "r.csv"
     said = []

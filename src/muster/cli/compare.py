@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from muster.cli.exits import DONE, INTERRUPTED
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import Finite, format_option, objective_option, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
 from muster.mission.errors import ParameterError
@@ -107,9 +107,13 @@ def command(
     if verbose and pending.made:
         click.echo(f"{output}: {pending.made} of {pending.total} runs are there", err=True)
     whole = _run(pending, quiet=quiet, verbose=verbose)
-    _show(pending.comparison(), form, report, plot)
+    comparison = pending.comparison()
+    _show(comparison, form, report, plot)
+    if not quiet:
+        for line in comparison.notes:
+            click.echo(line, err=True)
     if whole:
-        return DONE
+        return DONE if comparison.has_a_plan else INCOMPLETE
     if not quiet:
         kept = f"; {output} has them, the same command goes on" if output else "; with -o it could go on from there"
         click.echo(f"interrupted after {pending.made} of {pending.total} runs{kept}", err=True)

@@ -56,7 +56,9 @@ def compare(
         processes; by default one for each processor. With 1, and no `give_up`, all runs are made in this process. In
         others functions of a notebook or script need cloudpickle (extra `compare`).
     time_limit, iterations
-        when an anytime allocator stops; 1 s if neither is given.
+        when an allocator stops; 1 s if neither is given. Iterations are those of anytime allocators. The time limit
+        also ends one that makes a single pass, such as `greedy` or `auction`, before it has come to all tasks; such
+        runs are marked (`Run.cut_short`).
     objective
         instead of the missions' own.
     clock

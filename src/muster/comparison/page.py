@@ -10,6 +10,7 @@ from html import escape
 from importlib.metadata import version
 
 from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
+from muster.comparison.notes import cut_short_note
 from muster.comparison.ranking import Best, bests, by_mission, close, typical
 from muster.comparison.run import Run
 from muster.comparison.statistics import Pair, Standing
@@ -96,6 +97,8 @@ def _sections(contents: Contents) -> Iterator[str]:
     yield f'<p class="facts">{escape(contents.facts)}</p>'
     if not contents.is_whole:
         yield '<p class="alarm">Not all runs are made: the comparison was interrupted.</p>'
+    if cut := cut_short_note(contents.runs):
+        yield f'<p class="alarm">{escape(cut)}</p>'
     yield "<h2>Allocators</h2>" + _table(STANDING_COLUMNS, map(standing_cells, contents.standings))
     if contents.pairs:
         yield "<h2>In pairs</h2>" + _table(PAIR_COLUMNS, map(pair_cells, contents.pairs))
