@@ -87,7 +87,7 @@ def test_runs_without_a_plan_and_those_cut_short_are_told(muster):
         (("6T-2R", "-a", "greedy", "--report", "r.pdf"), "--report: r.pdf; expected a file that ends in .html"),
         (("6T-2R", "-a", "greedy", "--plot", "r.xyz"), "r.xyz"),
         (("6T-2R", "-a", "greedy", "--report", "no/r.html"), "no/r.html: cannot be written"),
-        (("6T-2R", "-a", "greedy", "--seed", -1), "seeds: "),
+        (("6T-2R", "-a", "greedy", "--seed", -1), "--seed: -1; expected a whole number from 0 to 2**64 - 1"),
     ],
 )
 def test_what_is_wrong_is_told(arguments, said, muster):

@@ -36,6 +36,8 @@ def allocator_from(function: object, name: str | None = None) -> Allocator:
     called = name or str(getattr(function, "__name__", type(function).__name__))
     if not callable(function):
         raise ParameterError(f"it is a {type(function).__name__}; expected an Allocator or a function")
+    if isinstance(function, type):
+        raise ParameterError(f"allocator {called}: it is a class; expected an instance: {called}()")
     given, own = _parameters(function, called)
 
     def allocate(

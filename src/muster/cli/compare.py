@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import shlex
 import sys
 from collections.abc import Callable, Iterator
@@ -92,6 +93,10 @@ def command(
     from muster.comparison.settings import Settings
     from muster.comparison.specs import listed
 
+    if quiet:
+        logging.getLogger("muster").setLevel(logging.ERROR)
+    if not 0 <= seed < 2**64:
+        raise ParameterError(f"--seed: {seed}; expected a whole number from 0 to 2**64 - 1")
     _require_files(output, report, plot)
     pending = begun(
         (*missions, *more),
@@ -125,8 +130,9 @@ def _require_files(output: Path | None, report: Path | None, plot: Path | None) 
     require_writable(None, (output, report, plot), (), ())
     require_drawable(plot)
     if report is not None:
-        if report.suffix.lower() not in (".html", ".htm"):
-            raise ParameterError(f"--report: {report}; expected a file that ends in .html")
+        from muster.comparison.page import require_page
+
+        require_page(report, "--report")
         require_drawable(report.with_suffix(".svg"))
 
 

@@ -157,13 +157,16 @@ class Comparison:
 
         Raises
         ------
+        ParameterError
+            if the file does not end in .html.
         OSError
-            if the file cannot be written.
+            if it cannot be written.
         """
-        from muster.comparison.page import Contents, page
+        from muster.comparison.page import Contents, page, require_page
         from muster.mission.text_files import write_text
         from muster.report.files import svg_text
 
+        require_page(path)
         drawn = (
             (
                 self.plot_profile(),

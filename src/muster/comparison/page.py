@@ -8,12 +8,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.metadata import version
+from pathlib import Path
 
 from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
 from muster.comparison.notes import cut_short_note
 from muster.comparison.ranking import Best, bests, by_mission, close, typical
 from muster.comparison.run import Run
 from muster.comparison.statistics import Pair, Standing
+from muster.mission.errors import ParameterError
 
 _MOST_ROWS = 500
 _STYLE = """
@@ -80,6 +82,17 @@ class Contents:
     runs: Sequence[Run]
     figures: Sequence[tuple[str, str]]
     command: str
+
+
+def require_page(path: str | Path, what: str = "report") -> None:
+    """Refuse a file whose name is not that of a page; `what` it is, for the error.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if Path(path).suffix.lower() not in (".html", ".htm"):
+        raise ParameterError(f"{what}: {path}; expected a file that ends in .html")
 
 
 def page(contents: Contents) -> str:
