@@ -100,6 +100,41 @@ def test_what_cannot_be_called_as_an_allocator_is_refused(function, message):
     assert message in str(refusal.value)
 
 
+def test_parameters_of_functions_are_of_the_kind_of_their_defaults():
+    seen = []
+
+    def flagged(problem, fast=True, most=2_000_000, name="x"):
+        seen.append((fast, most, name))
+        return nearest(problem, None, 0)
+
+    mission = muster.load("6T-2R")
+    muster.solve(mission, flagged)
+    muster.solve(mission, flagged, parameters={"fast": False, "most": 3_000_000, "name": "y"})
+    assert seen == [(True, 2_000_000, "x"), (False, 3_000_000, "y")]
+    for name, value, expected in (("fast", 1, "true or false"), ("most", True, "a number")):
+        with pytest.raises(muster.ParameterError, match=f"^{name}: .*; expected {expected}$"):
+            muster.solve(mission, flagged, parameters={name: value})
+
+
+def test_a_function_says_which_rules_it_keeps():
+    def one_each(problem):
+        return [[i] if problem.may(i, i) else [] for i in range(len(problem.robots))]
+
+    (mission,) = muster.generate("windows", robots=2, tasks=4)
+    with pytest.raises(muster.ParameterError, match=r"window.*greedy.*by its attribute can \(docs/extending.md\)$"):
+        muster.solve(mission, one_each)
+    one_each.can = ["window"]
+    assert muster.verify(mission, muster.solve(mission, one_each)).valid
+    for wrong, said in (
+        (["windw"], "\"windw\"; expected a set of words of .*'window'"),
+        ("window", '"window"; expected a set'),
+        (3, "3; exp"),
+    ):
+        one_each.can = wrong
+        with pytest.raises(muster.ParameterError, match=f"^allocator one_each: can: {said}"):
+            allocator_of(one_each)
+
+
 def test_routes_that_deadlock_are_refused_in_one_line():
     def waiting_for_each_other(problem):
         j = next(j for j, before in enumerate(problem.prerequisites) if before)

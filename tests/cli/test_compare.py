@@ -51,11 +51,30 @@ def test_files_of_a_shell_pattern(muster):
     assert "1 allocator, 3 missions" in out
 
 
-def test_runs_that_fail_are_told_with_v(muster):
-    Path("of_this_cli_test.py").write_text("def fails(problem):\n    raise ValueError('no')\n", encoding="utf-8")
-    code, _, err = muster("compare", *QUICK, "-a", "of_this_cli_test:fails", "-v")
-    assert code == 0
-    assert err.splitlines()[0] == "uniform-5T-2R-0, of_this_cli_test:fails, seed 0: failed: ValueError: no"
+def test_runs_without_a_plan_and_those_cut_short_are_told(muster):
+    Path("of_this_cli_test.py").write_text(
+        "def fails(problem):\n    raise ValueError('no')\n"
+        "def cut(problem, stop):\n    stop.cut()\n    return [[] for _ in problem.robots]\n",
+        encoding="utf-8",
+    )
+    said = (
+        "of_this_cli_test:fails: 2 of 2 runs without a plan (2 failed); first uniform-5T-2R-0, seed 0: ValueError: no"
+    )
+    arguments = ("compare", *QUICK, "-a", "of_this_cli_test:fails")
+    code, _, err = muster(*arguments)
+    assert (code, err.splitlines()) == (3, [said])
+    assert muster(*arguments, "-q")[::2] == (3, "")
+    code, _, err = muster(*arguments, "-v")
+    assert err.splitlines() == [
+        *(f"uniform-5T-2R-{k}, of_this_cli_test:fails, seed 0: failed: ValueError: no" for k in range(2)),
+        said,
+    ]
+    arguments = (*arguments, "-a", "greedy,of_this_cli_test:cut", "--report", "r.html", "-o", "runs.csv")
+    cut = "cut short by the time limit: of_this_cli_test:cut 2 runs"
+    for _ in range(2):  # the second time of the file
+        code, _, err = muster(*arguments)
+        assert (code, err.splitlines()) == (0, [said, cut])
+    assert f'<p class="alarm">{cut}</p>' in Path("r.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -68,7 +87,7 @@ def test_runs_that_fail_are_told_with_v(muster):
         (("6T-2R", "-a", "greedy", "--report", "r.pdf"), "--report: r.pdf; expected a file that ends in .html"),
         (("6T-2R", "-a", "greedy", "--plot", "r.xyz"), "r.xyz"),
         (("6T-2R", "-a", "greedy", "--report", "no/r.html"), "no/r.html: cannot be written"),
-        (("6T-2R", "-a", "greedy", "--seed", -1), "seeds: "),
+        (("6T-2R", "-a", "greedy", "--seed", -1), "--seed: -1; expected a whole number from 0 to 2**64 - 1"),
     ],
 )
 def test_what_is_wrong_is_told(arguments, said, muster):

@@ -151,6 +151,7 @@ def test_unknown_allocator(muster):
     [
         ("population_size", "--set: population_size; expected NAME=VALUE\n"),
         ("population_size=", "--set: population_size=; expected NAME=VALUE\n"),
+        ("population_size=yes", "population_size: true; expected a number\n"),
         ("population_size=many", 'population_size: "many"; expected a number\n'),
         ("=3", "--set: =3; expected NAME=VALUE\n"),
         ("population=3", "greedy+genetic has no parameter population; did you mean 'population_size'?\n"),

@@ -7,10 +7,12 @@ import sys
 import textwrap
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import muster
 from muster.comparison.compare import begun
+from muster.comparison.missions import missions_of
 from muster.comparison.results_file import ResultsFile
 from muster.comparison.settings import Settings
 from muster.mission.errors import InputError
@@ -34,9 +36,22 @@ def fails(problem):
     raise ZeroDivisionError("in\nvain")
 
 
+def stops_itself(problem):
+    raise KeyboardInterrupt
+
+
+def exits(problem):
+    sys.exit("enough")
+
+
 def endless(problem):
     while True:
         pass
+
+
+class OfAClass:
+    def __call__(self, problem):
+        return in_order(problem)
 
 
 def small(count=2):
@@ -65,18 +80,28 @@ def test_an_allocator_of_ones_own_beside_search_on_generated_missions():
             assert run.value == pytest.approx(muster.verify(mission, routes).value())
 
 
-def test_processes_give_what_one_gives_and_lose_single_runs_alone():
+def test_processes_give_what_one_gives_and_lose_single_runs_alone(capfd):
     given = {"greedy": "greedy", "own": in_order, "local": lambda problem: in_order(problem)}
     one = muster.compare(small(), given, seeds=1, jobs=1)
-    lossy = {**given, "lost": ends_its_process, "fails": fails, "endless": endless}
+    lossy = {
+        **given,
+        "lost": ends_its_process,
+        "fails": fails,
+        "stops": stops_itself,
+        "exits": exits,
+        "endless": endless,
+    }
     several = muster.compare(small(), lossy, seeds=1, jobs=2, give_up=2)
     values = {(run.mission, run.allocator): run.value for run in several.runs}
     assert {(run.mission, run.allocator): run.value for run in one.runs}.items() <= values.items()
     reasons = {run.allocator: (run.status, run.reason) for run in several.runs}
     assert reasons["lost"] == ("failed", "its process ended: exit code 7")
     assert reasons["fails"] == ("failed", "ZeroDivisionError: in vain")
+    assert reasons["stops"] == ("failed", "KeyboardInterrupt")
+    assert reasons["exits"] == ("failed", "SystemExit: enough")
     assert reasons["endless"] == ("failed", "given up after 2 s")
-    assert [run.allocator for run in several.runs[:6]] == list(lossy)
+    assert [run.allocator for run in several.runs[: len(lossy)]] == list(lossy)
+    assert capfd.readouterr() == ("", "")
 
 
 def test_what_cannot_be_done_or_is_wrong_is_a_row():
@@ -122,6 +147,41 @@ def test_results_made_otherwise_are_refused(tmp_path):
     file.write_text("a,b\n1,2\n")
     with pytest.raises(muster.InputError, match=r"r.csv:1: a,b; expected results of muster compare"):
         muster.compare(small(), "greedy", seeds=1, iterations=20, jobs=1, results=file)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("status", "dnoe", "status: dnoe; expected done or not-applicable or failed or invalid"),
+        ("value", "", "value: nothing; expected a number"),
+        ("value", "nan", "value: nan; expected a number"),
+        ("weight_completed", "inf", "weight_completed: inf; expected a number"),
+        ("tasks_completed", "6.5", "tasks_completed: 6.5; expected a whole number"),
+        ("seed", "", "seed: nothing; expected a whole number"),
+        ("cut_short", "", "cut_short: nothing; expected True or False"),
+    ],
+)
+def test_damaged_results_are_refused(name, value, said, tmp_path):
+    file, options = tmp_path / "r.csv", {"seeds": 1, "iterations": 20, "jobs": 1}
+    muster.compare(small(), "greedy", results=file, **options)
+    head, first, second = file.read_text().splitlines()
+    cells = second.split(",")
+    cells[head.split(",").index(name)] = value
+    file.write_text("\n".join([head, first, ",".join(cells), ""]))
+    with pytest.raises(InputError, match=rf"r.csv:3: {said}$"):
+        muster.compare(small(), "greedy", results=file, **options)
+
+
+def test_results_saved_by_a_spreadsheet_are_read_and_those_of_another_version_are_refused(tmp_path):
+    file, made, options = tmp_path / "r.csv", [], {"seeds": 1, "iterations": 20, "jobs": 1}
+    first = muster.compare(small(), "greedy", results=file, **options)
+    text = file.read_text()
+    file.write_text(text.replace("False", "FALSE").replace("\n", "\r\n"), encoding="utf-8-sig", newline="")
+    again = muster.compare(small(), "greedy", results=file, on_run=lambda *run: made.append(run), **options)
+    assert (made, again.runs) == ([], first.runs)
+    file.write_text(text.replace(",cut_short", "").replace(",False", ""))
+    with pytest.raises(InputError, match=r"r.csv:1: no column cut_short; expected results of this version of Muster"):
+        muster.compare(small(), "greedy", results=file, **options)
 
 
 def test_a_file_of_results_is_written_by_one_comparison_at_once(tmp_path):
@@ -248,8 +308,14 @@ def test_missions_by_names_patterns_folders_and_families(tmp_path, monkeypatch):
         ("6T-2R", [], {}, "allocators: none"),
         ("6T-2R", "gredy", {}, "allocator: gredy; expected .*did you mean 'greedy'"),
         ("6T-2R", ["greedy", "greedy"], {}, "allocators: greedy twice"),
-        ("6T-2R", "genetic:size=3", {}, "genetic has no parameter size"),
+        ("6T-2R", "genetic:size=3", {}, "^genetic has no parameter size"),
+        ("6T-2R", "genetic:elite=x", {}, "^genetic has no parameter elite"),
+        ("6T-2R", "search:threads=x", {}, 'allocator search:threads=x: threads: "x"; expected a number'),
         ("6T-2R", [3], {}, "allocators: 3; expected a name"),
+        ("6T-2R", OfAClass, {}, r"allocator OfAClass: it is a class; expected an instance: OfAClass\(\)"),
+        ("6T-2R", "greedy", {"seeds": [[1]]}, "seeds: .*; expected a number above 0"),
+        ("6T-2R", "greedy", {"seeds": np.array([1.5])}, "seeds: 1.5; expected a number above 0"),
+        ("6T-2R", "greedy", {"jobs": True}, "jobs: true; expected a whole number"),
         ("6T-2R", "greedy", {"seeds": 0}, "seeds: 0; expected a number above 0"),
         ("6T-2R", "greedy", {"seeds": [-1]}, "seeds: -1; expected a number above 0"),
         ("6T-2R", "greedy", {"jobs": 0}, "jobs: 0; expected a whole number of at least 1"),
@@ -267,6 +333,26 @@ def test_what_is_wrong_is_told(missions, allocators, options, said, tmp_path, mo
     with pytest.raises(muster.MusterError, match=said):
         muster.compare(missions, allocators, **{"seeds": 1, "jobs": 1, **options})
     assert list(Path.cwd().iterdir()) == []
+
+
+def test_a_name_of_a_shipped_mission_and_a_family_is_told(caplog):
+    told = ["missions: warehouse: the shipped mission; the family is warehouse:seed=0"]
+    assert list(missions_of(["6T-2R", "warehouse"])) == ["6T-2R", "warehouse"]
+    assert caplog.messages == told
+    (family,) = missions_of("warehouse:seed=0")
+    assert (family != "warehouse", caplog.messages) == (True, told)
+
+
+def test_numbers_of_numpy_and_columns_without_numbers(tmp_path):
+    options = {"jobs": np.int64(1), "time_limit": 1}
+    found = muster.compare("6T-2R", ["greedy", OfAClass()], seeds=np.array([3, 1, 3]), **options)
+    assert [(run.allocator, run.seed) for run in found.runs] == [
+        *(("greedy", 3), ("OfAClass", 3), ("greedy", 1), ("OfAClass", 1)),
+    ]
+    assert len(muster.compare("6T-2R", "greedy", seeds=np.int64(2), **options).runs) == 2
+    assert found.to_frame().iteration_limit.dtype == found.pairs_table().p_value.dtype == float
+    with pytest.raises(muster.ParameterError, match=r"report: .*r.pdf; expected a file that ends in .html"):
+        found.save_report(tmp_path / "r.pdf")
 
 
 def test_processor_time_and_another_objective():

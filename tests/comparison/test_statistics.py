@@ -5,6 +5,7 @@ from itertools import product
 
 import pytest
 
+from muster.comparison.cells import pair_cells
 from muster.comparison.ranking import best_of, gap, order, ratio, typical
 from muster.comparison.run import FAILED, NOT_APPLICABLE, Run
 from muster.comparison.statistics import (
@@ -41,8 +42,18 @@ def test_more_weight_comes_before_a_lower_objective():
     assert [gap(one, best) for one in (much, run("a", 110.0), cheap, none)] == [0.0, pytest.approx(10.0), None, None]
     assert ratio(cheap, best) == math.inf
     assert best_of([none]) is None
-    assert typical([run("a", value) for value in (4.0, 1.0, 3.0, 2.0)]) == (-10.0, 2.0)
-    assert typical([run("a", 1.0), none, none]) == (math.inf, math.inf)
+
+
+def test_the_run_in_the_middle_favours_nobody():
+    none = run("c", None, None, status=FAILED)
+    assert typical([run("a", value) for value in (4.0, 1.0, 3.0)]) == (-10.0, 3.0)
+    assert typical([run("a", value) for value in (4.0, 1.0, 3.0, 2.0)]) == (-10.0, 2.5)
+    assert typical([run("a", 4.0), run("a", 1.0, weight=8.0)]) == (-9.0, 2.5)
+    assert typical([run("a", 1.0), none]) == typical([run("a", 1.0), none, none]) == (math.inf, math.inf)
+    steady = [run("a", 10.0, mission=f"m{k}", seed=seed) for k in range(6) for seed in range(2)]
+    noisy = [run("b", value, mission=f"m{k}", seed=seed) for k in range(6) for seed, value in enumerate((9.0, 30.0))]
+    (pair,) = pairs_of(steady + noisy, ("a", "b"))
+    assert (pair.wins, pair.losses) == (6, 0)
 
 
 def test_an_objective_of_0_is_no_division():
@@ -140,6 +151,29 @@ def test_of_a_single_mission_seeds_are_paired():
     runs = [run(name, value + seed, seed=seed) for seed in range(6) for name, value in (("a", 1.0), ("b", 3.0))]
     (pair,) = pairs_of(runs, ("a", "b"))
     assert (pair.units, pair.wins, pair.p_value) == ("seeds", 6, pytest.approx(2 / 64))
+
+
+def test_seeds_that_change_nothing_are_one_observation():
+    runs = [
+        run(name, value, seed=seed) for seed in range(10) for name, value in (("a", 1.0), ("b", 3.0), ("c", 2.0 + seed))
+    ]
+    same, *others = pairs_of(runs, ("a", "b", "c"))
+    assert (same.wins, same.ties, same.losses) == (1, 0, 0)
+    assert (same.difference, same.p_value, same.p_holm) == (pytest.approx(-200 / 3), None, None)
+    assert pair_cells(same)[4:] == ("-", "-", "-")
+    assert [sum((one.wins, one.ties, one.losses)) for one in others] == [10, 10]
+    assert others[0].p_holm == pytest.approx(2 * 2 / 2**10)  # of two tests, not of three
+    _, b, c = standings_of(runs, ("a", "b", "c"))
+    assert (b.gap_mean, b.gap_low, b.gap_high) == (pytest.approx(200), None, None)
+    assert c.gap_low < c.gap_mean < c.gap_high
+
+
+def test_allocators_without_a_mission_in_common_are_not_tested():
+    runs = [run(name, 1.0 + (name == "b"), mission=f"m{k}") for k in range(8) for name in "ab"]
+    runs += [run("c", None, None, mission=f"m{k}", status=NOT_APPLICABLE) for k in range(8)]
+    first, *others = pairs_of([*runs, run("c", 1.0, mission="own")], ("a", "b", "c"))
+    assert first.p_holm == first.p_value == pytest.approx(2 / 2**8)
+    assert [pair_cells(one)[2:] for one in others] == [("0 0 0", "-", "-", "-", "-")] * 2
 
 
 def test_profiles_are_shares_of_runs_by_ratio():

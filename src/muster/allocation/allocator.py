@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import Field, dataclass, fields
 from typing import Any, Protocol
 
 from muster import core
@@ -20,6 +20,8 @@ from muster.mission.value_types import shown
 
 Routes = list[list[int]]
 _MOST = 1_000_000  # of anything that a parameter counts
+MOST = "most"
+"""The key of the metadata of a parameter that says how much it may be; without it, a million where it counts."""
 
 
 @dataclass(frozen=True)
@@ -247,16 +249,22 @@ def make_parameters(allocator: Allocator, values: dict[str, Any]) -> Any:
             hint = did_you_mean(name, known) or f"; it has {', '.join(known) or 'none'}"
             raise ParameterError(f"{allocator.name} has no parameter {name}{hint}")
     for f in fields(allocator.parameters):
-        _check_kind(f.name, f.default, values.get(f.name, f.default))
+        _check_kind(f, values.get(f.name, f.default))
     return allocator.parameters(**values)
 
 
-def _check_kind(name: str, default: object, value: object) -> None:
+def _check_kind(of: Field[Any], value: object) -> None:
+    name, default = of.name, of.default
+    if isinstance(default, bool):
+        if not isinstance(value, bool):
+            raise ParameterError(f"{name}: {shown(value)}; expected true or false")
+        return
     if isinstance(default, int | float) and (isinstance(value, bool) or not isinstance(value, int | float)):
         raise ParameterError(f"{name}: {shown(value)}; expected a number")
     if isinstance(default, float) and isinstance(value, int) and abs(value) >= 2**63:
         raise ParameterError(f"{name}: {shown(value)}; expected a number of fewer digits")
     if isinstance(default, int) and not isinstance(value, int):
         raise ParameterError(f"{name}: {value}; expected a whole number")
-    if isinstance(default, int) and isinstance(value, int) and value > _MOST:
-        raise ParameterError(f"{name}: {value}; expected at most {_MOST}")
+    most = of.metadata.get(MOST, _MOST)
+    if isinstance(default, int) and isinstance(value, int) and value > most:
+        raise ParameterError(f"{name}: {value}; expected at most {most}")

@@ -24,6 +24,8 @@ BY_OBJECTIVE = frozenset({RETURN})
 
 NONE: frozenset[str] = frozenset()
 
+_OWN = "; a function of your own says what it can by its attribute can (docs/extending.md)"
+
 Offered = Callable[[], Mapping[str, frozenset[str]]]
 _offered: list[Offered] = []
 
@@ -44,7 +46,8 @@ def refuse_what_is_not_kept(problem: Problem, name: str, can: frozenset[str]) ->
     lacking = [f"{where} ({word})" for word, where in problem.asked.items() if word not in can]
     if lacking:
         able = " or ".join(those_that_can(problem.asked)) or "an allocator that can"
-        raise ParameterError(f"allocator: {name} cannot do {'; '.join(lacking)}; expected {able}")
+        own = "" if any(name in offered() for offered in _offered) else _OWN
+        raise ParameterError(f"allocator: {name} cannot do {'; '.join(lacking)}; expected {able}{own}")
 
 
 def those_that_can(words: Iterable[str]) -> list[str]:

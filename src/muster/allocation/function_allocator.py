@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import field, fields, make_dataclass
 from typing import Any
 
-from muster.allocation.allocator import Allocator, Outcome, Routes
+from muster.allocation.allocator import MOST, Allocator, Outcome, Routes
+from muster.allocation.capabilities import ALL, NONE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
+from muster.mission.value_types import shown
 
 AllocatingFunction = Callable[..., Outcome | Sequence[Sequence[int]]]
 """Returns for each robot of `problem.robots` a list of indices into `problem.tasks`, or an `Outcome`."""
@@ -22,16 +25,19 @@ def allocator_from(function: object, name: str | None = None) -> Allocator:
     """A function as an allocator.
 
     The function's first parameter is the problem. It may also have parameters called `stop`, `seed`, `start` and
-    `params`. All its other parameters have defaults: they are the parameters of the allocator.
+    `params`. All its other parameters have defaults: they are the parameters of the allocator. Where the function has
+    an attribute `can`, that names the rules of time, teams and relations that it keeps (of `capabilities.ALL`).
 
     Raises
     ------
     ParameterError
-        if the function does not have parameters of this form.
+        if the function does not have parameters of this form, or its `can` names something else.
     """
     called = name or str(getattr(function, "__name__", type(function).__name__))
     if not callable(function):
         raise ParameterError(f"it is a {type(function).__name__}; expected an Allocator or a function")
+    if isinstance(function, type):
+        raise ParameterError(f"allocator {called}: it is a class; expected an instance: {called}()")
     given, own = _parameters(function, called)
 
     def allocate(
@@ -48,7 +54,20 @@ def allocator_from(function: object, name: str | None = None) -> Allocator:
         anytime=True,  # so that a function that goes on until `stop` is due ends also where no limit is given
         parameters=make_dataclass("Parameters", own, frozen=True, kw_only=True),
         algorithm=allocate,
+        can=_rules_kept(function, called),
     )
+
+
+def _rules_kept(function: Callable[..., Any], called: str) -> frozenset[str]:
+    """The rules that a function says it keeps."""
+    words = getattr(function, "can", NONE)
+    told = [words] if isinstance(words, str) or not isinstance(words, Collection) else words
+    for word in told:
+        if word not in ALL or told is not words:
+            hint = did_you_mean(word, ALL) if isinstance(word, str) else ""
+            expected = f"a set of words of {', '.join(sorted(ALL))}{hint}"
+            raise ParameterError(f"allocator {called}: can: {shown(word)}; expected {expected}")
+    return frozenset(words)
 
 
 def _parameters(function: Callable[..., Any], called: str) -> tuple[list[str], list[tuple[str, Any, Any]]]:
@@ -73,4 +92,7 @@ def _parameters(function: Callable[..., Any], called: str) -> tuple[list[str], l
 
 
 def _with_default(value: object) -> Any:
-    return field(default=value) if getattr(type(value), "__hash__", None) else field(default_factory=lambda: value)
+    unbounded = {MOST: math.inf}  # what it counts is the function's own affair
+    if getattr(type(value), "__hash__", None):
+        return field(default=value, metadata=unbounded)
+    return field(default_factory=lambda: value, metadata=unbounded)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import shlex
 import sys
 from collections.abc import Callable, Iterator
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from muster.cli.exits import DONE, INTERRUPTED
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import Finite, format_option, objective_option, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
 from muster.mission.errors import ParameterError
@@ -92,6 +93,10 @@ def command(
     from muster.comparison.settings import Settings
     from muster.comparison.specs import listed
 
+    if quiet:
+        logging.getLogger("muster").setLevel(logging.ERROR)
+    if not 0 <= seed < 2**64:
+        raise ParameterError(f"--seed: {seed}; expected a whole number from 0 to 2**64 - 1")
     _require_files(output, report, plot)
     pending = begun(
         (*missions, *more),
@@ -107,9 +112,13 @@ def command(
     if verbose and pending.made:
         click.echo(f"{output}: {pending.made} of {pending.total} runs are there", err=True)
     whole = _run(pending, quiet=quiet, verbose=verbose)
-    _show(pending.comparison(), form, report, plot)
+    comparison = pending.comparison()
+    _show(comparison, form, report, plot)
+    if not quiet:
+        for line in comparison.notes:
+            click.echo(line, err=True)
     if whole:
-        return DONE
+        return DONE if comparison.has_a_plan else INCOMPLETE
     if not quiet:
         kept = f"; {output} has them, the same command goes on" if output else "; with -o it could go on from there"
         click.echo(f"interrupted after {pending.made} of {pending.total} runs{kept}", err=True)
@@ -121,8 +130,9 @@ def _require_files(output: Path | None, report: Path | None, plot: Path | None) 
     require_writable(None, (output, report, plot), (), ())
     require_drawable(plot)
     if report is not None:
-        if report.suffix.lower() not in (".html", ".htm"):
-            raise ParameterError(f"--report: {report}; expected a file that ends in .html")
+        from muster.comparison.page import require_page
+
+        require_page(report, "--report")
         require_drawable(report.with_suffix(".svg"))
 
 

@@ -1,7 +1,8 @@
 """The command's entry: finds the verb, and turns every expected failure into a line and an exit code.
 
 Exit codes: 0 done; 1 `verify` rejects the plan; 2 bad input, usage or a missing extra; 3 `--require-complete` and some
-task is left out or impossible; 4 a real robot still flies or drives at the end; 130 interrupted.
+task is left out or impossible, or a comparison without any plan; 4 a real robot still flies or drives at
+the end; 130 interrupted.
 """
 
 from __future__ import annotations

@@ -52,7 +52,8 @@ def page() -> str:
 _ENDING = (
     ".SH EXIT STATUS",
     "0 done; 1 a plan is rejected, or what is installed does not work; 2 bad input, usage or a missing extra;",
-    "3 tasks are left out with \\-\\-require\\-complete; 4 a real robot still moves; 130 interrupted.",
+    "3 tasks are left out with \\-\\-require\\-complete, or a comparison has no plan; 4 a real robot still moves;",
+    "130 interrupted.",
     ".SH ENVIRONMENT",
     "NO_COLOR switches colours off, FORCE_COLOR lets letters be bold in files and pipes too.",
     "MUSTER_DEBUG shows where an internal error is.",

@@ -15,6 +15,7 @@ from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
+from muster.mission.value_types import FLAGS
 from muster.motion.avoidance_names import AUTO, AVOIDANCE
 from muster.traffic.names import DEFAULT, TRAFFIC
 
@@ -284,5 +285,5 @@ def settings_of(settings: tuple[str, ...], options: Mapping[str, Any]) -> dict[s
         try:
             values[name.strip()] = int(text) if text.strip().lstrip("+-").isdigit() else float(text)
         except ValueError:
-            values[name.strip()] = text.strip()
+            values[name.strip()] = FLAGS.get(text.strip().lower(), text.strip())
     return given | values

@@ -55,13 +55,15 @@ def _record(one: Standing | Pair) -> str:
 
 def better(one: Pair) -> str:
     """The allocator that is better by the test; a dash where it does not say."""
-    if one.p_holm >= SIGNIFICANT or one.wins == one.losses:
+    if one.p_holm is None or one.p_holm >= SIGNIFICANT or one.wins == one.losses:
         return "-"
     return one.allocator if one.wins > one.losses else one.other
 
 
-def p_text(value: float) -> str:
-    """A p-value."""
+def p_text(value: float | None) -> str:
+    """A p-value; a dash where nothing was tested."""
+    if value is None:
+        return "-"
     return f"{value:.1e}" if value < 0.001 else f"{value:.3f}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
+from operator import index
 from pathlib import Path
 
 from muster.comparison.comparison import Comparison
@@ -56,7 +57,9 @@ def compare(
         processes; by default one for each processor. With 1, and no `give_up`, all runs are made in this process. In
         others functions of a notebook or script need cloudpickle (extra `compare`).
     time_limit, iterations
-        when an anytime allocator stops; 1 s if neither is given.
+        when an allocator stops; 1 s if neither is given. Iterations are those of anytime allocators. The time limit
+        also ends one that makes a single pass, such as `greedy` or `auction`, before it has come to all tasks; such
+        runs are marked (`Run.cut_short`).
     objective
         instead of the missions' own.
     clock
@@ -165,21 +168,35 @@ class Pending:
 
 
 def _seeds(given: int | Iterable[int]) -> list[int]:
-    seeds = list(range(given)) if isinstance(given, int) and not isinstance(given, bool) else given
+    count = _whole(given)
+    seeds = given if count is None else range(count)
     if isinstance(seeds, str) or not isinstance(seeds, Iterable):
         raise ParameterError(f"seeds: {shown(given)}; expected how many, or which")
-    found = list(dict.fromkeys(seeds))
-    wrong = [
-        seed for seed in found if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= _LARGEST_SEED
-    ]
-    if wrong or not found:
-        told = shown(wrong[0] if wrong else given)
-        raise ParameterError(f"seeds: {told}; expected a number above 0, or whole numbers from 0 to 2**64 - 1")
-    return found
+    found: dict[int, None] = {}
+    for one in seeds:
+        seed = _whole(one)
+        if seed is None or not 0 <= seed <= _LARGEST_SEED:
+            raise _wrong_seeds(one)
+        found[seed] = None
+    if not found:
+        raise _wrong_seeds(given)
+    return list(found)
+
+
+def _wrong_seeds(given: object) -> ParameterError:
+    return ParameterError(f"seeds: {shown(given)}; expected a number above 0, or whole numbers from 0 to 2**64 - 1")
 
 
 def _jobs(given: int | None) -> int:
-    jobs = usable_processors() if given is None else given
-    if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+    jobs = usable_processors() if given is None else _whole(given)
+    if jobs is None or jobs < 1:
         raise ParameterError(f"jobs: {shown(given)}; expected a whole number of at least 1")
     return jobs
+
+
+def _whole(given: object) -> int | None:
+    """A whole number, NumPy's too; None if it is something else."""
+    try:
+        return None if isinstance(given, bool) else index(given)  # type: ignore[arg-type]
+    except TypeError:
+        return None

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
+from muster.comparison.notes import counted, cut_short_note, notes_without_plan
 from muster.comparison.run import Run
 from muster.comparison.settings import Settings
 from muster.comparison.statistics import Pair, Profile, Standing, pairs_of, profiles_of, standings_of
@@ -62,14 +63,24 @@ class Comparison:
         """How much was compared, in words."""
         missions, seeds = len(self.missions), len({run.seed for run in self.runs})
         made, whole = len(self.runs), self.expected or len(self.runs)
-        runs = _counted(made, "run") if made == whole else f"{made} of {_counted(whole, 'run')}"
-        counted = ((len(self.allocators), "allocator"), (missions, "mission"), (seeds, "seed"))
-        return ", ".join([*(_counted(count, word) for count, word in counted), runs])
+        runs = counted(made, "run") if made == whole else f"{made} of {counted(whole, 'run')}"
+        parts = ((len(self.allocators), "allocator"), (missions, "mission"), (seeds, "seed"))
+        return ", ".join([*(counted(count, word) for count, word in parts), runs])
 
     @property
     def is_whole(self) -> bool:
         """Whether all its runs are made."""
         return len(self.runs) >= self.expected
+
+    @property
+    def has_a_plan(self) -> bool:
+        """Whether any run has a plan that counts."""
+        return any(run.is_done for run in self.runs)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the tables do not tell of single runs, in lines: why some have no plan, which time cut short."""
+        return tuple(filter(None, [*notes_without_plan(self.runs, self.allocators), cut_short_note(self.runs)]))
 
     @property
     def missions(self) -> tuple[str, ...]:
@@ -146,13 +157,16 @@ class Comparison:
 
         Raises
         ------
+        ParameterError
+            if the file does not end in .html.
         OSError
-            if the file cannot be written.
+            if it cannot be written.
         """
-        from muster.comparison.page import Contents, page
+        from muster.comparison.page import Contents, page, require_page
         from muster.mission.text_files import write_text
         from muster.report.files import svg_text
 
+        require_page(path)
         drawn = (
             (
                 self.plot_profile(),
@@ -176,7 +190,3 @@ class Comparison:
 def _finite(one: Standing | Pair) -> dict[str, Any]:
     fields = asdict(one)
     return {key: None if isinstance(value, float) and isinf(value) else value for key, value in fields.items()}
-
-
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"

@@ -59,7 +59,13 @@ class Contestant:
             for a parameter that it does not have, or a value out of range.
         """
         has_threads = any(f.name == "threads" for f in fields(allocator.parameters))
-        return make_parameters(allocator, ({"threads": 1} if has_threads else {}) | dict(self.values))
+        try:
+            return make_parameters(allocator, ({"threads": 1} if has_threads else {}) | dict(self.values))
+        except ParameterError as error:
+            said = str(error)
+            raise ParameterError(
+                said if said.startswith(f"{allocator.name} ") else f"allocator {self.name}: {said}"
+            ) from None
 
 
 def contestants_of(given: AllocatorSpec | Iterable[AllocatorSpec] | Mapping[str, AllocatorSpec]) -> list[Contestant]:

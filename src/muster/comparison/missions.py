@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable, Iterator
 from glob import glob
 from pathlib import Path
@@ -59,6 +60,10 @@ def _of_texts(texts: Iterable[str]) -> Iterator[Mission]:
         elif any(sign in text for sign in "*?["):
             yield from _of_pattern(text)
         elif text in mission_names():
+            if text in GENERATORS:
+                logging.getLogger("muster").warning(
+                    "missions: %s: the shipped mission; the family is %s:seed=0", text, text
+                )
             yield load(text)
         else:
             yield from _of_family(text)

@@ -8,11 +8,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.metadata import version
+from pathlib import Path
 
 from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
+from muster.comparison.notes import cut_short_note
 from muster.comparison.ranking import Best, bests, by_mission, close, typical
 from muster.comparison.run import Run
 from muster.comparison.statistics import Pair, Standing
+from muster.mission.errors import ParameterError
 
 _MOST_ROWS = 500
 _STYLE = """
@@ -39,14 +42,16 @@ _METHODS = (
     "counted where the run completes as much weight as the best; “as much done” is the share of such runs. It is "
     "infinite (inf) where the best objective is 0 and its own is not; figures leave such runs out. The mean gap is "
     "the mean over missions of their means, with a 95 % interval by the bootstrap over missions (percentiles, 9,999 "
-    "samples); of a single mission over its runs.",
+    "samples); of a single mission over its runs, where they differ.",
     "Wins, ties and losses count missions, each by the run in the middle of an allocator's seeds: against the "
-    "best of all others, and of the two in a pair. Missions that an allocator cannot take (n/a) are not counted "
-    "for it.",
-    "Pairs are tested by Wilcoxon's signed ranks, two-sided, over missions; of a single mission over seeds. "
-    "Differences are ordered lexicographically too: a plan beside none, then shares of weight, then ratios of "
+    "best of all others, and of the two in a pair. Of an even number of seeds that is the mean of the two in the "
+    "middle, which is failed if one of them is. In pairs of a single mission they count seeds. Missions that an "
+    "allocator cannot take (n/a) are not counted for it.",
+    "Pairs are tested by Wilcoxon's signed ranks, two-sided, over missions; of a single mission over seeds, which are "
+    "one observation where they change neither allocator. With less than two observations there is nothing to test "
+    "(-). Differences are ordered lexicographically too: a plan beside none, then shares of weight, then ratios of "
     "objectives. The test is exact up to 50 differences, up to 12 where some are equal, else by the normal "
-    "approximation. p (Holm) is corrected for all pairs in the table; an allocator is called better below 0.05.",
+    "approximation. p (Holm) is corrected for all pairs that are tested; an allocator is called better below 0.05.",
     "The performance profile shows for each ratio the share of an allocator's runs whose objective is at most so "
     "many times the best on the mission. Runs that failed, complete less or are n/a never get there: the curve "
     "ends below 1.",
@@ -79,6 +84,17 @@ class Contents:
     command: str
 
 
+def require_page(path: str | Path, what: str = "report") -> None:
+    """Refuse a file whose name is not that of a page; `what` it is, for the error.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if Path(path).suffix.lower() not in (".html", ".htm"):
+        raise ParameterError(f"{what}: {path}; expected a file that ends in .html")
+
+
 def page(contents: Contents) -> str:
     """The page, as HTML."""
     body = "\n".join(filter(None, _sections(contents)))
@@ -94,6 +110,8 @@ def _sections(contents: Contents) -> Iterator[str]:
     yield f'<p class="facts">{escape(contents.facts)}</p>'
     if not contents.is_whole:
         yield '<p class="alarm">Not all runs are made: the comparison was interrupted.</p>'
+    if cut := cut_short_note(contents.runs):
+        yield f'<p class="alarm">{escape(cut)}</p>'
     yield "<h2>Allocators</h2>" + _table(STANDING_COLUMNS, map(standing_cells, contents.standings))
     if contents.pairs:
         yield "<h2>In pairs</h2>" + _table(PAIR_COLUMNS, map(pair_cells, contents.pairs))

@@ -37,8 +37,15 @@ def close(a: float, b: float) -> bool:
 
 
 def typical(runs: Sequence[Run]) -> Rank:
-    """The rank in the middle of those of some runs; of an even number the better of the two."""
-    return sorted(run.rank for run in runs)[(len(runs) - 1) // 2]
+    """The rank in the middle of those of some runs; of an even number the mean of the two, without a plan if one is."""
+    ranks = sorted(run.rank for run in runs)
+    lower, upper = ranks[(len(ranks) - 1) // 2], ranks[len(ranks) // 2]
+    return (lower[0] + upper[0]) / 2, (lower[1] + upper[1]) / 2
+
+
+def are_equal(ranks: Sequence[Rank]) -> bool:
+    """Whether some ranks are all the same."""
+    return all(order(ranks[0], rank) == 0 for rank in ranks[1:])
 
 
 def best_of(runs: Sequence[Run]) -> Best | None:

@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
 from muster.comparison.performer import Trial
-from muster.comparison.run import Run
+from muster.comparison.run import DONE, STATUSES, Run
 from muster.mission.errors import Finding, InputError, ParameterError
 
 COLUMNS = tuple(f.name for f in fields(Run))
 _ASKED = ("objective", "parameters", "time_limit_s", "iteration_limit", "clock", "digest")
 """What must be the same where a comparison goes on."""
-_TYPES: dict[str, Any] = {
-    f.name: int if "int" in str(f.type) else float if "float" in str(f.type) else str for f in fields(Run)
-}
+_TYPES = {f.name: str(f.type) for f in fields(Run)}
+_FLAGS = {"true": True, "false": False}
+_NEEDED = ("seed", "cut_short")
+_NEEDED_OF_DONE = ("value", "weight_completed", "weight_total", "tasks_completed", "tasks_total")
 
 
 class ResultsFile:
@@ -100,26 +102,58 @@ class ResultsFile:
 
 def _read(path: Path) -> list[tuple[int, Run]]:
     """The runs of a file, with their lines; a last line that was not written to its end is left out."""
-    text = path.read_text(encoding="utf-8", errors="replace")
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
     lines = text[: text.rfind("\n") + 1].splitlines()
     reader = csv.reader(lines)
     head = next(reader, [])
     if tuple(head) != COLUMNS:
-        expected = f"results of muster compare: a first line {','.join(COLUMNS[:4])},..."
-        raise InputError([Finding(str(path), 1, "", ",".join(head[:4]) or "no first line", expected)])
+        raise _no_results(path, head)
     return [(reader.line_num, _run(path, reader.line_num, cells)) for cells in reader]
 
 
 def _run(path: Path, line: int, cells: list[str]) -> Run:
     if len(cells) != len(COLUMNS):
         raise InputError([Finding(str(path), line, "", f"{len(cells)} cells", f"{len(COLUMNS)}, as in the first line")])
+    given = dict(zip(COLUMNS, cells, strict=True))
+    if given["status"] not in STATUSES:
+        raise InputError([Finding(str(path), line, "status", given["status"] or "nothing", " or ".join(STATUSES))])
+    needed = _NEEDED + _NEEDED_OF_DONE if given["status"] == DONE else _NEEDED
     values: dict[str, Any] = {}
-    for name, cell in zip(COLUMNS, cells, strict=True):
+    for name, cell in given.items():
         try:
-            values[name] = cell if _TYPES[name] is str else None if cell == "" else _TYPES[name](cell)
-        except ValueError:
-            raise InputError([Finding(str(path), line, name, cell, "a number")]) from None
+            values[name] = _value(_TYPES[name], cell, is_needed=name in needed)
+        except ValueError as error:
+            raise InputError([Finding(str(path), line, name, cell or "nothing", str(error))]) from None
     return Run(**values)
+
+
+def _value(kind: str, cell: str, *, is_needed: bool) -> Any:
+    """What a cell holds; ValueError with what is expected where it holds something else."""
+    if "str" in kind:
+        return cell
+    if cell == "" and not is_needed:
+        return None
+    if "bool" in kind:
+        if cell.lower() not in _FLAGS:  # spreadsheets write them in capitals
+            raise ValueError("True or False")
+        return _FLAGS[cell.lower()]
+    try:
+        value = int(cell) if "int" in kind else float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError("a whole number" if "int" in kind else "a number")
+    return value
+
+
+def _no_results(path: Path, head: Sequence[str]) -> InputError:
+    """The refusal of a file with another first line; of results of another version, by the columns that it lacks."""
+    expected = f"results of muster compare: a first line {','.join(COLUMNS[:4])},..."
+    found = ",".join(head[:4]) or "no first line"
+    lacking = [name for name in COLUMNS if name not in head]
+    if tuple(head[:4]) == COLUMNS[:4] and lacking:
+        found, expected = f"no column {', '.join(lacking)}", "results of this version of Muster; or another file"
+    return InputError([Finding(str(path), 1, "", found, expected)])
 
 
 def _text(value: object) -> str:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from muster.comparison.settings import Settings
     from muster.mission.plan import Plan
 
-DONE, NOT_APPLICABLE, FAILED, INVALID = "done", "not-applicable", "failed", "invalid"
+DONE, NOT_APPLICABLE, FAILED, INVALID = STATUSES = "done", "not-applicable", "failed", "invalid"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +44,8 @@ class Run:
         processor time of the whole run.
     iterations
         done.
+    cut_short
+        whether the time limit ended the allocator before it had come to all tasks, and some are left out.
     parameters, time_limit_s, iteration_limit, clock, digest
         what was asked for, and which mission it was: what must agree where a comparison goes on.
     """
@@ -66,6 +68,7 @@ class Run:
     found_s: float | None = None
     cpu_s: float | None = None
     iterations: int | None = None
+    cut_short: bool = False
     parameters: str = ""
     time_limit_s: float | None = None
     iteration_limit: int | None = None
@@ -128,4 +131,5 @@ def figures(made: Attempt, problem: Problem, stop: Stop) -> dict[str, Any]:
         "found_s": stop.history[-1][0] if stop.history else None,
         "cpu_s": made.cpu_s,
         "iterations": stop.iterations_done,
+        "cut_short": stop.cut_short and not made.plan.complete,
     }

@@ -21,7 +21,8 @@ class Settings:
     Parameters
     ----------
     time_limit, iterations
-        when an anytime allocator stops, in seconds and in iterations; 1 s if neither is given.
+        when an allocator stops, in seconds and in iterations; 1 s if neither is given. An allocator of a single
+        pass has no iterations, but keeps the time limit.
     clock
         what seconds are of: `wall`, or `processor` time, which other programs on the machine do not use up. An
         allocator that waits for other processes needs `wall`.

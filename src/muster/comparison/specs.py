@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from muster.mission.errors import ParameterError
+from muster.mission.value_types import FLAGS
 
 
 @dataclass(frozen=True)
@@ -47,9 +48,8 @@ def listed(texts: Iterable[str]) -> list[str]:
 
 
 def _value(text: str) -> Any:
-    words = {"true": True, "yes": True, "false": False, "no": False}
-    if text.lower() in words:
-        return words[text.lower()]
+    if text.lower() in FLAGS:
+        return FLAGS[text.lower()]
     for kind in (int, float):
         try:
             return kind(text)

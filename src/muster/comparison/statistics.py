@@ -15,7 +15,18 @@ from statistics import fmean, median
 import numpy as np
 import numpy.typing as npt
 
-from muster.comparison.ranking import Rank, bests, by_mission, close, completes_as_much, gap, order, ratio, typical
+from muster.comparison.ranking import (
+    Rank,
+    are_equal,
+    bests,
+    by_mission,
+    close,
+    completes_as_much,
+    gap,
+    order,
+    ratio,
+    typical,
+)
 from muster.comparison.run import FAILED, INVALID, NOT_APPLICABLE, Run
 from muster.mission.errors import MissingExtraError
 
@@ -42,7 +53,8 @@ class Standing:
     gap_mean, gap_low, gap_high
         per cent of the objective above the best run on the mission, of the runs that complete as much: the mean over
         missions of their means, and its confidence interval (95 %). The mean is infinite, without an interval, where
-        the best objective of a mission is 0 and that of a run is not.
+        the best objective of a mission is 0 and that of a run is not; nor has a
+        single mission an interval where no run differs.
     gap_median
         of all its runs that complete as much.
     wins, ties, losses
@@ -73,16 +85,17 @@ class Pair:
     Parameters
     ----------
     wins, ties, losses
-        of the first.
+        of the first, among what is paired.
     difference
         per cent of the objective of the first above that of the second: the median over the missions on which both
         complete as much; infinite on a mission where that of the second alone is 0.
     p_value, p_holm
-        of the two-sided test that neither is better, and corrected for all pairs that are tested.
+        of the two-sided test that neither is better, and corrected for all pairs that are tested. None: there is
+        nothing to test, as less than two of what is paired are there.
     exact
         whether the p-value is that of the exact distribution.
     units
-        what is paired: `missions`, or `seeds` of a single mission.
+        what is paired: `missions`, or `seeds` of a single mission; these once where no seed changes either allocator.
     """
 
     allocator: str
@@ -91,8 +104,8 @@ class Pair:
     ties: int
     losses: int
     difference: float | None
-    p_value: float
-    p_holm: float
+    p_value: float | None
+    p_holm: float | None
     exact: bool
     units: str
 
@@ -151,12 +164,12 @@ def standings_of(runs: Sequence[Run], allocators: Sequence[str]) -> tuple[Standi
 
 
 def pairs_of(runs: Sequence[Run], allocators: Sequence[str], against: str | None = None) -> tuple[Pair, ...]:
-    """All pairs of allocators, or those with one of them, tested; corrected for as many tests."""
+    """All pairs of allocators, or those with one of them; corrected for as many tests as there are."""
     pairs = [(a, b) for a, b in combinations(allocators, 2) if against in (None, a, b)]
     turned = [(a, b) if b == against else (b, a) if a == against else (a, b) for a, b in pairs]
-    tested = [_pair(runs, a, b) for a, b in turned]
-    corrected = holm([pair.p_value for pair in tested])
-    return tuple(replace(pair, p_holm=p) for pair, p in zip(tested, corrected, strict=True))
+    found = [_pair(runs, a, b) for a, b in turned]
+    corrected = iter(holm([pair.p_value for pair in found if pair.p_value is not None]))
+    return tuple(pair if pair.p_value is None else replace(pair, p_holm=next(corrected)) for pair in found)
 
 
 def profiles_of(runs: Sequence[Run], allocators: Sequence[str]) -> tuple[Profile, ...]:
@@ -223,11 +236,14 @@ def _mean(values: Sequence[float]) -> float | None:
 
 
 def _by_unit(gaps: Sequence[tuple[str, float]]) -> list[float]:
-    """The mean of each mission; of a single mission all its values."""
+    """The mean of each mission; of a single mission all its values, or one where they are equal."""
     own: dict[str, list[float]] = {}
     for mission, value in gaps:
         own.setdefault(mission, []).append(value)
-    return next(iter(own.values())) if len(own) == 1 else [fmean(values) for values in own.values()]
+    if len(own) != 1:
+        return [fmean(values) for values in own.values()]
+    (values,) = own.values()
+    return values[:1] if close(min(values), max(values)) else values
 
 
 def _record(name: str, middles: Sequence[dict[str, Rank]]) -> tuple[int, int, int]:
@@ -243,7 +259,7 @@ def _record(name: str, middles: Sequence[dict[str, Rank]]) -> tuple[int, int, in
 def _pair(runs: Sequence[Run], a: str, b: str) -> Pair:
     both = list(_paired(runs, a, b))
     signs = [order(one, other) for one, other in both]
-    p_value, exact = signed_rank(_signed_magnitudes(both))
+    p_value, exact = signed_rank(_signed_magnitudes(both)) if len(both) > 1 else (None, False)
     relative = [_above(one[1], other[1]) for one, other in both if close(one[0], other[0]) and math.isfinite(one[1])]
     return Pair(
         allocator=a,
@@ -273,13 +289,19 @@ def _paired(runs: Sequence[Run], a: str, b: str) -> Iterator[tuple[Rank, Rank]]:
     """
     grouped = by_mission(runs)
     for own in grouped.values():
-        if a not in own or b not in own:
-            continue
-        if len(grouped) > 1:
-            yield typical(own[a]), typical(own[b])
-            continue
-        of_b = {run.seed: run.rank for run in own[b]}
-        yield from ((run.rank, of_b[run.seed]) for run in own[a] if run.seed in of_b)
+        if a in own and b in own:
+            yield from [(typical(own[a]), typical(own[b]))] if len(grouped) > 1 else _by_seed(own[a], own[b])
+
+
+def _by_seed(of_a: Sequence[Run], of_b: Sequence[Run]) -> list[tuple[Rank, Rank]]:
+    """The ranks of two allocators for each seed that both have.
+
+    Where the seed changes neither of them they are one observation, however often it was made.
+    """
+    others = {run.seed: run.rank for run in of_b}
+    both = [(run.rank, others[run.seed]) for run in of_a if run.seed in others]
+    is_one = bool(both) and all(are_equal(ranks) for ranks in zip(*both, strict=True))
+    return both[:1] if is_one else both
 
 
 def _signed_magnitudes(both: Sequence[tuple[Rank, Rank]]) -> list[float]:

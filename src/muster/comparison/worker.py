@@ -9,7 +9,7 @@ import threading
 from multiprocessing.connection import Connection
 from typing import Any
 
-from muster.comparison.workers import Raised
+from muster.comparison.workers import Lost, Raised
 
 
 def main(link_fd: int, lifeline_fd: int) -> None:
@@ -30,6 +30,8 @@ def main(link_fd: int, lifeline_fd: int) -> None:
             answer = do(job)
         except Exception as error:
             answer = Raised(error)
+        except BaseException as error:  # of the job: Ctrl-C does not come to this process, and nothing else ends it
+            answer = Lost(_line(error))
         _answer(link, answer)
 
 
@@ -40,6 +42,11 @@ def _answer(link: Connection[Any, Any], answer: Any) -> None:
         said = answer.error if isinstance(answer, Raised) else error
         data = pickle.dumps(Raised(RuntimeError(f"{type(said).__name__}: {said}")))
     link.send_bytes(data)
+
+
+def _line(error: BaseException) -> str:
+    said = " ".join(str(error).split())
+    return f"{type(error).__name__}: {said}" if said else type(error).__name__
 
 
 def _raising(error: Exception) -> Any:

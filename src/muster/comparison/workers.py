@@ -35,7 +35,7 @@ _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM
 
 @dataclass(frozen=True)
 class Lost:
-    """A job that came to nothing, because its process ended or was given up; and why."""
+    """A job that came to nothing, because its process ended, was given up or would have been left; and why."""
 
     reason: str
 

@@ -28,5 +28,11 @@ def data_frame(rows: Iterable[Mapping[str, Any]], columns: Iterable[str]) -> Dat
 
 
 def frame_of_records(kind: type[Any], records: Iterable[Any]) -> DataFrame:
-    """A DataFrame with a row for each instance of a dataclass and a column for each of its fields."""
-    return data_frame(map(asdict, records), [f.name for f in fields(kind)])
+    """A DataFrame with a row for each instance of a dataclass and a column for each of its fields.
+
+    A column of numbers that are all missing is one of numbers (NaN), as where some are.
+    """
+    frame = data_frame(map(asdict, records), [f.name for f in fields(kind)])
+    numbers = [f.name for f in fields(kind) if str(f.type) in ("int | None", "float | None")]
+    missing = [name for name in numbers if frame[name].isna().all()]
+    return frame.astype(dict.fromkeys(missing, float))

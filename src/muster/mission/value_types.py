@@ -21,6 +21,9 @@ JsonSchema = dict[str, Any]
 RESERVED_NAMES = frozenset({"relay"})
 """Keys that a later version will give a meaning; until then they are refused, not ignored."""
 
+FLAGS = {"true": True, "yes": True, "false": False, "no": False}
+"""Words for values of parameters on a command line that are true or false."""
+
 OTHER_NAMES = {
     "earliest_s": "window_s: [earliest, latest]",
     "latest_s": "window_s: [earliest, latest], or deadline_s where it must have ended by then",
