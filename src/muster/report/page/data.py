@@ -16,7 +16,7 @@ from muster.mission.event_descriptions import event_line
 from muster.mission.model import Map, Station, Task, Zone
 from muster.mission.stations import station_sign
 from muster.motion.grid import Grid
-from muster.report.activity_spans import spans
+from muster.report.activity_spans import Span, spans
 from muster.report.area_marks import areas_of
 from muster.report.level_lines import recorded_level
 from muster.report.page.distances import nearest
@@ -47,7 +47,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "duration": _thousandths(recording.duration_s),
         "spatial": recording.mission.dimensions == 3,
         "times": _differences(tracks.times_s),
-        "robots": [_robot(recording, tracks, k, gone) for k in range(len(order))],
+        "robots": [_robot(recording, tracks, k, gone, bars) for k in range(len(order))],
         "tasks": _tasks(recording),
         "stations": [_station(station) for station in recording.mission.stations],
         "plans": _plans(recording, order),
@@ -98,7 +98,9 @@ def _differences(values: Floats) -> list[int | None]:
     return found
 
 
-def _robot(recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any]) -> dict[str, Any]:
+def _robot(
+    recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any], bars: Sequence[Span]
+) -> dict[str, Any]:
     robot = recording.robots[k]
     data: dict[str, Any] = {
         "id": robot.id,
@@ -112,7 +114,7 @@ def _robot(recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any]
     }
     if recording.mission.dimensions == 3:
         data["z"] = _differences(tracks.positions[:, k, 2])
-    level = recorded_level(recording, robot)
+    level = recorded_level(recording, robot, [bar for bar in bars if bar.robot == robot.id])
     if level is not None:
         data["level"] = [[_thousandths(at_s), round(100_000 * share)] for at_s, share in level.points]
         data["reserve"] = level.reserve
