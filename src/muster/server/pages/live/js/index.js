@@ -143,7 +143,8 @@ export class LiveView {
   }
 
   movable(what, id) {
-    return this.may && !this.lost && what === "task" && !this.team.over && this.team.tasks.get(id)?.state === "open";
+    const task = what === "task" ? this.team.tasks.get(id) : null;
+    return this.may && !this.lost && !this.team.over && task?.state === "open" && !task.action?.area;
   }
 
   moveTask(task, [x, y]) {

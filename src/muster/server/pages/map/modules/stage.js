@@ -200,8 +200,8 @@ export class Stage {
     return this.scene.zones.flatMap(({ corners }, id) => corners.map(([x, y], corner) => ({ what: "zone", id, corner, x, y })));
   }
 
-  // Whether it may be dragged; a view of a run says so of its open tasks alone.
-  movable() { return this.editable; }
+  // Whether it may be dragged: not the task of an area. A view of a run says so of its open tasks alone.
+  movable({ what, id }) { return this.editable && !(what === "task" && this.places.tasks.get(id)?.fixed); }
 
   // What is wrong with a task of `impossible`, in words.
   whyNot() { return "can never be done"; }
