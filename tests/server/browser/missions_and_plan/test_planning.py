@@ -93,6 +93,27 @@ def test_drones_in_the_plane_get_heights_where_they_are_exported(watched, page):
     assert [max(item.get("Altitude", 0) for item in own) for own in items] == [30, 35]
 
 
+def test_robots_keep_the_colours_of_the_plan_that_is_shown_while_others_come(watched, page):
+    with Client(watched.origin) as client:
+        made = client.missions.create(FLAT)
+        client.plans.upload(made.id, plan_of({"rover": [], "kite": ["a"], "lark": ["b"]}))
+        before = "  - {id: kite, position: [3, 0], kind: air}\n"
+        text = FLAT.replace(before, f"  - {{id: extra, position: [9, 0]}}\n{before}")
+        client.missions.save(made.id, text, base_version=1)
+    watched.open(f"/plan/{made.id}")
+    page.wait_for_selector("table.robots", timeout=SLOW_MS)
+    stage = "getElement(document.querySelector('.muster-map')).stage"
+    page.wait_for_function(f"{stage}.routes.length === 3")
+    colours = page.evaluate(f"Object.fromEntries({stage}.places.robotIndex)")
+    assert colours == {"rover": 0, "kite": 1, "lark": 2, "extra": 3}
+    swatches = page.locator("table.robots .swatch")
+    assert [swatches.nth(k).get_attribute("style") for k in range(3)] == [f"background: var(--c{k})" for k in range(3)]
+    assert "done by kite" in page.evaluate(
+        f"import('muster-map/words.js').then(({{ told }}) => told({stage}, {{ what: 'task', id: 'a' }}))"
+    )
+    watched.shoot("colours")
+
+
 def test_two_plans_are_compared_side_by_side(watched, page):
     plan_view(watched, "31T-6R50")
     page.get_by_label("Allocator").click()
