@@ -50,9 +50,40 @@ def test_going_to_a_station_waiting_and_service_are_spans_of_their_own():
 
 
 def test_the_level_is_what_events_and_the_report_tell(charged):
-    level = recorded_level(charged, charged.robots[0])
+    level = recorded_level(charged, charged.robots[0], spans(charged.events, charged.duration_s))
     assert level.points == ((0, 1), (0, 1), (6, 0.4), (8, 0.4), (14, 1), (16, 0.8))
     assert level.reserve == 0.1
+
+
+def waited(usage, **keys):
+    """A record of one robot that stands, drives 10 m, works for 10 s and stands; its battery is told first and last."""
+    mission = carry_charge.mission(
+        [carry_charge.robot(battery=carry_charge.battery(20), speed_mps=1)],
+        [carry_charge.task("a", 10, **keys)],
+        usage=usage,
+    )
+    events = [(20, "sets_out", {}), (30, "arrives", {}), (30, "starts", {}), (40, "ends", {})]
+    told = tuple(ExecutionEvent(at_s, kind, {"robot": "r", "task": "a", **more}) for at_s, kind, more in events)
+    report = {"robots": [{"robot": "r", "charge": 0.2}], "mission_time_s": 60.0}
+    return recording(mission, np.zeros((2, 1, 3)), np.array([0.0, 60.0]), events=told, report=report)
+
+
+@pytest.mark.parametrize(
+    ("usage", "keys", "worked"),
+    [
+        ("distance", {"duration_s": 10}, 0.2),
+        ("distance", {"duration_s": 10, "actuation_cost": 10}, 0.6),
+        ("time", {"duration_s": 10}, 0.6),
+    ],
+)
+def test_the_level_falls_only_while_energy_is_used(usage, keys, worked):
+    record = waited(usage, **keys)
+    points = recorded_level(record, record.robots[0], spans(record.events, record.duration_s)).points
+    times_s, shares = zip(*points, strict=True)
+    assert np.interp([0, 20, 25, 30, 40, 60], times_s, shares) == pytest.approx(
+        [1, 1, (1 + worked) / 2, worked, 0.2, 0.2]
+    )
+    assert page_data(record)["robots"][0]["level"] == [[1000 * t, round(100_000 * share)] for t, share in points]
 
 
 def test_the_time_chart_has_service_and_level(charged, drawn):

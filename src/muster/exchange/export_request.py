@@ -14,6 +14,9 @@ FIRMWARES = ("px4", "ardupilot")
 RANGES = {"altitude": (0.0, 1e5), "altitude_step": (0.0, 1e4), "clearance": (0.0, 1e5), "tolerance": (0.0, 1e3)}
 """Least and greatest metres of the options that are lengths; `altitudes` are as `altitude`."""
 
+ALTITUDE_MISSING = "--altitude missing"
+"""Begins the error of a format for drones in the plane to which no height was given."""
+
 
 @dataclass(frozen=True)
 class Files:

@@ -9,7 +9,7 @@ from functools import partial
 from muster.exchange.altitudes import altitudes_of, at_work, height_notes, raised, raised_team
 from muster.exchange.antimeridian import crosses
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import FORMATS, OPTIONS_OF, ExportOptions, Files
+from muster.exchange.export_request import ALTITUDE_MISSING, FORMATS, OPTIONS_OF, ExportOptions, Files
 from muster.exchange.fence import Fence
 from muster.exchange.file_names import file_names
 from muster.exchange.geographic_features import Survey, survey
@@ -164,4 +164,4 @@ def _require_heights(mission: Mission, team: Sequence[Itinerary], altitudes: Map
         i.robot.id for i in team if i.robot.kind == "air" and len(i.passages) > 1 and not altitudes.get(i.robot.id)
     ]
     if drones and mission.dimensions == 2:
-        raise ParameterError(f"--altitude missing; expected metres above the start for {drones[0]} in the plane")
+        raise ParameterError(f"{ALTITUDE_MISSING}; expected metres above the start for {drones[0]} in the plane")

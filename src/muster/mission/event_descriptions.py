@@ -6,6 +6,16 @@ from collections.abc import Mapping
 from typing import Any
 
 
+def was_cancelled(reason: object) -> bool:
+    """Whether a task is not done because it was cancelled; reports and events have it with those that are lost."""
+    return str(reason).startswith("cancelled at ")
+
+
+def tells_cancelled(kind: str, data: Mapping[str, Any]) -> bool:
+    """Whether an event tells at the end that a task was cancelled."""
+    return kind == "lost" and was_cancelled(data.get("reason"))
+
+
 def event_line(kind: str, data: Mapping[str, Any]) -> str:
     """An event in a line for people: `starts: robot r_0, task 7`."""
     if kind == "replanned":
@@ -14,6 +24,8 @@ def event_line(kind: str, data: Mapping[str, Any]) -> str:
         return found_line(data)
     if kind == "waits":
         return f"waits: robot {data.get('robot')}, task {data.get('task')}, {data.get('words')}"
+    if tells_cancelled(kind, data):
+        return f"not done: task {data.get('task')}, {data['reason']}"
     if kind in _TRAFFIC:
         return _TRAFFIC[kind](data)
     parts = [f"{key} {_short(value)}" for key, value in data.items() if value not in ({}, [], ())]

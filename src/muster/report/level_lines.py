@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.model import Battery, Robot
+import numpy as np
+
+from muster.mission.model import Battery, Robot, Task
+from muster.report.activity_spans import TRAVEL, WORK, Span
 from muster.report.styles import FAINT, LEVEL
 from muster.verification import RouteFigures, Stop
 
@@ -37,8 +41,12 @@ def planned_level(route: RouteFigures, battery: Battery) -> Level | None:
     return Level(tuple((at_s, level / battery.capacity) for at_s, level in points), battery.reserve)
 
 
-def recorded_level(recording: Recording, robot: Robot) -> Level | None:
-    """The level as events told it, straight between them; None of a robot without a battery."""
+def recorded_level(recording: Recording, robot: Robot, own: Sequence[Span]) -> Level | None:
+    """The level as events and the report told it; None of a robot without a battery.
+
+    Between two times at which it was told it falls while the robot travels, and while it does work that uses energy:
+    `own` are the robot's spans. Where there is none of these it is straight.
+    """
     if robot.battery is None:
         return None
     told = [(0.0, robot.battery.at_start)]
@@ -50,7 +58,52 @@ def recorded_level(recording: Recording, robot: Robot) -> Level | None:
     last = next((row.get("charge") for row in rows if row.get("robot") == robot.id), None)
     if isinstance(last, int | float):
         told.append((recording.duration_s, float(last)))
-    return Level(tuple(told), robot.battery.reserve)
+    points = list(told[:1])
+    times_s, used = _used(recording, robot, own)
+    for start, end in pairwise(told):
+        points += [*_falling(start, end, times_s, used), end]
+    return Level(tuple(points), robot.battery.reserve)
+
+
+def _used(recording: Recording, robot: Robot, own: Sequence[Span]) -> tuple[Sequence[float], Sequence[float]]:
+    """What a robot had used at the ends of its spans, as nearly as these and its tasks tell: times and usages."""
+    by_time = recording.mission.rules.usage == "time"
+    tasks = {task.id: task for task in recording.tasks}
+    times_s, used = [0.0], [0.0]
+    for span in sorted(own, key=lambda span: span.from_s):
+        amount = _usage(span, robot, tasks.get(span.task), by_time=by_time)
+        if amount > 0 and span.from_s >= times_s[-1]:
+            times_s += (span.from_s, span.until_s)
+            used += (used[-1], used[-1] + amount)
+    return times_s, used
+
+
+def _usage(span: Span, robot: Robot, task: Task | None, *, by_time: bool) -> float:
+    lasts_s = span.until_s - span.from_s
+    if span.kind not in (TRAVEL, WORK):
+        return 0.0
+    if by_time:
+        return lasts_s
+    moves = span.kind == TRAVEL or (task is not None and task.action is not None and task.action.has_geometry)
+    if moves:
+        return lasts_s * robot.speed_mps
+    return task.actuation_cost if task is not None and lasts_s > 0 else 0.0
+
+
+def _falling(
+    start: tuple[float, float], end: tuple[float, float], times_s: Sequence[float], used: Sequence[float]
+) -> list[tuple[float, float]]:
+    """The points of a fall between two that were told; none where it is straight."""
+    first, last = np.interp([start[0], end[0]], times_s, used)
+    if end[1] >= start[1] or last <= first:
+        return []
+    fall = (end[1] - start[1]) / (last - first)
+    between = dict(zip(times_s, used, strict=True))
+    return [
+        (at_s, float(start[1] + fall * (by_then - first)))
+        for at_s, by_then in between.items()
+        if start[0] < at_s < end[0]
+    ]
 
 
 def draw_levels(ax: Any, levels: Sequence[Level | None]) -> list[tuple[Any, str]]:

@@ -67,7 +67,7 @@ def recorded_rows(recording: Recording) -> tuple[Row, ...]:
                 services=tuple(
                     Service(span.station, span.from_s, span.until_s) for span in own if span.kind == SERVICE
                 ),
-                level=recorded_level(recording, robot),
+                level=recorded_level(recording, robot, own),
             )
         )
     return tuple(rows)

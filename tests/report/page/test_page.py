@@ -129,6 +129,13 @@ def test_tasks_that_come_move_and_are_lost(recorded):
     assert [robot["gone"] for robot in data["robots"]][4:] == [[], [[20000, True]]]
 
 
+def test_what_was_cancelled_is_not_lost(pair):
+    events = (ExecutionEvent(9.0, "lost", {"task": "t", "reason": "cancelled at 4 s"}),)
+    data = page_data(recording(pair, np.zeros((1, 2, 3)), events=events))
+    assert data["events"] == [[9000, "not done: task t, cancelled at 4 s", False]]
+    assert data["figures"][1:] == [["tasks done", "0"], ["tasks lost", "0"], ["tasks cancelled", "1"]]
+
+
 def test_figures_are_those_of_the_report(recorded):
     data = page_data(recorded("31T-6R"))
     assert data["figures"][:3] == [["mission time", "61.3 s"], ["tasks done", "31"], ["tasks lost", "0"]]

@@ -3,6 +3,10 @@
 import numpy as np
 import pytest
 from tests.report.page.conftest import MORE
+from tests.report.page.test_page import recording
+
+from muster.mission.model import Mission, Robot, Task
+from muster.report.page import write_page
 
 pytest.importorskip("mcap")
 pytest.importorskip("shapely")
@@ -58,6 +62,34 @@ def test_it_loads_without_complaint_and_without_network(name, size, dark, browse
     assert browser.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert browser.evaluate("document.getElementById('heights').hidden") == (name not in ("yard", "depot"))
     assert browser.evaluate("document.querySelectorAll('#map image').length") == (name == "floor")
+
+
+@pytest.mark.parametrize("size", [WIDE, NARROW])
+def test_names_of_tasks_do_not_overprint_each_other(size, browser, page):
+    browser.open(page("31T-6R", more=MORE), *size)
+    for time in (0, 2, 20, 60):
+        seek(browser, time)
+        boxes = browser.evaluate(
+            """[...document.querySelectorAll('#map .task text')].filter(text => text.getBoundingClientRect().width)
+            .map(text => text.getBoundingClientRect()).map(box => [box.left, box.top + 2, box.right, box.bottom - 2])"""
+        )
+        assert len(boxes) > 15
+        clashes = [
+            (a, b)
+            for k, a in enumerate(boxes)
+            for b in boxes[:k]
+            if a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+        ]
+        assert clashes == []
+
+
+def test_tasks_at_one_place_lie_beside_each_other(browser, tmp_path):
+    tasks = [Task(id=name, position=place) for name, place in (("a", (1, 2)), ("b", (1, 2)), ("c", (3, 4)))]
+    mission = Mission(robots=[Robot(id="r", position=(0, 0))], tasks=tasks)
+    write_page(tmp_path / "r.html", recording(mission, np.zeros((2, 1, 3))))
+    browser.open(tmp_path / "r.html", *WIDE)
+    spots = browser.evaluate("[...document.querySelectorAll('#map .task')].map(mark => mark.getAttribute('transform'))")
+    assert len(set(spots)) == 3
 
 
 def test_no_element_reaches_out_of_a_narrow_window(browser, page):

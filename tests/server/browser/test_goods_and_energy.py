@@ -66,6 +66,27 @@ def test_the_order_of_a_route_names_stations_which_can_be_chosen_there_and_in_th
     expect(page.locator(".muster-map [aria-live]").first).to_contain_text("station dock")
 
 
+def test_a_run_tells_what_batteries_have_left_and_what_was_cancelled(yard):
+    page = yard.page
+    with Client(yard.origin) as client:
+        plan = client.plans.list()[0]
+        run = client.start(plan.id, speed=0.5)
+        run.act("event", cancel_task="c")
+        yard.open(f"/live/{run.id}")
+        expect(page.locator("table.robots th").nth(2)).to_have_text("battery")
+        expect(page.locator("table.robots .spent").first).to_contain_text("% left")
+        page.get_by_text("s goes to [dock] (90 % in its battery)").wait_for()
+        yard.shoot("live-batteries")
+        run.act("speed", speed=None)
+        page.get_by_text("The run is over (ended): 2 tasks done, 0 not, 1 cancelled.").wait_for()
+    page.get_by_text("task c is not done: cancelled at").wait_for()
+    page.get_by_text("report: 2 tasks done, 1 cancelled,").wait_for()
+    page.get_by_text("plan: 3 tasks, 2 robots").wait_for()
+    yard.shoot("live-cancelled")
+    yard.open(f"/plan/{plan.mission}")
+    page.wait_for_selector(".gantt rect.work", timeout=90_000)
+
+
 CELLS = {
     "load of a": ("2,5", "load: 2.5"),
     "delivers of c": ("", ""),

@@ -34,8 +34,10 @@ def test_the_scene_of_a_floor_has_its_robots_tasks_and_zone() -> None:
 def test_an_area_is_in_the_scene_once_however_many_tasks_cover_it() -> None:
     path = mission_path("field-survey")
     assert path is not None
-    (area,) = scene_of(plain(read_yaml(path)))["areas"]
+    scene = scene_of(plain(read_yaml(path)))
+    (area,) = scene["areas"]
     assert (len(area["corners"]), len(area["holes"])) == (7, 2)
+    assert [task["id"] for task in scene["tasks"] if "fixed" not in task] == ["hedge", "gate"]
 
 
 def test_tiles_are_drawn_only_where_the_earth_is_known() -> None:

@@ -6,6 +6,8 @@ from hypothesis import strategies as st
 
 from muster.server.runs.log_lines import _DOES, _HAPPENS, line_of
 
+AT_DOCK = {"robot": "r_0", "station": "dock"}
+
 
 @pytest.mark.parametrize(
     ("kind", "data", "line"),
@@ -15,6 +17,39 @@ from muster.server.runs.log_lines import _DOES, _HAPPENS, line_of
         ("new_task", {"task": {"id": "new-1", "position": [1, 2]}}, "task new-1 is added"),
         ("move_task", {"task": "7", "position": [1.0, 2.5]}, "task 7 is moved to 1.00, 2.50"),
         ("contact", {"robots": ["a", "b"]}, "contact: robots a b"),
+        ("lost", {"task": "7", "reason": "no robot takes part"}, "task 7 is lost: no robot takes part"),
+        ("lost", {"task": "7", "reason": "cancelled at 40.4 s"}, "task 7 is not done: cancelled at 40.4 s"),
+        ("goes_to_station", {**AT_DOCK, "charge": 0.5}, "r_0 goes to [dock] (50 % in its battery)"),
+        ("arrives_at_station", AT_DOCK, "r_0 is at [dock]"),
+        ("waits_for_slot", {**AT_DOCK, "served": ["r_1"]}, "r_0 waits for a slot at [dock]: r_1 is served there"),
+        (
+            "service_begins",
+            {**AT_DOCK, "services": ["charge"], "takes_s": 58.62, "charge": 0.478},
+            "r_0 is served at [dock]: charge, 58.6 s (48 % in its battery)",
+        ),
+        ("service_ends", {**AT_DOCK, "unloaded": {"kg": 3.0}}, "r_0 has been served at [dock]: unloaded kg 3.00"),
+        (
+            "plan",
+            {
+                "stations": ["dock"],
+                "plan": {
+                    "routes": [
+                        {"robot": "a", "tasks": ["dock", "1", "dock", "2"]},
+                        {"robot": "b", "tasks": ["bin", "3"], "stops": [{"station": "bin"}, {"task": "3"}]},
+                    ]
+                },
+            },
+            "plan: 3 tasks, 2 robots",
+        ),
+        (
+            "report",
+            {
+                "tasks_done": ["1", "2"],
+                "tasks_lost": [{"task": "7", "reason": "cancelled at 4 s"}, {"task": "8", "reason": "skill"}],
+                "mission_time_s": 9.0,
+            },
+            "report: 2 tasks done, 1 lost, 1 cancelled, 9.0 s",
+        ),
     ],
 )
 def test_what_happens(kind, data, line):
@@ -78,6 +113,7 @@ def test_words_name_only_what_there_is():
             waits_for="o",
             robots="q",
             door="d",
+            station="s",
             round="b",
             makes_room_for="o",
         )

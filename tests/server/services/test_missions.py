@@ -30,6 +30,8 @@ class Worker:
         self.asked.append((task, arguments))
         if task == "convert":
             return {"text": "name: converted", "needs": [], "notes": ["one", "two"]}
+        if task == "edit":
+            return {"text": f"name: {arguments['with'][0]}"}
         text = arguments["mission"]["text"]
         if "bad" in text:
             return {"errors": [FINDING], "impossible": [], "summary": None, "mission": None, "floor": None}
@@ -167,6 +169,8 @@ def test_uploads(missions, worker):
         assert dict(with_map.files) == {"map.png": b"1"}
         named = await missions.upload(ANN, "n.yaml", b"name: n\ntravel: {ground: t.csv}", {"t.csv": b"1"})
         assert dict(named.files) == {"t.csv": b"1"}
+        called = await missions.upload(ANN, "tasks.csv", b"id,x\n", name="South yard")
+        assert (called.mission, called.text) == ("South-yard", "name: South yard")
         await missions.upload(ANN, "team.yaml", b"name: m", {"panels.csv": b""})
         files = {"panels.csv": "", "team.yaml": "bmFtZTogbQ=="}
         assert worker.asked[-2] == ("convert", {"name": "team.yaml", "files": files, "site": ["panels.csv"]})

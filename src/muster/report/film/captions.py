@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.execution.record import ExecutionEvent
-from muster.mission.event_descriptions import event_line
+from muster.mission.event_descriptions import event_line, tells_cancelled
 from muster.motion.grid import Floats
 
 Picture = npt.NDArray[np.uint8]
@@ -29,7 +29,7 @@ _LONGEST = 64
 
 def caption(told: ExecutionEvent) -> str | None:
     """An event in a few words, such as `r_0 has done task 7`; None for events that are visible in the film."""
-    if told.kind in _NOT_TOLD:
+    if told.kind in _NOT_TOLD or tells_cancelled(told.kind, told.data):
         return None
     task, robot = (told.data.get(key) for key in ("task", "robot"))
     if told.kind == "replanned":

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.event_descriptions import event_line
+from muster.mission.event_descriptions import event_line, tells_cancelled, was_cancelled
 from muster.mission.model import Map, Station, Task, Zone
 from muster.mission.stations import station_sign
 from muster.motion.grid import Grid
-from muster.report.activity_spans import spans
+from muster.report.activity_spans import Span, spans
 from muster.report.area_marks import areas_of
 from muster.report.level_lines import recorded_level
 from muster.report.page.distances import nearest
-from muster.report.record import Recording, Tracks
+from muster.report.record import ExecutionEvent, Recording, Tracks
 from muster.report.record.mission_state import ALARMING, OPEN, OUT, MissionState
 from muster.report.recorded_gantt import recorded_rows
 from muster.report.styles import PALETTE
@@ -47,7 +47,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "duration": _thousandths(recording.duration_s),
         "spatial": recording.mission.dimensions == 3,
         "times": _differences(tracks.times_s),
-        "robots": [_robot(recording, tracks, k, gone) for k in range(len(order))],
+        "robots": [_robot(recording, tracks, k, gone, bars) for k in range(len(order))],
         "tasks": _tasks(recording),
         "stations": [_station(station) for station in recording.mission.stations],
         "plans": _plans(recording, order),
@@ -56,7 +56,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
             for bar in bars
             if bar.robot in order
         ],
-        "events": [[_thousandths(e.time_s), event_line(e.kind, e.data), e.kind in ALARMING] for e in recording.events],
+        "events": [_event(event) for event in recording.events],
         "nearest": _nearest(recording, tracks),
         "areas": _areas(recording.tasks),
         "map": _map(recording.mission.map, recording.image),
@@ -98,7 +98,9 @@ def _differences(values: Floats) -> list[int | None]:
     return found
 
 
-def _robot(recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any]) -> dict[str, Any]:
+def _robot(
+    recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any], bars: Sequence[Span]
+) -> dict[str, Any]:
     robot = recording.robots[k]
     data: dict[str, Any] = {
         "id": robot.id,
@@ -112,7 +114,7 @@ def _robot(recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any]
     }
     if recording.mission.dimensions == 3:
         data["z"] = _differences(tracks.positions[:, k, 2])
-    level = recorded_level(recording, robot)
+    level = recorded_level(recording, robot, [bar for bar in bars if bar.robot == robot.id])
     if level is not None:
         data["level"] = [[_thousandths(at_s), round(100_000 * share)] for at_s, share in level.points]
         data["reserve"] = level.reserve
@@ -139,6 +141,12 @@ def _unwrapped(headings: Floats) -> Floats:
     there, smooth = np.isfinite(headings), headings.copy()
     smooth[there] = np.unwrap(headings[there])
     return smooth
+
+
+def _event(event: ExecutionEvent) -> list[Any]:
+    """When it was, its line, and whether somebody should look at it."""
+    alarming = event.kind in ALARMING and not tells_cancelled(event.kind, event.data)
+    return [_thousandths(event.time_s), event_line(event.kind, event.data), alarming]
 
 
 def _tasks(recording: Recording) -> list[dict[str, Any]]:
@@ -247,11 +255,13 @@ def _figures(recording: Recording) -> list[list[str]]:
     """The report's figures in words; without a report, what follows from the events."""
     report = recording.report or {}
     done = report.get("tasks_done") or [event for event in recording.events if event.kind == "ends"]
-    lost = report.get("tasks_lost") or [event for event in recording.events if event.kind == "lost"]
+    told = report.get("tasks_lost") or [event.data for event in recording.events if event.kind == "lost"]
+    cancelled = sum(was_cancelled(one.get("reason")) for one in told)
     figures = [
         ["mission time", f"{recording.duration_s:.1f} s"],
         ["tasks done", str(len(done))],
-        ["tasks lost", str(len(lost))],
+        ["tasks lost", str(len(told) - cancelled)],
+        *([["tasks cancelled", str(cancelled)]] if cancelled else []),
     ]
     for key, name, unit in _REPORTED:
         if isinstance(report.get(key), int | float):

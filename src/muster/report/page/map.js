@@ -13,13 +13,19 @@ let routes = null;
 let shownPlan = -1;
 let robotMarks = [];
 let taskMarks = [];
+let taskPlaces = []; // at the time that is shown, metres; null: it is not there yet
+let taskSpots = []; // of their marks, pixels
+let stillNames = null; // of tasks and stations
+let stationMarks = [];
 
 function drawMap() {
   const [width, height] = fitted(mapPicture);
   project = projection(width, height);
   routes = svg("g");
   shownPlan = -1;
-  mapPicture.append(...floorParts(), routes, ...stations.map(stationMark));
+  stationMarks = stations.map(stationMark);
+  taskPlaces = [];
+  mapPicture.append(...floorParts(), routes, ...stationMarks);
   trails = robots.map(trail);
   taskMarks = tasks.map(taskMark);
   robotMarks = robots.map(robotMark);
@@ -136,8 +142,10 @@ function showRoutes(now) {
   }));
 }
 
+const TASK_RADIUS = 5.5;
+const STATION_RADIUS = 8;
 const TASK_SHAPES = [
-  ["circle", { r: 5.5 }],
+  ["circle", { r: TASK_RADIUS }],
   ["path", { class: "check", d: "M-2.8 .2 -.8 2.4 3 -2" }],
   ["path", { class: "cross", d: "M-3 -3 3 3M-3 3 3 -3" }],
 ];
@@ -161,8 +169,10 @@ function stationMark({ sign, place: [x, y], label }) {
   return mark;
 }
 
+const robotRadius = (robot) => Math.max(robot.radius * project.scale, 6 * ROBOT_SCALE);
+
 function robotMark(robot) {
-  const radius = Math.max(robot.radius * project.scale, 6 * ROBOT_SCALE);
+  const radius = robotRadius(robot);
   const body = robot.kind === "air"
     ? svg("rect", { x: -radius, y: -radius, width: 2 * radius, height: 2 * radius, rx: radius / 2.5, fill: robot.color })
     : svg("circle", { r: radius, fill: robot.color });
@@ -182,18 +192,45 @@ function showMap(now) {
     const gone = here + (next - here) * Math.min(Math.max((now - times[moment]) / gap, 0), 1);
     path.setAttribute("stroke-dasharray", `${gone || 0} 1e6`);
   });
+  placeTasks(now);
   tasks.forEach((task, k) => showTask(task, taskMarks[k], now));
   robots.forEach((robot, k) => showRobot(robot, robotMarks[k], now));
+  nameRobots(now);
+}
+
+// Where marks of tasks are, and the names of what stands still; anew when a task has come or has moved.
+function placeTasks(now) {
+  const places = tasks.map((task) => currentOf(task.places, now)?.slice(1, 3) ?? null);
+  if (taskPlaces.length === places.length && places.every((place, k) => String(place) === String(taskPlaces[k]))) return;
+  taskPlaces = places;
+  const radius = TASK_RADIUS * TASK_SCALE;
+  const aside = asideOf(places);
+  taskSpots = places.map((place, k) => place && [project.x(place[0]) + radius * aside[k][0], project.y(place[1]) + radius * aside[k][1]]);
+  taskMarks.forEach((mark, k) => {
+    mark.toggleAttribute("hidden", !places[k]);
+    mark.style.display = places[k] ? "" : "none";
+    if (places[k]) mark.setAttribute("transform", `translate(${taskSpots[k].join(" ")})`);
+  });
+  stillNames = new Names(mapPicture.viewBox.baseVal.width, mapPicture.viewBox.baseVal.height);
+  const stationSpots = stations.map(({ place: [x, y] }) => [project.x(x), project.y(y)]);
+  const seen = taskMarks.map((mark, k) => [mark, taskSpots[k], radius]).filter(([, spot]) => spot);
+  const marks = [...stationMarks.map((mark, k) => [mark, stationSpots[k], STATION_RADIUS]), ...seen];
+  for (const [, spot, size] of marks) stillNames.block(...spot, size);
+  for (const [mark, spot, size] of marks) putName(stillNames, mark, ...spot, size);
+}
+
+function nameRobots(now) {
+  if (robots.length > MOST_NAMED_ROBOTS) return;
+  const names = new Names(stillNames.width, stillNames.height, stillNames.taken);
+  const places = robots.map((robot) => [valueAt(robot.x, now), valueAt(robot.y, now)]);
+  const seen = robots.map((robot, k) => [robotMarks[k], places[k], robotRadius(robot)]).filter(([, [x]]) => x !== null);
+  for (const [, [x, y], radius] of seen) names.block(project.x(x), project.y(y), radius);
+  for (const [mark, [x, y], radius] of seen) putName(names, mark, project.x(x), project.y(y), radius, true);
 }
 
 function showTask(task, mark, now) {
-  const place = currentOf(task.places, now);
-  mark.toggleAttribute("hidden", !place);
-  mark.style.display = place ? "" : "none";
-  if (!place) return;
+  if (mark.hasAttribute("hidden")) return;
   const [, state, robot] = currentOf(task.states, now);
-  const [, x, y] = place;
-  mark.setAttribute("transform", `translate(${project.x(x)} ${project.y(y)})`);
   mark.setAttribute("class", `task ${state.replace(" ", "-")}`);
   mark.dataset.state = state;
   const by = robot ? ` by ${robot}` : "";

@@ -11,7 +11,7 @@ from muster.mission.errors import Finding, InputError
 from muster.report.page.data import page_data
 from muster.report.record import Recording
 
-_SCRIPTS = ("series.js", "map.js", "time_marks.js", "charts.js", "panels.js", "player.js")
+_SCRIPTS = ("series.js", "names.js", "map.js", "time_marks.js", "charts.js", "panels.js", "player.js")
 """In the order in which the page runs them."""
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from muster.mission.event_descriptions import event_line
+from muster.mission.event_descriptions import event_line, tells_cancelled, was_cancelled
+from muster.mission.stations import station_sign
 
 _HAPPENS = {
     "sets_out": "{robot} sets out for {task}",
@@ -39,6 +40,10 @@ _HAPPENS = {
     "within_missed": "task {task} is not begun in time",
     "work_broken_off": "work on task {task} is broken off",
     "lost": "task {task} is lost",
+    "station_fails": "station {station} fails",
+    "station_returns": "station {station} serves again",
+    "station_unreachable": "{robot} has no way to station {station}",
+    "robot_charged": "{robot} is charged",
     "improved": "a search has found better routes",
     "mission_ended": "the mission is over",
 }
@@ -64,8 +69,7 @@ _DOES = {
 
 def line_of(kind: str, data: Mapping[str, Any]) -> str:
     """What a log's entry says: `r_0 begins 7`, `ada takes r_1 out`."""
-    special = {"plan": _plan, "command": _command, "report": _report, "resumed": _resumed, "replanned": _replanned}
-    return special[kind](data) if kind in special else _happens(kind, data)
+    return _SPECIAL[kind](data) if kind in _SPECIAL else _happens(kind, data)
 
 
 def deed_of(verb: str, data: Mapping[str, Any]) -> str:
@@ -91,13 +95,13 @@ def _command(data: Mapping[str, Any]) -> str:
 def _happens(kind: str, data: Mapping[str, Any]) -> str:
     if kind not in _HAPPENS:
         return event_line(kind, data)
-    line = _filled(_HAPPENS[kind], data)
+    line = _filled("task {task} is not done" if tells_cancelled(kind, data) else _HAPPENS[kind], data)
     return f"{line}: {data['reason']}" if data.get("reason") else line
 
 
 def _replanned(data: Mapping[str, Any]) -> str:
     """`replanned, as r_1 is out: 3 from r_1 to r_0, 4 to r_2; given up: 5 (why); nobody can do: 6 (why)`."""
-    causes = ", ".join(_happens(cause["kind"], {**cause, "reason": ""}) for cause in data.get("causes", ()))
+    causes = ", ".join(line_of(cause["kind"], {**cause, "reason": ""}) for cause in data.get("causes", ()))
     moved = [f"{task} from {robots[0]} to {robots[1]}" for task, robots in data.get("moved", {}).items()]
     added = [f"{task} to {robot}" for task, robot in data.get("added", {}).items()]
     line = f"replanned, as {causes}: {', '.join([*moved, *added]) or 'no task changes robot'}"
@@ -126,16 +130,84 @@ def _short(value: Any) -> str:
     return f"{value:.2f}" if isinstance(value, float) else str(value)
 
 
+def _goes_to_station(data: Mapping[str, Any]) -> str:
+    return f"{data.get('robot')} goes to {_station(data)}{_charge(data)}"
+
+
+def _arrives_at_station(data: Mapping[str, Any]) -> str:
+    return f"{data.get('robot')} is at {_station(data)}{_charge(data)}"
+
+
+def _waits_for_slot(data: Mapping[str, Any]) -> str:
+    """`r_1 waits for a slot at [dock]: r_0 is served there`."""
+    served = [str(robot) for robot in data.get("served", ())]
+    line = f"{data.get('robot')} waits for a slot at {_station(data)}"
+    return f"{line}: {', '.join(served)} {'is' if len(served) == 1 else 'are'} served there" if served else line
+
+
+def _service_begins(data: Mapping[str, Any]) -> str:
+    """`r_0 is served at [dock]: charge, 58.5 s (48 % in its battery)`."""
+    services, takes_s = ", ".join(data.get("services", ())), data.get("takes_s", 0.0)
+    return f"{data.get('robot')} is served at {_station(data)}: {services}, {takes_s:.1f} s{_charge(data)}"
+
+
+def _service_ends(data: Mapping[str, Any]) -> str:
+    """`r_0 has been served at [dock]: unloaded kg 3 (100 % in its battery)`."""
+    line = f"{data.get('robot')} has been served at {_station(data)}"
+    gone = data.get("unloaded") or {}
+    told = ", ".join(f"{name} {_short(amount)}".strip() for name, amount in gone.items())
+    return f"{line}{f': unloaded {told}' if told else ''}{_charge(data)}"
+
+
+def _energy_low(data: Mapping[str, Any]) -> str:
+    return f"{data.get('robot')} has too little in its battery for what lies ahead{_charge(data)}"
+
+
+def _station(data: Mapping[str, Any]) -> str:
+    return station_sign(str(data.get("station")))
+
+
+def _charge(data: Mapping[str, Any]) -> str:
+    share = data.get("charge")
+    return f" ({100 * share:.0f} % in its battery)" if isinstance(share, int | float) else ""
+
+
 def _plan(data: Mapping[str, Any]) -> str:
+    """`plan: 31 tasks, 6 robots`: its stations are not counted."""
     routes = [route for route in data["plan"].get("routes", ()) if route.get("tasks")]
-    tasks = sum(len(route["tasks"]) for route in routes)
-    return f"plan: {tasks} tasks, {len(routes)} robots"
+    stops = (stop.get("station") for route in routes for stop in route.get("stops", ()))
+    stations = {*data.get("stations", ()), *stops}
+    tasks = sum(name not in stations for route in routes for name in route["tasks"])
+    return f"plan: {_counted(tasks, 'task')}, {_counted(len(routes), 'robot')}"
 
 
 def _report(data: Mapping[str, Any]) -> str:
-    gone = len(data["tasks_lost"])
-    return f"report: {len(data['tasks_done'])} tasks done, {gone} not, {data['mission_time_s']:.1f} s"
+    """`report: 7 tasks done, 1 cancelled, 120.0 s`."""
+    cancelled = sum(was_cancelled(one["reason"]) for one in data["tasks_lost"])
+    gone = {"lost": len(data["tasks_lost"]) - cancelled, "cancelled": cancelled}
+    told = "".join(f", {count} {words}" for words, count in gone.items() if count)
+    return f"report: {_counted(len(data['tasks_done']), 'task')} done{told}, {data['mission_time_s']:.1f} s"
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def _resumed(data: Mapping[str, Any]) -> str:
     return f"resumed after a stop: {data.get('how', '')}".rstrip(": ")
+
+
+_SPECIAL: Mapping[str, Callable[[Mapping[str, Any]], str]] = {
+    "plan": _plan,
+    "command": _command,
+    "report": _report,
+    "resumed": _resumed,
+    "replanned": _replanned,
+    "goes_to_station": _goes_to_station,
+    "arrives_at_station": _arrives_at_station,
+    "waits_for_slot": _waits_for_slot,
+    "service_begins": _service_begins,
+    "service_ends": _service_ends,
+    "energy_low": _energy_low,
+}
+"""What is more than words with names filled in, by the kind of its entry."""

@@ -110,7 +110,8 @@ class LogRecorder:
         """See `Recorder`; the entry also has the routes as lines from the robots' positions."""
         places = {name: tuple(row[:3]) for name, row in self.rows.items()}
         lines = self._routes.of(plan, self._mission_state, places)
-        self.write(now, "plan", {"plan": plan.as_dict(), "lines": lines})
+        stations = [station.id for station in self._mission_state.mission.stations]
+        self.write(now, "plan", {"plan": plan.as_dict(), "lines": lines, "stations": stations})
 
     def on_report(self, report: Mapping[str, Any]) -> None:
         """See `Recorder`."""

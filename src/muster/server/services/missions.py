@@ -200,13 +200,21 @@ class Missions:
             await asyncio.to_thread(self._table.restore, mission)
 
     async def upload(
-        self, who: User, filename: str, data: bytes, beside: Mapping[str, bytes] | None = None, **options: Any
+        self,
+        who: User,
+        filename: str,
+        data: bytes,
+        beside: Mapping[str, bytes] | None = None,
+        *,
+        name: str | None = None,
+        **options: Any,
     ) -> MissionVersion:
         """Create a mission from a file: YAML as it is; files of sites, of the field and of QGroundControl converted.
 
-        `beside` are further files that the file needs, or those of a site that are added to it. `options` are those of
-        the worker task `convert`: `robots` and `suitability` (names of files of `beside`), `salesmen`, `depot`. What
-        was read and chosen becomes the note of the version.
+        `beside` are further files that the file needs, or those of a site that are added to it. The mission is called
+        `name`, in its text too; without that as its text says. `options` are those of the worker task `convert`:
+        `robots` and `suitability` (names of files of `beside`), `salesmen`, `depot`. What was read and chosen becomes
+        the note of the version.
 
         Raises
         ------
@@ -228,7 +236,7 @@ class Missions:
             if site or path.suffix.lower() in _CONVERTED:
                 files = {**(beside or {}), filename: data}
                 text, kept, note = await self._converted(filename, files, options | ({"site": site} if site else {}))
-            return await self._create(who, text, kept, None, file=path.stem, note=note)
+            return await self._create(who, text, kept, name, file=path.stem, note=note)
 
     async def _converted(
         self, name: str, files: Mapping[str, bytes], options: Mapping[str, Any]
@@ -246,11 +254,14 @@ class Missions:
         files: Mapping[str, bytes],
         name: str | None,
         *,
-        file: str = "mission",
+        file: str = "",
         note: str = "",
     ) -> MissionVersion:
-        summary = await self._summary(text, files, name or file)
+        """Store a mission; the text of one that was a file gets the name that it is given."""
+        summary = await self._summary(text, files, file or name or "mission")
         called = name or str(summary["name"])
+        if name and file:
+            text = await self.edit(text, "rename", name)
         return await asyncio.to_thread(
             lambda: self._table.create(called, text, files, summary, who.name, note, reserved=shipped_entries())
         )

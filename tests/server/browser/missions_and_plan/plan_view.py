@@ -18,14 +18,15 @@ def plan_view(watched, mission):
 
 
 def task_place(page, task):
-    """Where a task is on the screen, as the map's own scripts know it, and in metres as its table says."""
+    """Where a task's mark is on the screen, as the map's own scripts know it, and its place in metres."""
     return page.evaluate(
         """task => {
           const map = document.querySelector('.muster-map');
           const { stage } = getElement(map);
           const { x, y } = stage.places.tasks.get(task);
+          const [right, down] = stage.spot({ id: task, x, y });
           const box = map.getBoundingClientRect();
-          return { px: box.left + stage.view.x(x), py: box.top + stage.view.y(y), x, y };
+          return { px: box.left + right, py: box.top + down, x, y };
         }""",
         task,
     )

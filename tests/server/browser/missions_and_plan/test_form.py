@@ -22,6 +22,11 @@ def test_a_cell_of_the_form_changes_the_text_and_keeps_comments(watched, page):
     page.keyboard.press("Tab")
     page.get_by_text("'fast'; expected a number").wait_for()
     expect(page.get_by_label("speed_mps of carrier")).to_have_value("0.75")
+    x = page.get_by_label("x of carrier", exact=True)
+    x.fill("-1130.207654")
+    page.keyboard.press("Tab")
+    page.wait_for_function("cell => cell.scrollWidth <= cell.clientWidth", arg=x.element_handle())
+    page.click("#undo")
     page.click("#undo")
 
 

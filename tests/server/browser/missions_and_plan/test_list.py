@@ -43,8 +43,11 @@ def test_what_was_read_of_the_files_of_a_site_is_said_before_they_are_opened(wat
         for name, data in (("panels.csv", PANELS), ("robots.csv", ROBOTS))
     ]
     page.set_input_files("input[type=file]", files[:1])
-    page.get_by_text("robots: missing; expected a sheet or file of robots").wait_for()
+    wrong = page.get_by_text("robots: missing; expected a sheet or file of robots")
+    wrong.wait_for()
+    page.get_by_label("Name", exact=True).fill("South roof")
     page.set_input_files("input[type=file]", files)
+    wrong.wait_for(state="detached")
     for words in (
         "panels.csv: 2 tasks",
         "robots.csv: 1 robot",
@@ -53,4 +56,4 @@ def test_what_was_read_of_the_files_of_a_site_is_said_before_they_are_opened(wat
     ):
         page.get_by_text(words).first.wait_for()
     page.get_by_role("button", name="Open it").click()
-    page.wait_for_url("**/plan/panels")
+    page.wait_for_url("**/plan/South-roof")

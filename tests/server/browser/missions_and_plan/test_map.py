@@ -3,7 +3,17 @@
 import re
 
 import pytest
-from tests.server.browser.missions_and_plan.plan_view import SLOW_MS, own_missions, plan_view, task_place, text_of
+from playwright.sync_api import expect
+from tests.server.browser.missions_and_plan.plan_view import (
+    SCENE,
+    SLOW_MS,
+    own_missions,
+    plan_view,
+    task_place,
+    text_of,
+)
+
+from muster.client import Client
 
 pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
@@ -67,3 +77,34 @@ def test_a_zone_is_drawn_by_its_corners_and_the_map_stays(watched, page, yard):
     page.click("#undo")
     page.click("#undo")
     page.get_by_text("version 1", exact=True).wait_for()
+
+
+LAWN = """\
+schema: muster/1
+name: lawn
+robots:
+  - {id: r_0, position: [0, 0], speed_mps: 1}
+tasks:
+  - {id: lawn, action: {name: coverage, area: [[0, 5], [20, 5], [20, 15], [0, 15]], width_m: 2, split: 2}}
+"""
+
+
+def test_each_part_of_an_area_is_chosen_by_a_click_and_none_moves(watched, page):
+    with Client(watched.origin) as client:
+        mission = client.missions.create(LAWN).id
+    plan_view(watched, mission)
+    parts = page.evaluate(f"{SCENE}.tasks.map(({{ id }}) => id)")
+    assert len(parts) == 2
+    for part in parts:
+        spot = task_place(page, part)
+        page.mouse.click(spot["px"], spot["py"])
+        expect(page.locator(".muster-map [aria-live]").first).to_contain_text(f"task {part};")
+        assert page.locator(".muster-map-host").evaluate("host => host.style.cursor") == "pointer"
+    page.locator(".muster-map-host").focus()
+    page.keyboard.press("Alt+ArrowRight")
+    page.mouse.move(spot["px"], spot["py"])
+    page.mouse.down()
+    page.mouse.move(spot["px"] + 60, spot["py"] + 30, steps=5)
+    page.mouse.up()
+    assert task_place(page, parts[-1])["x"] == spot["x"]
+    expect(page.get_by_text("version 1", exact=True)).to_be_visible()

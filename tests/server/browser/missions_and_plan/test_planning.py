@@ -2,12 +2,14 @@
 
 import json
 import re
+import zipfile
 
 import pytest
 from playwright.sync_api import expect
 from tests.server.browser.missions_and_plan.plan_view import SLOW_MS, plan_view
 
 from muster.client import Client
+from muster.mission.plan_reader import plan_of
 
 pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
@@ -53,6 +55,63 @@ def test_planning_shows_the_answer_says_why_and_exports(watched, page):
     assert "needs origin_wgs84" in greyed.inner_text()
     page.keyboard.press("Escape")
     watched.shoot("plan")
+
+
+FLAT = """\
+schema: muster/1
+name: flat
+origin_wgs84: {lat_deg: 47, lon_deg: 8}
+robots:
+  - {id: rover, position: [0, 0]}
+  - {id: kite, position: [3, 0], kind: air}
+  - {id: lark, position: [6, 0], kind: air}
+tasks:
+  - {id: a, position: [5, 8]}
+  - {id: b, position: [9, 8]}
+"""
+
+
+def test_drones_in_the_plane_get_heights_where_they_are_exported(watched, page):
+    with Client(watched.origin) as client:
+        mission = client.missions.create(FLAT).id
+        client.plans.upload(mission, plan_of({"rover": [], "kite": ["a"], "lark": ["b"]}))
+    watched.open(f"/plan/{mission}")
+    page.wait_for_selector("table.robots", timeout=SLOW_MS)
+    page.click("#export")
+    page.get_by_text("QGroundControl", exact=True).click()
+    page.get_by_label("Height above the start, m").fill("0")
+    export = page.get_by_role("dialog").get_by_role("button", name="Export")
+    export.click()
+    page.get_by_text("expected more than 0 m").wait_for()
+    page.get_by_label("Height above the start, m").fill("30")
+    page.get_by_label("Step between drones, m").fill("5")
+    watched.shoot("heights")
+    with page.expect_download() as kept:
+        export.click()
+    with zipfile.ZipFile(kept.value.path()) as files:
+        items = [json.loads(files.read(f"{drone}.plan"))["mission"]["items"] for drone in ("kite", "lark")]
+    assert [max(item.get("Altitude", 0) for item in own) for own in items] == [30, 35]
+
+
+def test_robots_keep_the_colours_of_the_plan_that_is_shown_while_others_come(watched, page):
+    with Client(watched.origin) as client:
+        made = client.missions.create(FLAT)
+        client.plans.upload(made.id, plan_of({"rover": [], "kite": ["a"], "lark": ["b"]}))
+        before = "  - {id: kite, position: [3, 0], kind: air}\n"
+        text = FLAT.replace(before, f"  - {{id: extra, position: [9, 0]}}\n{before}")
+        client.missions.save(made.id, text, base_version=1)
+    watched.open(f"/plan/{made.id}")
+    page.wait_for_selector("table.robots", timeout=SLOW_MS)
+    stage = "getElement(document.querySelector('.muster-map')).stage"
+    page.wait_for_function(f"{stage}.routes.length === 3")
+    colours = page.evaluate(f"Object.fromEntries({stage}.places.robotIndex)")
+    assert colours == {"rover": 0, "kite": 1, "lark": 2, "extra": 3}
+    swatches = page.locator("table.robots .swatch")
+    assert [swatches.nth(k).get_attribute("style") for k in range(3)] == [f"background: var(--c{k})" for k in range(3)]
+    assert "done by kite" in page.evaluate(
+        f"import('muster-map/words.js').then(({{ told }}) => told({stage}, {{ what: 'task', id: 'a' }}))"
+    )
+    watched.shoot("colours")
 
 
 def test_two_plans_are_compared_side_by_side(watched, page):

@@ -59,6 +59,7 @@ def _task(task: Mapping[str, Any]) -> dict[str, Any]:
         "prerequisites": [
             str(before["task"] if isinstance(before, Mapping) else before) for before in task.get("prerequisites") or ()
         ],
+        **({"fixed": True} if action.get("area") else {}),
         **({} if task.get("delivers") is None else {"delivers": str(task["delivers"])}),
     }
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import PurePath
 from typing import Any
 
@@ -16,6 +17,7 @@ from muster.server.pages.notices import end_warning, errors_shown, warn
 from muster.server.pages.visitor import the_services, the_user
 from muster.server.work import WorkError
 
+_UNNAMED = "my mission"
 EMPTY = """\
 schema: muster/1
 name: {name}
@@ -59,7 +61,8 @@ async def open_new_mission() -> None:
         shipped = [entry.id for entry in await the_services().missions.list() if entry.shipped]
         with ui.dialog() as dialog, ui.card().classes("making"):
             ui.label("New mission").classes("dialog-title")
-            name = ui.input("Name", value="my mission").props("outlined dense autofocus").classes("full")
+            name = ui.input("Name", placeholder=_UNNAMED).classes("full")
+            name.props("outlined dense autofocus stack-label hint='Left empty, a file gives its own name'")
             start = ui.select(
                 {name: words for name, (_, words) in _STARTS.items()} | {one: one for one in shipped},
                 value="",
@@ -67,15 +70,52 @@ async def open_new_mission() -> None:
                 with_input=True,
             )
             start.props("outlined dense").classes("full")
+            work = _Work()
+
+            async def make() -> None:
+                with work.seen(f"Making {start.value or 'the mission'} …"):
+                    await _make(name.value or "", start.value or "")
+
             with ui.element("div").classes("dialog-buttons"):
                 ui.button("Cancel", on_click=dialog.close).props("flat")
-                ui.button("Make it", on_click=once(lambda: _make(name.value, start.value or ""))).props("unelevated")
+                ui.button("Make it", on_click=once(make)).props("unelevated")
             ui.separator()
-            _uploading()
+            _uploading(lambda: (name.value or "").strip(), work)
+            work.place()
         dialog.open()
 
 
-def _uploading() -> None:
+class _Work:
+    """What is being done, with a sign that it goes on; at the end of the dialog."""
+
+    def __init__(self) -> None:
+        with ui.row().classes("small").props('role="status"') as self._row:
+            ui.spinner(size="1.2em")
+            self._words = ui.label()
+        self._row.visible = False
+
+    def place(self) -> None:
+        """Move it to the end of what is shown."""
+        self._row.move()
+
+    def begin(self, words: str) -> None:
+        """Show it, and end the error of what was tried before."""
+        end_warning()
+        self._words.text = words
+        self._row.visible = True
+
+    @contextmanager
+    def seen(self, words: str) -> Iterator[None]:
+        """Show it as long as the block lasts."""
+        self.begin(words)
+        try:
+            yield
+        finally:
+            if not self._row.is_deleted:
+                self._row.visible = False
+
+
+def _uploading(name_of: Callable[[], str], work: _Work) -> None:
     ui.label("Or from a file").classes("dialog-title")
     ui.label(
         "A mission (YAML, with the files that it names), the files of a site (CSV, XLSX, GeoJSON, KML, GPX, "
@@ -92,13 +132,15 @@ def _uploading() -> None:
     async def take(event: events.MultiUploadEventArguments) -> None:
         files = {file.name: await file.read() for file in event.files}
         upload.reset()  # else a file that is chosen once more, with others, is left out as already there
-        await _upload(files, int(salesmen.value or 3))
+        with work.seen(f"Reading {', '.join(files)} …"):
+            await _upload(files, int(salesmen.value or 3), name_of())
 
     upload = ui.upload(
         label="Choose or drop files",
         multiple=True,
         auto_upload=True,
         max_file_size=_MOST_BYTES,
+        on_begin_upload=lambda: work.begin("Fetching files …"),
         on_multi_upload=take,
     )
     upload.on("rejected", lambda event: warn(refused(event.args)), js_handler=_REJECTED)
@@ -118,7 +160,7 @@ def refused(files: Sequence[tuple[str, str, int]]) -> str:
 
 async def _make(name: str, start: str) -> None:
     missions = the_services().missions
-    title = name.strip() or "mission"
+    title = name.strip() or _UNNAMED
     if start not in _STARTS:
         old = await missions.get(start)
         made = await missions.create(the_user(), await named(old.text, title), dict(old.files), title)
@@ -135,12 +177,13 @@ async def named(text: str, name: str) -> str:
         return text
 
 
-async def _upload(files: dict[str, bytes], salesmen: int) -> None:
+async def _upload(files: dict[str, bytes], salesmen: int, title: str) -> None:
     with errors_shown():
         name, beside = sorted_out(list(files))
         options = options_of(name, beside, salesmen)
         rest = {other: data for other, data in files.items() if other != name}
-        made = await the_services().missions.upload(the_user(), name, files[name], rest, **options)
+        upload = the_services().missions.upload
+        made = await upload(the_user(), name, files[name], rest, name=title or None, **options)
         end_warning()
         if made.note:
             _tell(made)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 
 from nicegui import events, ui
 
-from muster.exchange.export_request import FORMATS
+from muster.exchange.export_request import ALTITUDE_MISSING, FORMATS
 from muster.mission.errors import ParameterError
 from muster.mission.plan import json_text
 from muster.server.pages.notices import errors_shown, say
+from muster.server.pages.plan.heights_form import open_heights
 from muster.server.pages.plan.shown_plan import ShownPlan
 from muster.server.pages.plan.start_run import open_start
 from muster.server.pages.visitor import may_command, on_the_wall, the_services, the_user
 from muster.server.services.archives import archive_of
+from muster.server.work import WorkError
 
 _FORMATS = {
     "": "Plan file (JSON)",
@@ -33,6 +36,11 @@ _NOT_ON_EARTH = "needs origin_wgs84 in the mission: where on Earth it is"
 _WITHOUT_START = "needs starts_at in the mission: when it begins"
 _PICTURES = {"routes": "Picture of the routes (SVG)", "gantt": "Picture of the schedule (SVG)"}
 _MOST_BYTES = 16 * 2**20
+
+
+async def _download(plan: int, form: str, options: Mapping[str, float]) -> None:
+    files = await the_services().plans.export(plan, form, options)
+    ui.download.content(*await archive_of(files, f"plan-{plan}-{form}"))
 
 
 class PlanActions:
@@ -82,12 +90,16 @@ class PlanActions:
 
     async def _export(self, plan: int, form: str) -> None:
         with errors_shown():
-            plans = the_services().plans
-            if form:
-                content, name = await archive_of(await plans.export(plan, form), f"plan-{plan}-{form}")
-            else:
-                content, name = json_text((await plans.get(plan)).plan).encode(), f"plan-{plan}.json"
-            ui.download.content(content, name)
+            if not form:
+                content = json_text((await the_services().plans.get(plan)).plan).encode()
+                ui.download.content(content, f"plan-{plan}.json")
+                return
+            try:
+                await _download(plan, form, {})
+            except WorkError as error:
+                if not str(error).startswith(ALTITUDE_MISSING):
+                    raise
+                open_heights(lambda heights: _download(plan, form, heights))
 
     async def _picture(self, plan: int, what: str) -> None:
         with errors_shown():

@@ -1,6 +1,9 @@
 // A table whose cells are fields; long ones are shown page by page.
 
 const PAGE = 100; // rows
+const DIGIT = 0.62; // rem
+const AROUND = 1.4; // rem, beside the digits of a cell
+const WIDEST = 14; // rem
 
 export default {
   template: `
@@ -10,7 +13,7 @@ export default {
         <table class="plain">
           <thead><tr>
             <th v-for="column in columns" :key="column.key" scope="col" :title="column.hint"
-              :class="[column.kind, { long: column.key.length > 3 }]"><template
+              :class="[column.kind, { long: column.key.length > 3 }]" :style="{ width: widths[column.key] }"><template
               v-for="(part, k) in column.key.split('_')" :key="k"><template v-if="k">_<wbr></template>{{ part }}</template></th>
             <th v-if="grows && editable" class="drop"><span class="sr-only">Remove</span></th>
           </tr></thead>
@@ -56,6 +59,16 @@ export default {
         met.set(name, (met.get(name) ?? 0) + 1);
         return { row, name, at: this.first + k, key: `${name} ${met.get(name)}` };
       });
+    },
+    // Of columns whose numbers are longer than a column usually has room for.
+    widths() {
+      const found = {};
+      for (const { key } of this.columns.filter(({ kind }) => kind === "number")) {
+        const longest = Math.max(0, ...this.page.map(({ row }) => row[key]?.length ?? 0));
+        const width = Math.min(longest * DIGIT + AROUND, WIDEST);
+        if (width > (key.length > 3 ? 5.8 : 5)) found[key] = `${width.toFixed(1)}rem`;
+      }
+      return found;
     },
   },
   watch: {

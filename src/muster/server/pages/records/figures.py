@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from muster.mission.event_descriptions import was_cancelled
+
 UNKNOWN = "not told"
 ROBOT_HEADS = ("robot", "planned", "flown", "more or less")
 TASK_HEADS = ("task", "robot", "planned", "flown", "more or less", "waited, s", "began, s", "ended, s")
@@ -38,22 +40,17 @@ def task_rows(report: Mapping[str, Any]) -> list[Sequence[str]]:
 
 def lost_rows(report: Mapping[str, Any]) -> list[Sequence[str]]:
     """Each task that was lost though it was wanted, and why."""
-    return [(one["task"], one["reason"]) for one in report["tasks_lost"] if not _is_cancelled(one)]
+    return [(one["task"], one["reason"]) for one in report["tasks_lost"] if not was_cancelled(one["reason"])]
 
 
 def cancelled_rows(report: Mapping[str, Any]) -> list[Sequence[str]]:
     """Each task that was cancelled, and when: `cancelled at 3 s`."""
-    return [(one["task"], one["reason"]) for one in report["tasks_lost"] if _is_cancelled(one)]
+    return [(one["task"], one["reason"]) for one in report["tasks_lost"] if was_cancelled(one["reason"])]
 
 
 def seconds(value: float) -> str:
     """`251.7 s`."""
     return f"{value:.1f} s"
-
-
-def _is_cancelled(one: Mapping[str, Any]) -> bool:
-    """A report has such tasks with those that are lost, and the reason that the ledger of tasks gives them."""
-    return str(one["reason"]).startswith("cancelled at ")
 
 
 def _compared(one: Mapping[str, Any]) -> tuple[str, str, str]:

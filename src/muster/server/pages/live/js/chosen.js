@@ -45,12 +45,12 @@ export class Chosen {
     ];
   }
 
-  forTask({ id, state, place }) {
+  forTask({ id, state, place, action }) {
     if (FINAL.includes(state)) return [];
     const delay = button("Delay …", () => this.onDelay(id), { title: "Its work takes longer" });
     const move = button("Move …", () => this.onMove(id, place), { title: "Then click its new place on the map" });
     const stop = button("Cancel …", () => this.onCancel(id), { class: "alarm", title: "It is left, even if it is being done; what waits for it is lost" });
-    return state === "open" ? [move, delay, stop] : [delay, stop];
+    return state === "open" && !action?.area ? [move, delay, stop] : [delay, stop];
   }
 }
 

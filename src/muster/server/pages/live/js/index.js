@@ -101,7 +101,8 @@ export class LiveView {
     const { id, state } = this.team.run;
     const { done, cancelled, ...others } = this.team.counts(); // what is open by now will not be done
     const not = Object.values(others).reduce((sum, count) => sum + count);
-    const words = `The run is over (${state}): ${done} tasks done, ${not} not. `;
+    const left = cancelled ? `, ${cancelled} cancelled` : "";
+    const words = `The run is over (${state}): ${done} tasks done, ${not} not${left}. `;
     this.over.replaceChildren(words, html("a", { href: `/records/${id}` }, "Look at its record"));
     this.over.hidden = false;
     this.setAdding(false);
@@ -143,7 +144,8 @@ export class LiveView {
   }
 
   movable(what, id) {
-    return this.may && !this.lost && what === "task" && !this.team.over && this.team.tasks.get(id)?.state === "open";
+    const task = what === "task" ? this.team.tasks.get(id) : null;
+    return this.may && !this.lost && !this.team.over && task?.state === "open" && !task.action?.area;
   }
 
   moveTask(task, [x, y]) {

@@ -3,10 +3,12 @@
 import { color, html, setText } from "./elements.js";
 import { doing, spent } from "./words.js";
 
+const USED = "Of its capacity, by way and work so far (metres, or seconds where the mission counts time)";
+const LEFT = "What its battery has left";
 const HEADS = [
   ["robot", "A circle drives, a diamond flies"],
   ["does", "What it does now; point at it for what lies ahead"],
-  ["used", "Of its capacity, by way and work so far (metres, or seconds where the mission counts time); or what its battery has left"],
+  ["used", USED],
 ];
 
 export class RobotTable {
@@ -15,6 +17,7 @@ export class RobotTable {
     this.rows = new Map();
     this.body = html("tbody");
     const heads = HEADS.map(([words, title]) => html("th", { scope: "col", title }, words));
+    this.spent = heads.at(-1);
     this.element = html("table", { class: "robots" }, html("thead", {}, html("tr", {}, ...heads)), this.body);
   }
 
@@ -23,6 +26,14 @@ export class RobotTable {
       if (!this.rows.has(robot.id)) this.addRow(robot);
       this.showRow(robot, team, selected?.robot === robot.id);
     }
+    this.showHead([...team.robots.values()].map((robot) => spent(robot, team.unit)?.kind));
+  }
+
+  // A robot with a battery shows what that has left, others what they have used; a team may have both.
+  showHead(kinds) {
+    const [left, used] = [kinds.includes("battery"), kinds.includes("used") || !kinds.includes("battery")];
+    setText(this.spent, left && used ? "battery, or used" : left ? "battery" : "used");
+    this.spent.title = [left && LEFT, used && USED].filter(Boolean).join("; of others: ");
   }
 
   addRow(robot) {

@@ -27,7 +27,7 @@ export function doing(robot, takenOut) {
 // How much of a robot's battery is left, or of its capacity used: {share 0 to 1, words, kind}; null: neither is known.
 export function spent(robot, unit) {
   if (robot.charge !== null && robot.charge !== undefined) {
-    return { share: robot.charge, words: `${Math.round(100 * robot.charge)} %`, kind: "battery" };
+    return { share: robot.charge, words: `${Math.round(100 * robot.charge)} % left`, kind: "battery" };
   }
   if (robot.used === undefined) return null;
   const used = robot.used.toFixed(1);

@@ -91,7 +91,7 @@ export function listenToKeys(element, stage, emit, modeOf, { letters = true } = 
 
   // By the step of a tenth of the grid that is drawn, and not less than a centimetre.
   function nudge([dx, dy], times) {
-    if (!stage.chosen || !stage.editable || stage.chosen.what === "zone") return;
+    if (!stage.chosen || !stage.editable || stage.chosen.what === "zone" || !stage.movable(stage.chosen)) return;
     const step = Math.max(niceStep(120 / stage.view.scale, 1) / 10, 0.01) * times;
     const { x, y } = stage.find(stage.chosen);
     const place = rounded(stage, x + dx * step, y + dy * step);

@@ -55,7 +55,7 @@ function drawStem(context, view, [px, py], { x, y }, theme) {
 function drawTask(context, x, y, radius, task, stage) {
   const { theme, places, chosen, impossible } = stage;
   const state = stage.live.tasks.get(task.id) ?? "open";
-  const robot = stage.assigned.get(task.id);
+  const robot = places.robotIndex.get(stage.assigned.get(task.id));
   const color = robot === undefined ? null : robotColor(theme, robot);
   context.globalAlpha = state === "cancelled" ? 0.5 : 1;
   traceShape(context, x, y, radius, SHAPES[task.shape]);
@@ -99,7 +99,7 @@ function ring(context, x, y, radius, theme) {
 export function drawRobots(context, view, stage, positionOf) {
   const { scene, theme, places, chosen, hovered } = stage;
   const labels = new Labels(view.width, view.height);
-  const placed = scene.robots.map((robot, index) => ({ robot, index, ...positionOf(robot) }));
+  const placed = scene.robots.map((robot) => ({ robot, index: places.robotIndex.get(robot.id), ...positionOf(robot) }));
   const radiusOf = (robot) => Math.max(robot.radius * view.scale, robotRadius(scene, theme));
   for (const { robot, x, y } of placed) labels.block(view.x(x), view.y(y), radiusOf(robot));
   for (const one of placed) drawRobot(context, view, one, radiusOf(one.robot), stage);

@@ -44,19 +44,29 @@ export class Stage {
     this.places = {
       tasks: new Map(this.scene.tasks.map((task) => [task.id, task])),
       stations: new Map(this.scene.stations.map((station) => [station.id, station])),
-      robotIndex: new Map(this.scene.robots.map((robot, k) => [robot.id, k])),
+      robots: new Map(this.scene.robots.map((robot) => [robot.id, robot])),
+      robotIndex: this.robotIndex(),
       aside: asideOf(this.scene.tasks),
       beneath: hiddenBeneath(this.scene.tasks),
       is: (one, what, id) => one !== null && one.what === what && one.id === id,
     };
   }
 
+  // The number of each robot, by which it has its colour: as in the plan that is shown, whose table and chart have the
+  // same; robots that came into the mission afterwards follow.
+  robotIndex() {
+    const own = this.scene.robots.map(({ id }) => id);
+    const order = new Map([...new Set([...this.routes.map(({ robot }) => robot), ...own])].map((id, k) => [id, k]));
+    return new Map(own.map((id) => [id, order.get(id)]));
+  }
+
   // A plan: {routes: [{robot, tasks, points}], left_out: [task ids]}, or null.
   showPlan(plan) {
     this.routes = plan?.routes ?? [];
+    this.places.robotIndex = this.robotIndex();
     this.leftOut = new Set(plan?.left_out ?? []);
     this.assigned = new Map(this.routes.flatMap(({ robot, tasks }) =>
-      (tasks ?? []).map((task) => [task, this.places.robotIndex.get(robot)])));
+      (tasks ?? []).map((task) => [task, robot])));
     this.draw();
   }
 
@@ -160,7 +170,7 @@ export class Stage {
   find({ what, id, corner }) {
     if (what === "task") return this.places.tasks.get(id) ?? null;
     if (what === "station") return this.places.stations.get(id) ?? null;
-    if (what === "robot") return this.scene.robots[this.places.robotIndex.get(id)] ?? null;
+    if (what === "robot") return this.places.robots.get(id) ?? null;
     const point = this.scene.zones[id]?.corners[corner ?? 0];
     return point ? { x: point[0], y: point[1] } : null;
   }
@@ -200,8 +210,8 @@ export class Stage {
     return this.scene.zones.flatMap(({ corners }, id) => corners.map(([x, y], corner) => ({ what: "zone", id, corner, x, y })));
   }
 
-  // Whether it may be dragged; a view of a run says so of its open tasks alone.
-  movable() { return this.editable; }
+  // Whether it may be dragged: not the task of an area. A view of a run says so of its open tasks alone.
+  movable({ what, id }) { return this.editable && !(what === "task" && this.places.tasks.get(id)?.fixed); }
 
   // What is wrong with a task of `impossible`, in words.
   whyNot() { return "can never be done"; }

@@ -35,7 +35,7 @@ function toldStation(stage, station) {
 
 function toldTask(stage, task) {
   const parts = [`task ${task.id}`, task.type ? `type ${task.type}` : "", place(task)];
-  const robot = stage.scene.robots[stage.assigned.get(task.id)];
+  const robot = stage.places.robots.get(stage.assigned.get(task.id));
   if (robot) parts.push(`done by ${robot.id}`);
   if (stage.leftOut.has(task.id)) parts.push("left out of the plan");
   if (stage.impossible.has(task.id)) parts.push(stage.whyNot(task));
@@ -57,7 +57,7 @@ export function fillTable(table, stage) {
     }
     return line;
   };
-  const nameOf = (index) => stage.scene.robots[index]?.id ?? "";
+  const nameOf = (robot) => stage.places.robots.get(robot)?.id ?? "";
   const robots = stage.scene.robots.map((r) => row(["robot", r.id, r.type, metres(r.x), metres(r.y), height(r), "", ""], "td"));
   const tasks = stage.scene.tasks.map((t) => row(
     ["task", t.id, t.type, metres(t.x), metres(t.y), height(t), t.prerequisites.join(" "), nameOf(stage.assigned.get(t.id))], "td"));
