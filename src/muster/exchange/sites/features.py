@@ -93,7 +93,7 @@ def _told(value: object) -> str:
 def with_name(where: str, values: Mapping[str, object]) -> str:
     """Where a feature is in its file, with its name, if it has one."""
     name = next((v for k, v in values.items() if k.casefold() in ("name", "title") and isinstance(v, str)), "")
-    name = shorten(name, _LONGEST_NAME, placeholder=" ...")
+    name = shorten("".join(filter(str.isprintable, name)), _LONGEST_NAME, placeholder=" ...")
     return f"{where} ({name})".strip() if name else where
 
 
