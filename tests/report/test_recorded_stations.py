@@ -6,6 +6,7 @@ from tests import carry_charge
 from tests.report.page.test_page import recording
 from tests.report.test_gantt import bars
 
+from muster.mission.model import Action, Task
 from muster.report.activity_spans import spans
 from muster.report.level_lines import recorded_level
 from muster.report.page.data import page_data
@@ -110,6 +111,18 @@ def test_the_line_of_a_plan_passes_the_stations_that_are_ahead(charged):
     assert RouteLines(mission).of(plan, state, places)["r"] == [(1, 0), (6, 0), (8, 0), (6, 0)]
     state.take("ends", {"robot": "r", "task": "a"})
     assert RouteLines(mission).of(plan, state, places)["r"] == [(1, 0), (6, 0)]
+
+
+def test_the_line_of_a_plan_follows_the_lanes_of_an_area_from_where_the_robot_is():
+    area = Action(name="coverage", area=((0.0, 0.0), (20.0, 0.0), (20.0, 8.0), (0.0, 8.0)), width_m=2.0)
+    mission = carry_charge.mission([carry_charge.robot(x=-5.0)], [Task(id="lawn", position=(10, 4), action=area)])
+    plan, state = carry_charge.plan(r="lawn"), MissionState(mission)
+    start, *lanes = RouteLines(mission).of(plan, state, {})["r"]
+    assert (start, len(lanes)) == ((-5, 0), 8)
+    assert {y for _, y in lanes} == {1, 3, 5, 7}
+    state.take("starts", {"robot": "r", "task": "lawn"})
+    y = lanes[3][1]
+    assert RouteLines(mission).of(plan, state, {"r": (10.0, y)})["r"] == [(10, y), *lanes[3:]]
 
 
 def test_viewers_are_told_of_stations(charged):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 
-from muster.mission.model import Mission, Point
+from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.plan import Plan
-from muster.report.record.mission_state import CANCELLED, DONE, LOST, MissionState
-from muster.report.route_lines import PathFunction, path_function
+from muster.report.record.mission_state import CANCELLED, DONE, LOST, UNDER_WAY, MissionState
+from muster.report.route_lines import PathFunction, has_area, path_function, work_points
 
 _OVER = (DONE, LOST, CANCELLED)
 _MOST_LEGS = 10_000  # that are kept: a standing fleet has new ones for ever
@@ -40,10 +42,10 @@ class RouteLines:
     ) -> list[Point]:
         robot = mission_state.robots[name]
         line = [self._flat(places.get(name, robot.position))]
-        left = list(_left(tasks, mission_state))
-        for entry, place, leave in left:
-            line += self._leg(name, mission_state, line[-1], self._flat(entry))
-            line += [self._flat(one) for one in (place, leave) if one != line[-1]]
+        left = [[self._flat(one) for one in stop] for stop in _left(tasks, mission_state, robot, line[0])]
+        for first, *others in left:
+            line += self._leg(name, mission_state, line[-1], first)
+            line += [one for k, one in enumerate(others) if one != (first, *others)[k]]
         end = robot.place_at_end(mission_state.mission.rules)
         if end is not None and left:
             line += self._leg(name, mission_state, line[-1], self._flat(end))
@@ -62,17 +64,39 @@ class RouteLines:
         return tuple(float(value) for value in (*place, 0.0)[: self._dimensions])
 
 
-def _left(names: Sequence[str], mission_state: MissionState) -> Iterator[tuple[Point, Point, Point]]:
-    """Entry, position and exit of each stop that is still ahead: stations after the last task that is over, too."""
+def _left(names: Sequence[str], mission_state: MissionState, robot: Robot, here: Point) -> Iterator[Sequence[Point]]:
+    """The points of each stop that is still ahead of a robot: stations after the last task that is over, too."""
     stations = {station.id: station.position for station in mission_state.mission.stations}
     over = [k for k, name in enumerate(names) if name not in stations and _is_over(name, mission_state)]
     for k, name in enumerate(names):
         if name in stations:
             if k > max(over, default=-1):
-                yield (stations[name],) * 3
+                yield (stations[name],)
         elif k not in over:
             task = mission_state.tasks[name]
-            yield task.entry or task.position, task.position, task.exit or task.position
+            yield _lanes_left(mission_state, task, robot, here) if has_area(task) else _passed(task)
+
+
+def _passed(task: Task) -> Sequence[Point]:
+    return task.entry or task.position, task.position, task.exit or task.position
+
+
+def _lanes_left(mission_state: MissionState, task: Task, robot: Robot, here: Point) -> Sequence[Point]:
+    """The lanes over an area; of an area on which the robot works those that follow the nearest place."""
+    points = work_points(task, robot)
+    if mission_state.states[task.id] != UNDER_WAY or len(points) < 2:
+        return points
+    gaps = [_gap(here, *(point[: len(here)] for point in lane)) for lane in pairwise(points)]
+    return points[1 + gaps.index(min(gaps)) :]
+
+
+def _gap(place: Point, start: Point, end: Point) -> float:
+    """How far a place is from a straight line between two others."""
+    along = [b - a for a, b in zip(start, end, strict=True)]
+    square = sum(value * value for value in along)
+    ahead = sum((p - a) * value for p, a, value in zip(place, start, along, strict=True))
+    share = min(max(ahead / square, 0.0), 1.0) if square else 0.0
+    return math.dist(place, [a + share * value for a, value in zip(start, along, strict=True)])
 
 
 def _is_over(task: str, mission_state: MissionState) -> bool:
