@@ -1,6 +1,7 @@
 """Every allocator plans goods and energy that the judge accepts, or refuses them by name."""
 
 import re
+from dataclasses import replace
 
 import pytest
 from tests.carried_missions.missions import carried_mission
@@ -10,7 +11,7 @@ from muster.allocation.capabilities import those_that_can
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
-from muster.mission.model import Battery, Station
+from muster.mission.model import Battery, Lag, Station
 from muster.verification import verify
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)
@@ -52,3 +53,15 @@ def test_plans_of_missions_with_goods_and_energy_are_admissible(allocator, seed)
     verdict = verify(mission, plan)
     assert [violation.detail for violation in verdict.violations] == []
     assert plan.objective_value == pytest.approx(verdict.value())
+
+
+@pytest.mark.parametrize("allocator", those_that_can(["load", "lag"]))
+@pytest.mark.parametrize("of", ["c", "e"])
+def test_lags_hold_beside_goods(allocator, of):
+    lagged = {"prerequisites": (of,), "lags": {of: Lag(after_s=20, within_s=60)}}
+    tasks = (CARRIED[0], replace(CARRIED[1], **lagged), muster.Task(id="e", position=(3.0, 0.0)))
+    robots = (muster.Robot(id="r_0", position=(0.0, 0.0)), muster.Robot(id="r_1", position=(1.0, 0.0)))
+    mission = muster.Mission(rules=RULES, robots=robots, tasks=tasks)
+    plan = muster.solve(mission, allocator, iterations=50, seed=1)
+    assert verify(mission, plan).valid
+    assert plan.tasks_completed == 3

@@ -20,6 +20,12 @@ from muster.allocation.rules.rule import (
 )
 
 
+def _awaited_lags(problem: Question, j: int) -> list[tuple[float, float]]:
+    """For each task that must be done before task j, goods that it delivers included, the least and most lag after it."""
+    known = {k: (after, within) for k, after, within in problem.timed_rules.lags(j)}
+    return [known.get(k, (0.0, np.inf)) for k in problem.awaited[j]]
+
+
 class Prerequisite(Rule):
     """All prerequisites of a task are in the plan, and can be done before it."""
 
@@ -32,8 +38,8 @@ class Prerequisite(Rule):
         return {"lag": first_task(problem, "prerequisites with after_s or within_s", lambda j: lagged[j])}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        lags = [lag for j in range(len(problem.tasks)) for lag in problem.timed_rules.lags(j)]
-        after, within = np.array([lag[1] for lag in lags]), np.array([lag[2] for lag in lags])
+        lags = [lag for j in range(len(problem.tasks)) for lag in _awaited_lags(problem, j)]
+        after, within = np.array(lags).reshape(-1, 2).T
         return {"after": after if after.any() else np.empty(0), "within": limits_array(within)}
 
     def possible(self, limits: Limits) -> Bools | None:
