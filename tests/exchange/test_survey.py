@@ -43,7 +43,7 @@ tasks:
 POSTS = """\
   - {id: the post, position: [10, 70, 9], duration_s: 60, priority: 2, prerequisites: [field, lawn],
      requires: [arm, big eye]}
-  - {id: last, position: [10, 75, 9], prerequisites: [the post]}
+  - {id: last, position: [10, 75, 9], prerequisites: [the post], load: {parcels: 2}}
 """
 
 
@@ -140,7 +140,7 @@ def test_areas_and_holes_are_polygons_of_maps_and_areas_to_survey_when_read_agai
         again = {task.id: task for task in found.mission.tasks}
         for task in mission.tasks:
             theirs = again[task.id]
-            asked = ("prerequisites", "requires", "duration_s", "priority", "only_robots")
+            asked = ("load", "prerequisites", "requires", "duration_s", "priority", "only_robots")
             assert [getattr(theirs, key) for key in asked] == [getattr(task, key) for key in asked]
             if task.action is not None:
                 assert_same_action(task.action, theirs.action)

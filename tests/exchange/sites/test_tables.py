@@ -8,7 +8,7 @@ from tests.exchange.sites import writers
 
 from muster import MissingExtraError, MissionError, ParameterError, load, read_site
 from muster.exchange.formula_cells import cell
-from muster.exchange.sites.cells import CellError, duration, lat_lon, moment, number, pairs, words
+from muster.exchange.sites.cells import CellError, amount, duration, lat_lon, moment, number, pairs, words
 
 
 @pytest.fixture
@@ -43,6 +43,26 @@ def test_numbers_as_people_write_them(text, value):
 def test_what_is_no_number(text):
     with pytest.raises(CellError, match="a number"):
         number(text)
+
+
+@pytest.mark.parametrize(
+    ("told", "read"),
+    [
+        ("12,5", 12.5),
+        ("500 g", 0.5),
+        ("-2", -2),
+        ("2 parcels", {"parcels": 2}),
+        ("2 parcels, 1.5 water_l", {"parcels": 2, "water_l": 1.5}),
+    ],
+)
+def test_amounts(told, read):
+    assert amount(told) == read
+
+
+@pytest.mark.parametrize("told", ["much", "2 parcels, some", "2 3", "1 a, 2 a", True])
+def test_what_is_no_amount(told):
+    with pytest.raises(CellError, match="a number, 12 kg, or amounts by commodity"):
+        amount(told)
 
 
 @pytest.mark.parametrize(
@@ -345,6 +365,13 @@ def test_columns_that_mean_nothing_may_have_one_name(tmp_path, robots):
     assert f"{tmp_path}/panels.csv: not read: color, color (2)" in found.notes
     with pytest.raises(MissionError, match=r"panels.csv:1: x: a heading for the second time"):
         read(tmp_path, robots, "name,x,y,x\na,1,2,3\n")
+
+
+def test_stops_of_a_plan_are_its_tasks_each_once(tmp_path, robots):
+    text = "robot,order,task,x,y,arrives_s,starts_s,ends_s,station,load\n"
+    text += "r,1,a,1,2,5,5,9,,2 parcels\nr,2,,3,4,10,10,11,dock,0\nq,1,a,1,2,5,5,9,,0\n,,b,5,6,,,,,\n"
+    tasks = read(tmp_path, robots, text, origin=(47, 8)).mission.tasks
+    assert [(task.id, task.load) for task in tasks] == [("a", None), ("b", None)]
 
 
 @pytest.mark.parametrize("name", ["=SUM(A1)", "-x", "@a", "'tis"])

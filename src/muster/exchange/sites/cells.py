@@ -21,6 +21,7 @@ _SPACES = str.maketrans(dict.fromkeys("\u00a0\u2009\u202f", " ") | {"\u2212": "-
 _NUMBER = re.compile(r"[-+]?(\d+([.,]\d*)?|[.,]\d+)([eE][-+]?\d+)?")
 _GROUPED = re.compile(r"[-+]?\d{1,3}(?P<group>[., '])\d{3}((?P=group)\d{3})*(?!(?P=group))([.,]\d+)?")
 _UNIT = re.compile(r"(?P<number>[-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*(?P<unit>[^\d\s.,]+)")
+_AMOUNT = re.compile(r"(?P<number>[-+]?[\d.,]+)\s+(?P<name>[^\W\d]\S*)")
 _SPAN = re.compile(r"(\d+):([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?")
 _ISO_SPAN = re.compile(r"P(?:(\d+)D)?(?:T(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d+)?)S)?)?", re.IGNORECASE)
 _DEGREES = re.compile(
@@ -79,6 +80,20 @@ def number(value: object, dimension: Dimension = "", factor: float = 1.0) -> flo
     if plain is None:
         raise CellError(expected)
     return _finite(float(plain) * factor, expected)
+
+
+def amount(value: object, factor: float = 1.0) -> float | dict[str, float]:
+    """A number, a mass in kg; or amounts by commodity, `2 parcels, 1.5 water_l`."""
+    try:
+        return number(value, "mass", factor)
+    except CellError:
+        parts = re.split(r"\s*;\s*|\s*,\s+", value.strip()) if isinstance(value, str) else []
+        named = [_AMOUNT.fullmatch(part) for part in parts]
+        found = {one["name"]: number(one["number"]) for one in named if one is not None}
+        if not found or len(found) < len(parts):
+            expected = "a number, 12 kg, or amounts by commodity: 2 parcels, 1.5 water_l"
+            raise CellError(expected) from None
+        return found
 
 
 def _plain(told: str) -> str | None:

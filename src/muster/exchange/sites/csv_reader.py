@@ -6,15 +6,18 @@ import codecs
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 from muster.exchange.formula_cells import text_in
-from muster.exchange.sites.features import Layer, refused
+from muster.exchange.sites.features import Feature, Layer, refused
 from muster.exchange.sites.file_sizes import read_bytes
 from muster.exchange.sites.tables import MOST_TITLES, Row, table_layer
 
 _SEPARATORS = ";\t,|"
+_OF_STOPS = frozenset(("robot", "order", "task", "arrives_s", "starts_s", "ends_s"))
+"""Headings of the table of stops that Muster exports."""
 _MARKS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
@@ -31,7 +34,20 @@ def read_csv_layers(path: Path) -> Sequence[Layer]:
     layer = table_layer(file, "", _rows(text, file))
     if not layer.headings:
         raise refused(file, 1, "", "empty", "a row of headings, then a row for each task or robot")
-    return [layer]
+    return [_without_stops(layer)]
+
+
+def _without_stops(layer: Layer) -> Layer:
+    """A table of Muster's own stops with each task once; what it says of stations and loads is of the plan alone."""
+    if not {*layer.headings} >= _OF_STOPS:
+        return layer
+    first: dict[object, Feature] = {}
+    for feature in layer.features:
+        if "task" in feature.values:
+            own = {heading: value for heading, value in feature.values.items() if heading != "load"}
+            first.setdefault(feature.values["task"], replace(feature, values=own))
+    headings = tuple(heading for heading in layer.headings if heading != "load")
+    return replace(layer, headings=headings, features=tuple(first.values()))
 
 
 def decoded(data: bytes, file: str) -> str:

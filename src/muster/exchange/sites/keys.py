@@ -56,7 +56,7 @@ def _angle(name: str, read: Read, *names: str) -> SiteKey:
 
 
 def _mass(name: str, *names: str) -> SiteKey:
-    return SiteKey(name, partial(_number, "mass"), "mass", names, is_free=True)
+    return SiteKey(name, cells.amount, "mass", names, is_free=True)
 
 
 def _number(dimension: Dimension, value: object, factor: float = 1.0) -> float:
