@@ -21,7 +21,7 @@ from muster.allocation.rules.rule import (
 
 
 def _awaited_lags(problem: Question, j: int) -> list[tuple[float, float]]:
-    """For each task that must be done before task j, goods that it delivers included, the least and most lag after it."""
+    """For each task that must be done before task j, also the one whose goods it delivers, the least and most lag."""
     known = {k: (after, within) for k, after, within in problem.timed_rules.lags(j)}
     return [known.get(k, (0.0, np.inf)) for k in problem.awaited[j]]
 
