@@ -12,7 +12,7 @@ import click
 from muster.allocation.problem import Problem
 from muster.cli.auction_result import Agreement, by_kind
 from muster.cli.auction_table import auction_table
-from muster.cli.tables import counted
+from muster.mission.counting import counted
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.methods import Method

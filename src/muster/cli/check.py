@@ -17,7 +17,8 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
-from muster.cli.tables import counted, sequence
+from muster.cli.tables import sequence
+from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError, NotSupportedError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission, Robot

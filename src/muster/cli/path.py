@@ -277,7 +277,8 @@ def _reason(found: NoPath) -> str:
 def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, driven: dict[str, Any]) -> None:
     import numpy as np
 
-    from muster.cli.tables import counted, print_table
+    from muster.cli.tables import print_table
+    from muster.mission.counting import counted
 
     if isinstance(found, NoPath):
         click.echo(f"no path: {_reason(found)}")

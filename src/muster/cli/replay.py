@@ -13,7 +13,8 @@ from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.record_output import draw_record, drawing_options
 from muster.cli.recordings import errors_against, print_errors, require_recordings, show_recording, write_for_ros
 from muster.cli.report_tables import print_report
-from muster.cli.tables import counted, number, print_table
+from muster.cli.tables import number, print_table
+from muster.mission.counting import counted
 
 if TYPE_CHECKING:
     from muster.report.record import Recording

@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 
-from muster.cli.tables import counted, number, print_table
+from muster.cli.tables import number, print_table
+from muster.mission.counting import counted
 from muster.mission.model import Mission, Tag
 
 _NEAR_M = 1.0

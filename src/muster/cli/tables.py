@@ -128,11 +128,6 @@ def sequence(tasks: Sequence[str]) -> str:
     return f"{shown}, ... and {more} more" if more > 0 else shown or "-"
 
 
-def counted(count: int, word: str) -> str:
-    """A number of things: 1 task, 2 tasks."""
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
-
-
 def number(value: float | None, unit: str = "") -> str:
     """A figure in a cell."""
     return "-" if value is None else f"{value:.2f} {unit}".rstrip()

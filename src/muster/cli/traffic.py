@@ -11,7 +11,8 @@ import click
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, MissionFile, format_option, load_plan, mission_argument, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
-from muster.cli.tables import counted, number, sequence
+from muster.cli.tables import number, sequence
+from muster.mission.counting import counted
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import json_text

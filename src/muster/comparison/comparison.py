@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
-from muster.comparison.notes import counted, cut_short_note, notes_without_plan
+from muster.comparison.notes import cut_short_note, notes_without_plan
 from muster.comparison.run import Run
 from muster.comparison.settings import Settings
 from muster.comparison.statistics import Pair, Profile, Standing, pairs_of, profiles_of, standings_of
+from muster.mission.counting import counted
 from muster.mission.data_frames import frame_of_records
 from muster.mission.html_tables import html_line, html_table
 

@@ -6,11 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from muster.comparison.run import Run
-
-
-def counted(count: int, word: str) -> str:
-    """So many of something, in words."""
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+from muster.mission.counting import counted
 
 
 def cut_short_note(runs: Sequence[Run]) -> str:

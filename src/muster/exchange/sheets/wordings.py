@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from muster.exchange.earth import Spot
 from muster.exchange.sheets.content import Line, Sheet, Sheets
 from muster.exchange.sheets.instructions import metres, plain
+from muster.mission.counting import counted
 from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Mission
 from muster.mission.stations import station_sign
@@ -16,11 +17,6 @@ from muster.report.fonts import Names
 def degrees(spot: Spot) -> str:
     """A place on Earth to a tenth of a metre: `35.530225, 24.060441`, latitude first."""
     return f"{spot.lat:.6f}, {spot.lon:.6f}"
-
-
-def counted(count: int, what: str) -> str:
-    """`1 task`, `2 tasks`."""
-    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def stop_name(line: Line, names: Names) -> str:

@@ -16,6 +16,7 @@ from muster.exchange.sites.plan_areas import joined_areas
 from muster.exchange.sites.readers import reader_of
 from muster.exchange.sites.roles import Roles
 from muster.exchange.sites.times import require_alike
+from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
@@ -133,11 +134,6 @@ def _counts(layers: Sequence[tuple[Layer, str | None]], entries: Sequence[Entry]
         told = [counted(roles.count(role), *_NOUNS[role]) for role in dict.fromkeys(roles)]
         lines.append(f"{file}: {', '.join(told) or 'nothing'}")
     return tuple(lines)
-
-
-def counted(number: int, one: str, several: str = "") -> str:
-    """`1 task`, `2 tasks`."""
-    return f"{number} {one if number == 1 else several or one + 's'}"
 
 
 _NOUNS: Mapping[str, tuple[str, ...]] = {

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from muster.mission.counting import counted
 from muster.mission.event_descriptions import event_line, tells_cancelled, was_cancelled
 from muster.mission.stations import station_sign
 
@@ -178,7 +179,7 @@ def _plan(data: Mapping[str, Any]) -> str:
     stops = (stop.get("station") for route in routes for stop in route.get("stops", ()))
     stations = {*data.get("stations", ()), *stops}
     tasks = sum(name not in stations for route in routes for name in route["tasks"])
-    return f"plan: {_counted(tasks, 'task')}, {_counted(len(routes), 'robot')}"
+    return f"plan: {counted(tasks, 'task')}, {counted(len(routes), 'robot')}"
 
 
 def _report(data: Mapping[str, Any]) -> str:
@@ -186,11 +187,7 @@ def _report(data: Mapping[str, Any]) -> str:
     cancelled = sum(was_cancelled(one["reason"]) for one in data["tasks_lost"])
     gone = {"lost": len(data["tasks_lost"]) - cancelled, "cancelled": cancelled}
     told = "".join(f", {count} {words}" for words, count in gone.items() if count)
-    return f"report: {_counted(len(data['tasks_done']), 'task')} done{told}, {data['mission_time_s']:.1f} s"
-
-
-def _counted(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+    return f"report: {counted(len(data['tasks_done']), 'task')} done{told}, {data['mission_time_s']:.1f} s"
 
 
 def _resumed(data: Mapping[str, Any]) -> str:
