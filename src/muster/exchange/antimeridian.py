@@ -26,7 +26,7 @@ def cut_line(spots: Sequence[Spot]) -> list[list[Spot]]:
     for a, b in pairwise(spots):
         if crosses([a, b]):
             side = 180.0 if a.lon > 0 else -180.0
-            on = _between(a, replace(b, lon=_near(b.lon, a.lon)), side)
+            on = _between(a, replace(b, lon=unwrapped(b.lon, a.lon)), side)
             lines[-1].append(on)
             lines.append([replace(on, lon=-side)])
         lines[-1].append(b)
@@ -40,7 +40,7 @@ def cut_ring(corners: Sequence[Spot]) -> list[list[Spot]]:
     import shapely
 
     west = min(corner.lon for corner in corners if corner.lon >= 0)
-    whole = shapely.Polygon([(_near(corner.lon, west), corner.lat) for corner in corners])
+    whole = shapely.Polygon([(unwrapped(corner.lon, west), corner.lat) for corner in corners])
     parts = []
     for low, turn in ((0.0, 0.0), (180.0, _TURN)):
         found = shapely.intersection(whole, shapely.box(low, -90, low + 180, 90))
@@ -51,7 +51,7 @@ def cut_ring(corners: Sequence[Spot]) -> list[list[Spot]]:
     return parts if whole.exterior.is_ccw else [part[::-1] for part in parts]
 
 
-def _near(lon: float, other: float) -> float:
+def unwrapped(lon: float, other: float) -> float:
     """The same longitude within 180 degrees of another one; it may lie beyond 180 degrees."""
     return lon + _TURN * round((other - lon) / _TURN)
 

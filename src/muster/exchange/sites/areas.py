@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from muster.exchange.antimeridian import unwrapped
 from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Coordinate, Ring
-from muster.exchange.sites.frame import Frame, unwrapped
+from muster.exchange.sites.frame import Frame
 from muster.exchange.sites.keys import COVERAGE
 from muster.exchange.sites.shapes import require_valid, without_holes
 from muster.mission.errors import Finding, MissingExtraError

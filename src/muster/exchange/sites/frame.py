@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from statistics import median
 
+from muster.exchange.antimeridian import unwrapped
 from muster.exchange.sites.features import Coordinate
 
 _DECIMALS = 4
@@ -83,11 +84,6 @@ class Frame:
         turn = math.radians(place[0] - self.lon)
         half = math.sin((b - a) / 2) ** 2 + math.cos(a) * math.cos(b) * math.sin(turn / 2) ** 2
         return 2 * 6_371_000 * math.asin(min(1.0, math.sqrt(half)))
-
-
-def unwrapped(lon: float, other: float) -> float:
-    """The same longitude within 180 degrees of another one; it may lie beyond 180 degrees."""
-    return lon + 360.0 * round((other - lon) / 360.0)
 
 
 def wrapped(lon: float) -> float:
