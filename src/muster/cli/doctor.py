@@ -38,17 +38,17 @@ def command(server: str | None, token_file: Path | None, form: str, quiet: bool,
     core_faults = import_faults(["muster.core", *(part.name for part in core)])
     states = health({name: parts for name, parts in extras().items() if parts and name != "all"})
     answer = _server_answer(server, token_file)
-    build = core_build()
+    build, used, found = core_build(), processors(), programs()
     facts: dict[str, Any] = {
         "version": installed_version(),
         "core": None if build is None else vars(build),
         "python": python(),
         "system": system(),
-        "processors": vars(processors()),
+        "processors": vars(used),
         "packages": {part.name: part.version for part in core},
         "faults": core_faults,
         "extras": {state.name: _extra_facts(state) for state in states},
-        "programs": {found.name: found.where for found in programs()},
+        "programs": {one.name: one.where for one in found},
         "server": answer,
     }
     works = not core_faults and all(state.state != "broken" for state in states) and (answer or {}).get("fault") is None
@@ -57,7 +57,7 @@ def command(server: str | None, token_file: Path | None, form: str, quiet: bool,
 
         click.echo(json.dumps(facts | {"works": works}, indent=1))
     else:
-        _print(facts, core, states, programs(), processors())
+        _print(facts, core, states, found, used)
     return DONE if works else REJECTED
 
 

@@ -25,7 +25,7 @@ _AMOUNT = re.compile(r"(?P<number>[-+]?[\d.,]+)\s+(?P<name>[^\W\d]\S*)")
 _SPAN = re.compile(r"(\d+):([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?")
 _ISO_SPAN = re.compile(r"P(?:(\d+)D)?(?:T(?:(\d+)H)?(?:(\d+)M)?(?:(\d+(?:\.\d+)?)S)?)?", re.IGNORECASE)
 _DEGREES = re.compile(
-    r"(?P<first>[NSEWO])?\s*(?P<sign>[-+])?(?P<deg>\d+(?:[.,]\d+)?)\s*[°ºd]?\s*"
+    r"(?P<first>[NSEW])?\s*(?P<sign>[-+])?(?P<deg>\d+(?:[.,]\d+)?)\s*[°ºd]?\s*"
     r"(?:(?P<min>\d+(?:[.,]\d+)?)\s*['\u2032]\s*)?(?:(?P<sec>\d+(?:[.,]\d+)?)\s*(?:\"|\u2033|'')\s*)?(?P<last>[NSEW])?",
     re.IGNORECASE,
 )

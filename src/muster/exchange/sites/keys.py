@@ -118,7 +118,7 @@ _TASK = (
         ("to", "until", "close", "latest", "lateststart", "windowto", "windowuntil", "windowend", "closesat"),
     ),
     SiteKey(
-        "window", cells.pairs, "time", ("windows", "timewindow", "timewindows", "windows", "hours", "openinghours")
+        "window", cells.pairs, "time", ("windows", "timewindow", "timewindows", "hours", "openinghours")
     ),
     SiteKey("deadline", cells.moment, "time", ("finishby", "mustend", "mustendby", "by", "endby", "doneby")),
     SiteKey("due", cells.moment, "time", ("duetime", "dueat", "duedate", "dueby")),
