@@ -10,9 +10,17 @@ import pytest
 from tests.cli.yard import FOUND
 
 from muster.cli.check import _touching
+from muster.mission.clock import ProcessorClock
 from muster.mission.model import Robot
 
-pytestmark = pytest.mark.usefixtures("folder")
+pytestmark = pytest.mark.usefixtures("folder", "processor_time")
+
+
+@pytest.fixture
+def processor_time(monkeypatch):
+    """What else the machine does takes nothing from the time in which conflicts are looked for."""
+    monkeypatch.setattr("muster.allocation.conflicts.SystemClock", ProcessorClock)
+
 
 TWO = """\
 schema: muster/1

@@ -12,6 +12,7 @@ from muster.allocation import search
 from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import VERBS, other_verbs, run
+from muster.mission.clock import ProcessorClock
 from muster.mission.model import Battery, Map, Mission, Robot, Rules, Station, Task, Zone
 from muster.mission.records import specified
 from muster.mission.yaml_reader import parse_yaml
@@ -93,6 +94,7 @@ def test_every_argument_of_a_bound_is_described():
 
 def test_the_outputs_of_what_can_be_done(tmp_path, monkeypatch, capsys):
     pytest.importorskip("ortools")
+    monkeypatch.setattr("muster.allocation.conflicts.SystemClock", ProcessorClock)  # the load of the machine counts not
     text = (ROOT / "docs" / "what-can-be-done.md").read_text(encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     for mission in blocks(text, "yaml"):
