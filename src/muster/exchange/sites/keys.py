@@ -117,9 +117,7 @@ _TASK = (
         "time",
         ("to", "until", "close", "latest", "lateststart", "windowto", "windowuntil", "windowend", "closesat"),
     ),
-    SiteKey(
-        "window", cells.pairs, "time", ("windows", "timewindow", "timewindows", "hours", "openinghours")
-    ),
+    SiteKey("window", cells.pairs, "time", ("windows", "timewindow", "timewindows", "hours", "openinghours")),
     SiteKey("deadline", cells.moment, "time", ("finishby", "mustend", "mustendby", "by", "endby", "doneby")),
     SiteKey("due", cells.moment, "time", ("duetime", "dueat", "duedate", "dueby")),
     SiteKey("priority", cells.number, names=("prio", "weight", "importance")),
