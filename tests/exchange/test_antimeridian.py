@@ -14,7 +14,7 @@ from tests.mission.strategies import examples
 
 from muster.exchange.antimeridian import crosses, cut_line, cut_ring
 from muster.exchange.earth import Earth, Spot
-from muster.exchange.geographic_features import survey
+from muster.exchange.geographic_features import features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.kml import kml_text
@@ -76,7 +76,7 @@ def test_pieces_lie_on_one_side_and_pass_all_places_in_order(places):
 @pytest.fixture
 def seen(tmp_path):
     mission, verdict, team = bay(tmp_path, ACROSS)
-    return survey(mission, verdict, team, Earth.of(mission, "a test"))
+    return features_of(mission, verdict, team, Earth.of(mission, "a test"))
 
 
 def test_geojson_of_a_mission_across_the_meridian(seen):

@@ -10,7 +10,7 @@ import pytest
 from tests.exchange.bay import ALT, BAY, LAT, LON, ROUTES, bay
 
 from muster.exchange.earth import Earth
-from muster.exchange.geographic_features import survey
+from muster.exchange.geographic_features import features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.kml import kml_text
@@ -29,7 +29,7 @@ def seen(tmp_path):
 
 def seen_in(folder, text=BAY):
     mission, verdict, team = bay(folder, text)
-    return survey(mission, verdict, team, Earth.of(mission, "a test"))
+    return features_of(mission, verdict, team, Earth.of(mission, "a test"))
 
 
 def metres(lon, lat, alt=ALT):

@@ -10,7 +10,7 @@ from muster import load, verify
 from muster.exchange.earth import Earth
 from muster.exchange.export_request import ExportOptions
 from muster.exchange.files import exported
-from muster.exchange.geographic_features import survey
+from muster.exchange.geographic_features import features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import itineraries
@@ -48,7 +48,7 @@ def bay(tmp_path):
 @pytest.fixture
 def seen(bay):
     mission, verdict = bay
-    return survey(mission, verdict, itineraries(mission, verdict), Earth.of(mission, "a test"))
+    return features_of(mission, verdict, itineraries(mission, verdict), Earth.of(mission, "a test"))
 
 
 def test_a_station_is_a_stop_of_the_itinerary(bay):

@@ -8,7 +8,7 @@ import pytest
 
 from muster import load, verify
 from muster.exchange.earth import Earth
-from muster.exchange.geographic_features import survey
+from muster.exchange.geographic_features import features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import itineraries
@@ -43,7 +43,7 @@ def given(folder, text=LIFT):
 
 def seen(folder, text=LIFT):
     mission, verdict = given(folder, text)
-    return survey(mission, verdict, itineraries(mission, verdict), Earth.of(mission, "a test"))
+    return features_of(mission, verdict, itineraries(mission, verdict), Earth.of(mission, "a test"))
 
 
 def task_in(folder, name, text=LIFT):

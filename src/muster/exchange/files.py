@@ -12,7 +12,7 @@ from muster.exchange.earth import Earth
 from muster.exchange.export_request import ALTITUDE_MISSING, FORMATS, OPTIONS_OF, ExportOptions, Files
 from muster.exchange.fence import Fence
 from muster.exchange.file_names import file_names
-from muster.exchange.geographic_features import Survey, survey
+from muster.exchange.geographic_features import PlanFeatures, features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import Itinerary, Passage, itineraries
@@ -65,35 +65,35 @@ def geojson_file(
     mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
 ) -> Files:
     """Ways and stops as GeoJSON."""
-    seen, notes = _surveyed(mission, verdict, "geojson", options)
-    return Files({"plan.geojson": geojson_text(seen)}, notes)
+    features, notes = _features(mission, verdict, "geojson", options)
+    return Files({"plan.geojson": geojson_text(features)}, notes)
 
 
 def gpx_file(
     mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
 ) -> Files:
     """Ways and stops as GPX."""
-    seen, notes = _surveyed(mission, verdict, "gpx", options)
-    return Files({"plan.gpx": gpx_text(seen)}, notes)
+    features, notes = _features(mission, verdict, "gpx", options)
+    return Files({"plan.gpx": gpx_text(features)}, notes)
 
 
 def kml_file(
     mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
 ) -> Files:
     """Ways and stops as KML."""
-    seen, notes = _surveyed(mission, verdict, "kml", options)
-    return Files({"plan.kml": kml_text(seen)}, notes)
+    features, notes = _features(mission, verdict, "kml", options)
+    return Files({"plan.kml": kml_text(features)}, notes)
 
 
-def _surveyed(
+def _features(
     mission: Mission, verdict: Verdict, form: str, options: ExportOptions | None
-) -> tuple[Survey, tuple[str, ...]]:
+) -> tuple[PlanFeatures, tuple[str, ...]]:
     """The features of a plan, drones at their heights, and messages on these."""
     earth = Earth.of(mission, f"--to {form}")
     options = options or ExportOptions()
     altitudes = altitudes_of(mission, options)
     team, notes = raised_team(mission, verdict, altitudes, options)
-    return survey(mission, verdict, team, earth, layered=altitudes), notes
+    return features_of(mission, verdict, team, earth, layered=altitudes), notes
 
 
 def plan_files(

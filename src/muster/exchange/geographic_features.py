@@ -39,7 +39,7 @@ class Feature:
 
 
 @dataclass(frozen=True)
-class Survey:
+class PlanFeatures:
     """The starts of robots, tasks, stations, the paths of robots with stops, and the map's boundary and zones."""
 
     mission: str
@@ -54,14 +54,14 @@ class Survey:
         return (*self.areas, *self.routes, *self.stations, *self.tasks, *self.robots)
 
 
-def survey(
+def features_of(
     mission: Mission,
     verdict: Verdict,
     team: Sequence[Itinerary],
     earth: Earth,
     *,
     layered: Mapping[str, float] | None = None,
-) -> Survey:
+) -> PlanFeatures:
     """The features of a plan; routes of drones that are `layered`, by robot, have heights in a plane mission, too."""
     spatial, layered = mission.dimensions == 3, layered or {}
 
@@ -75,7 +75,7 @@ def survey(
 
     stops = stops_of(verdict)
     figures = {route.robot: route for route in verdict.routes}
-    return Survey(
+    return PlanFeatures(
         mission=mission.name,
         robots=tuple(feature("robot", r.id, [r.position], _robot_properties(r)) for r in mission.robots),
         tasks=tuple(

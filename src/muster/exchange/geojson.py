@@ -12,13 +12,13 @@ from typing import Any
 
 from muster.exchange.antimeridian import cut_line, cut_ring
 from muster.exchange.earth import Spot
-from muster.exchange.geographic_features import AREAS, Feature, Survey
+from muster.exchange.geographic_features import AREAS, Feature, PlanFeatures
 
 
-def geojson_text(survey: Survey) -> str:
+def geojson_text(plan: PlanFeatures) -> str:
     """A FeatureCollection; one line a feature."""
-    features = ",\n".join(json.dumps(_feature(feature), ensure_ascii=False) for feature in survey.features)
-    head = json.dumps(survey.mission, ensure_ascii=False)
+    features = ",\n".join(json.dumps(_feature(feature), ensure_ascii=False) for feature in plan.features)
+    head = json.dumps(plan.mission, ensure_ascii=False)
     return f'{{"type": "FeatureCollection", "name": {head}, "features": [\n{features}\n]}}\n'
 
 

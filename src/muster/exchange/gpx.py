@@ -12,7 +12,7 @@ from typing import Any
 from xml.etree import ElementTree as Tree
 
 from muster.exchange.earth import Spot
-from muster.exchange.geographic_features import Feature, Survey
+from muster.exchange.geographic_features import Feature, PlanFeatures
 from muster.exchange.xml_text import add, decimal, text_of, time_text
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
@@ -21,20 +21,20 @@ _OF_STATIONS = ("services", "slots", "charge_per_s", "swap_s")
 """What stations have in `extensions`, so that a file that is read again has them."""
 
 
-def gpx_text(survey: Survey) -> str:
+def gpx_text(plan: PlanFeatures) -> str:
     """A GPX document."""
     root = Tree.Element("gpx", {"version": "1.1", "creator": "Muster", "xmlns": _NAMESPACE})
-    if survey.stations:
+    if plan.stations:
         root.set("xmlns:muster", _OWN_NAMESPACE)
-    add(add(root, "metadata"), "name", survey.mission)
-    for feature in (*survey.robots, *survey.tasks, *survey.stations):
+    add(add(root, "metadata"), "name", plan.mission)
+    for feature in (*plan.robots, *plan.tasks, *plan.stations):
         point = _point(root, "wpt", feature.spots[0], feature)
         add(point, "name", feature.name)
         add(point, "desc", _told(feature))
         add(point, "type", feature.kind)
         if feature.kind == "station":
             _add_own(point, feature.properties)
-    for number, feature in enumerate(survey.routes, 1):
+    for number, feature in enumerate(plan.routes, 1):
         route = add(root, "rte")
         add(route, "name", feature.name)
         add(route, "desc", f"tasks {' '.join(feature.properties.get('stops') or feature.properties['tasks'])}")

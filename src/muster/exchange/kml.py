@@ -17,7 +17,7 @@ from xml.etree import ElementTree as Tree
 
 from muster.exchange.antimeridian import cut_line, cut_ring
 from muster.exchange.earth import Spot
-from muster.exchange.geographic_features import AREAS, Feature, Survey
+from muster.exchange.geographic_features import AREAS, Feature, PlanFeatures
 from muster.exchange.xml_text import add, decimal, text_of, time_text
 
 _IN_NAMES = re.compile(r"[\s;,|\[]")
@@ -26,13 +26,13 @@ _OF_WORDS = ("requires", "skills")
 _NAMESPACE = "http://www.opengis.net/kml/2.2"
 
 
-def kml_text(survey: Survey) -> str:
+def kml_text(plan: PlanFeatures) -> str:
     """A KML document."""
     root = Tree.Element("kml", {"xmlns": _NAMESPACE})
     document = add(root, "Document")
-    add(document, "name", survey.mission)
+    add(document, "name", plan.mission)
     parts = ("areas", "routes", "tasks", "stations", "robots")
-    groups = [(name, getattr(survey, name)) for name in parts if name != "stations" or survey.stations]
+    groups = [(name, getattr(plan, name)) for name in parts if name != "stations" or plan.stations]
     for name, features in groups:
         folder = add(document, "Folder")
         add(folder, "name", name)
