@@ -133,5 +133,5 @@ def _added(driven: Floats, lane: Floats, at: int, transit: Transit) -> float:
     before = driven[at - 1, 1]
     if at == len(driven):
         return transit.length(before, lane[0])
-    to, on, spared = transit.pairs([(before, lane[0]), (lane[1], driven[at, 0]), (before, driven[at, 0])])
-    return to + on - spared
+    after = driven[at, 0]
+    return transit.length(before, lane[0]) + transit.length(lane[1], after) - transit.length(before, after)

@@ -7,7 +7,6 @@ Dijkstra's algorithm finds it [lozano1979].
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -53,28 +52,12 @@ class Transit:
         return np.where(seen, straight, around)
 
     def length(self, begin: Floats, end: Floats) -> float:
-        """Metres of the shortest way between two points."""
-        return self.pairs([(begin, end)])[0]
-
-    def pairs(self, pairs: Sequence[tuple[Floats, Floats]]) -> list[float]:
-        """Metres of the shortest ways between two points each; kept. Many at once are found sooner than one by one."""
-        keys = [(begin.tobytes(), end.tobytes()) for begin, end in pairs]
-        new = {key: pair for key, pair in zip(keys, pairs, strict=True) if key not in self._lengths}
-        if new:
-            begins, ends = (np.array(points) for points in zip(*new.values(), strict=True))
-            self._lengths.update(zip(new, self._pairwise(begins, ends).tolist(), strict=True))
-        return [self._lengths[key] for key in keys]
-
-    def _pairwise(self, begins: Floats, ends: Floats) -> Floats:
-        """(n) metres from points (n, 2) to as many others."""
-        found: Floats = np.linalg.norm(begins - ends, axis=1)
-        hidden = (found > 0) & ~self.sees(begins, ends)
-        if hidden.any():
-            found[hidden] = math.inf
-        if hidden.any() and len(self._corners):
-            first, last = self._to_corners(begins[hidden]), self._to_corners(ends[hidden])
-            found[hidden] = [(self._over_corners(a) + b).min() for a, b in zip(first, last, strict=True)]
-        return found
+        """Metres of the shortest way between two points; kept."""
+        key = begin.tobytes(), end.tobytes()
+        if key not in self._lengths:
+            same = bool((begin == end).all())
+            self._lengths[key] = 0.0 if same else float(self.lengths(begin[None], end[None])[0, 0])
+        return self._lengths[key]
 
     def bends(self, begin: Floats, end: Floats) -> list[Floats]:
         """The corners at which the shortest way between two points bends; none where it is straight."""
