@@ -76,7 +76,9 @@ class Odd:
 
 
 def test_parameters_that_no_option_can_be_are_for_python_alone(muster):
-    make = lambda given, seed: generate("uniform", 1, seed, tasks=given.tasks)[0]  # noqa: E731
+    def make(given, seed):
+        return generate("uniform", 1, seed, tasks=given.tasks)[0]
+
     GENERATORS.add("odd", Generator(name="odd", summary="odd", source="a test", parameters=Odd, make=make))
     try:
         code, out, _ = muster("generate", "odd", "--help")

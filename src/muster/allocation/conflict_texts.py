@@ -15,6 +15,7 @@ from muster.allocation.rules.times import moments
 from muster.allocation.rules.window import closed
 from muster.allocation.subset_times import sizes_that_differ, tied_pairs, ways_of
 from muster.allocation.usage_bounds import FEW, UsageBounds
+from muster.mission.counting import counted
 from muster.mission.model import Robot, Task
 
 
@@ -55,7 +56,7 @@ def _tied(bounds: UsageBounds, tasks: list[int]) -> str:
     problem, rules = bounds.problem, bounds.problem.timed_rules
     if (pair := sizes_that_differ(problem, tasks)) is not None:
         (a, few), (b, many) = ((problem.tasks[j].id, rules.least_members(j)) for j in pair)
-        return f"the same robots must do {a} and {b}; {a} needs {_robots(few)}, {b} {_robots(many)}"
+        return f"the same robots must do {a} and {b}; {a} needs {counted(few, 'robot')}, {b} {counted(many, 'robot')}"
     for j, k in tied_pairs(problem, tasks):
         first, then = (np.flatnonzero(bounds.possible[:, t]).tolist() for t in (j, k))
         who = [", ".join(problem.robots[i].id for i in some) or "nobody" for some in (first, then)]
@@ -65,10 +66,6 @@ def _tied(bounds: UsageBounds, tasks: list[int]) -> str:
         if k not in rules.same_robot[j] and len(first) == 1 and first == then:
             return f"different robots must do {a} and {b}, and only {who[0]} can do them"
     return ""
-
-
-def _robots(number: int) -> str:
-    return "1 robot" if number == 1 else f"{number} robots"
 
 
 def _too_late_for_one(bounds: UsageBounds, robots: list[int], tasks: list[int]) -> str:

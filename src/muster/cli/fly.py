@@ -126,13 +126,13 @@ def _by_robot(endpoints: tuple[str, ...]) -> dict[str, str]:
 def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
     """Warn where drones, which do not avoid each other, would meet."""
     from muster import verify
+    from muster.exchange.altitudes import heights_of_work
     from muster.exchange.itinerary import itineraries
     from muster.exchange.separation import meetings
 
-    for task in mission.tasks if height is not None else ():
-        own = None if task.action is None else task.action.height_m
-        if own and own != height:
-            told = f"{task.id}: flown at {height:g} m (--height), not at {own:g} m (height_m); expected places with z"
+    for task, own in heights_of_work(mission).items():
+        if height is not None and own != height:
+            told = f"{task}: flown at {height:g} m (--height), not at {own:g} m (height_m); expected places with z"
             click.echo(f"warning: {told}", err=True)
     ways = itineraries(mission, verify(mission, plan))
     for meeting in meetings([way if height is None else way.at_least(height) for way in ways]):

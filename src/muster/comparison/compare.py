@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from operator import index
 from pathlib import Path
+from typing import Any
 
 from muster.comparison.comparison import Comparison
 from muster.comparison.contestants import AllocatorSpec, contestants_of
@@ -194,9 +195,9 @@ def _jobs(given: int | None) -> int:
     return jobs
 
 
-def _whole(given: object) -> int | None:
+def _whole(given: Any) -> int | None:
     """A whole number, NumPy's too; None if it is something else."""
     try:
-        return None if isinstance(given, bool) else index(given)  # type: ignore[arg-type]
+        return None if isinstance(given, bool) else index(given)
     except TypeError:
         return None

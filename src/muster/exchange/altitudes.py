@@ -40,6 +40,11 @@ def altitudes_of(mission: Mission, options: ExportOptions) -> dict[str, float]:
     return {name: float(options.altitudes.get(name, height)) for name, height in layers.items()}
 
 
+def heights_of_work(mission: Mission) -> dict[str, float]:
+    """How high work is done whose action says so: `height_m` by task."""
+    return {task.id: task.action.height_m for task in mission.tasks if task.action and task.action.height_m}
+
+
 def at_work(mission: Mission, whole: Sequence[Itinerary]) -> tuple[Itinerary, ...]:
     """The itineraries of a mission in the plane with each drone's work at the `height_m` of its action.
 
@@ -47,7 +52,7 @@ def at_work(mission: Mission, whole: Sequence[Itinerary]) -> tuple[Itinerary, ..
     """
     if mission.dimensions == 3:
         return tuple(whole)
-    heights = {task.id: task.action.height_m for task in mission.tasks if task.action and task.action.height_m}
+    heights = heights_of_work(mission)
     return tuple(itinerary.with_heights(heights) if itinerary.robot.kind == "air" else itinerary for itinerary in whole)
 
 
@@ -89,7 +94,7 @@ def _raised_tasks(before: Itinerary, after: Itinerary, *, anywhere: bool) -> Ite
     higher = [was for was, now in pairs if was.place[2] < now.place[2] and (anywhere or was.place[2])]
     tasks = [task for task in dict.fromkeys(was.task for was in higher) if task is not None]
     if tasks:
-        told = f"{', '.join(list(tasks)[:3])}{', ...' if len(tasks) > 3 else ''}"
+        told = f"{', '.join(tasks[:3])}{', ...' if len(tasks) > 3 else ''}"
         yield f"{before.robot.id}: does {told} at its height of flight, not lower as the mission says"
 
 

@@ -99,11 +99,6 @@ class StationService:
             self.emit("waits_for_slot", {"robot": state.robot.id, "station": state.station, "served": served})
         state.wait_words = words
 
-    def keeps(self, state: RobotState, call: Call | None) -> bool:
-        """Whether a robot on a call goes on with it under a new plan whose next call is this one."""
-        current = state.call
-        return current is not None and call is not None and call.station == state.station == current.station
-
     def _arrive(self, state: RobotState, now: float) -> None:
         state.note_energy()
         if state.arrived:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from muster.execution.teams import units_of
+from muster.mission.event_descriptions import cancelled_at
 from muster.mission.model import Point, Robot, Task
 
 TIME_ROUNDING_S = 1e-6
@@ -195,7 +196,7 @@ class Ledger:
         gone
             by robot that takes no part any more since when, and why.
         """
-        lost = {name: f"cancelled at {round(at_s, 1):g} s" for name, at_s in self.cancelled.items()}
+        lost = {name: cancelled_at(at_s) for name, at_s in self.cancelled.items()}
         lost |= {task.id: why(task.id) + _out(task, gone) for task in self.open if task.id not in under_way}
         return {name: lost[name] for name in self.tasks if name in lost}
 

@@ -5,10 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+_CANCELLED = "cancelled at "
+
+
+def cancelled_at(at_s: float) -> str:
+    """Why a task is not done that was cancelled."""
+    return f"{_CANCELLED}{round(at_s, 1):g} s"
+
 
 def was_cancelled(reason: object) -> bool:
     """Whether a task is not done because it was cancelled; reports and events have it with those that are lost."""
-    return str(reason).startswith("cancelled at ")
+    return str(reason).startswith(_CANCELLED)
 
 
 def tells_cancelled(kind: str, data: Mapping[str, Any]) -> bool:

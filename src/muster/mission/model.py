@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from muster.mission.area_parts import with_parts
 from muster.mission.consistency import inconsistencies
 from muster.mission.cooperation import Lag, TeamPart
+from muster.mission.counting import counted
 from muster.mission.data_frames import frame_of_records
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
@@ -94,10 +95,8 @@ class Mission(MissionData):
 
     @property
     def _counts(self) -> str:
-        robots, tasks = len(self.robots), len(self.tasks)
-        counts = f"{robots} robot{'' if robots == 1 else 's'}, {tasks} task{'' if tasks == 1 else 's'}"
-        stations = len(self.stations)
-        return counts if not stations else f"{counts}, {stations} station{'' if stations == 1 else 's'}"
+        counts = [counted(len(self.robots), "robot"), counted(len(self.tasks), "task")]
+        return ", ".join([*counts, counted(len(self.stations), "station")] if self.stations else counts)
 
     def to_frame(self, of: Literal["tasks", "robots", "stations"] = "tasks") -> DataFrame:
         """The tasks, robots or stations as a DataFrame with a column for each field; needs the extra `frames`."""

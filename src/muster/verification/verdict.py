@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
+from muster.mission.counting import counted
 from muster.mission.data_frames import data_frame
 from muster.mission.errors import ParameterError
 from muster.mission.goods import ONLY
@@ -234,8 +235,7 @@ class Verdict:
 
     @property
     def _summary(self) -> str:
-        count = len(self.violations)
-        judgement = "valid" if self.valid else f"{count} violation{'' if count == 1 else 's'}"
+        judgement = "valid" if self.valid else counted(len(self.violations), "violation")
         value = self.value()
         figure = "no schedule" if value is None else f"{self.objective_name} {value:.2f}"
         return f"{judgement}, {self.tasks_completed} of {self.tasks_total} tasks, {figure}"

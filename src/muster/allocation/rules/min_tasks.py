@@ -22,6 +22,7 @@ from muster.allocation.rules.rule import (
     first_robot,
     listed,
 )
+from muster.mission.counting import counted
 from muster.mission.model import Mission, Robot
 
 
@@ -82,7 +83,7 @@ class MinTasks(Rule):
         if least <= 1 or outlook.limits.usable[i].sum() >= least:
             return None
         may = sum(problem.may(i, k) for k in range(len(problem.tasks)))
-        only = f"and may do only {_counted(may)}" if may < least else "and can never do so many"
+        only = f"and may do only {counted(may, 'task')}" if may < least else "and can never do so many"
         return f"does at least {least} tasks or none, {only}"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
@@ -92,7 +93,7 @@ class MinTasks(Rule):
         least = least_tasks(problem)
         short = [{k: len(r) for k, r in enumerate(routes) if 0 < len(r) < least[k]} for routes, _ in places]
         said = (
-            f"{problem.robots[k].id} would do {_counted(n)}, and does at least {least[k]} or none"
+            f"{problem.robots[k].id} would do {counted(n, 'task')}, and does at least {least[k]} or none"
             for k, n in min(short, key=len).items()
         )
         return f"with it {listed(list(said))}"
@@ -100,7 +101,7 @@ class MinTasks(Rule):
     def never_used(self, mission: Mission, robot: Robot) -> str | None:
         if robot.min_tasks <= len(mission.tasks):
             return None
-        return f"min_tasks {robot.min_tasks}, and the mission has {_counted(len(mission.tasks))}"
+        return f"min_tasks {robot.min_tasks}, and the mission has {counted(len(mission.tasks), 'task')}"
 
     def too_few(self, problem: Question, i: int, tasks: int) -> bool:
         return 0 < tasks < _least(problem, i)
@@ -117,7 +118,3 @@ def least_tasks(problem: Question) -> npt.NDArray[np.int32]:
 
 def _least(problem: Question, i: int) -> int:
     return min(problem.robots[i].min_tasks, len(problem.tasks) + 1) if problem.holds(MinTasks.word) else 0
-
-
-def _counted(tasks: int) -> str:
-    return "1 task" if tasks == 1 else f"{tasks} tasks"

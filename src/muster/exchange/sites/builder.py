@@ -322,11 +322,9 @@ class Builder:
             else:
                 holes = zones_of(entry, areas, self.built.findings)
             zones += [(entry, zone) for zone in holes]
-        open_zones = [entry for entry, zone in zones if zone.get("forbidden_to") == []]
-        self._set_map(bounds, [(entry, zone) for entry, zone in zones if entry not in open_zones])
-        if open_zones:
-            told = some_of([entry.told for entry in open_zones])
-            self.built.notes.append(f"zones that are forbidden to nobody are left out: {told}")
+        self._set_map(bounds, [(entry, zone) for entry, zone in zones if zone.get("forbidden_to") != []])
+        if left_out := [entry.told for entry, zone in zones if zone.get("forbidden_to") == []]:
+            self.built.notes.append(f"zones that are forbidden to nobody are left out: {some_of(left_out)}")
 
     def _holes(self, entry: Entry) -> list[shapely.Polygon]:
         """The holes that a plan has beside an area."""

@@ -9,6 +9,7 @@ from typing import Any
 from muster.allocation.problem import Problem
 from muster.allocation.remedy import Remedy
 from muster.allocation.stop import Stop
+from muster.mission.counting import counted
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
@@ -74,7 +75,7 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
     left_out, changes = found.unassigned, found.changes
     if not left_out:
         return ["no task is left out; --task T explains a task that is done"]
-    title = "1 task left out" if len(left_out) == 1 else f"{len(left_out)} tasks left out"
+    title = f"{counted(len(left_out), 'task')} left out"
     rows = tuple((item.task, r.robot, r.reason, r.detail) for item in left_out for r in item.reasons)
     shown = rows[:_MOST_ROWS]
     parts: list[Part] = [

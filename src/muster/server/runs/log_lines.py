@@ -80,7 +80,7 @@ def deed_of(verb: str, data: Mapping[str, Any]) -> str:
         return "lets it go as fast as it goes" if speed is None else f"sets the speed to {speed:g} times"
     if verb == "orders":
         count = len(data.get("orders", ()))
-        return f"gives {count} order{'' if count == 1 else 's'}"
+        return f"gives {counted(count, 'order')}"
     if verb != "event" or not data:
         return _DOES.get(verb, verb)
     kind, what = next(iter(data.items()))

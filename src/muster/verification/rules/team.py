@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from muster.mission.counting import counted
 from muster.mission.model import Robot, Task, TeamPart
 from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute
@@ -41,7 +42,7 @@ def team_fault(task: Task, members: Sequence[Robot], *, skills: bool) -> str | N
     needed = sum(part.count for part in parts)
     names = ", ".join(robot.id for robot in members)
     if len(members) != needed:
-        return f"needs {needed} robot{'' if needed == 1 else 's'}, done by {len(members)}: {names}"
+        return f"needs {counted(needed, 'robot')}, done by {len(members)}: {names}"
     if not _matched([part for part in parts for _ in range(part.count)], members, skills):
         return f"{names} do not fit the parts of its team"
     return None

@@ -8,6 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
+from muster.mission.counting import counted
 from muster.mission.plan import gap
 from muster.mission.stations import station_sign
 
@@ -141,7 +142,7 @@ def _at_stations(judged: Mapping[str, Any], unit: str) -> str:
     visits, charged = judged.get("station_visits", 0), judged.get("charged", 0.0)
     if not visits:
         return ""
-    return f"{visits} time{'' if visits == 1 else 's'}" + (f", {_number(charged, unit)} charged" if charged else "")
+    return counted(visits, "time") + (f", {_number(charged, unit)} charged" if charged else "")
 
 
 def _robot_row(k: int, route: Mapping[str, Any]) -> str:

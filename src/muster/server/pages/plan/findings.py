@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from nicegui import ui
 
+from muster.mission.counting import counted
 from muster.server.pages.editing.draft import Checked
 
 _MOST = 30
@@ -53,7 +54,7 @@ class Findings:
 
     def _title(self, checked: Checked) -> str:
         parts = [
-            f"{len(found)} {one if len(found) == 1 else several}"
+            counted(len(found), one, several)
             for found, one, several in (
                 (checked.errors, "error", "errors"),
                 (checked.cut_off, "station out of reach", "stations out of reach"),
