@@ -1,6 +1,5 @@
-"""Tables of sites: headings, units, cells, encodings, workbooks, robots; and what is said of what is wrong."""
+"""Tables of sites: headings, units, encodings, references, robots; and what is said of what is wrong."""
 
-import datetime
 import sys
 
 import pytest
@@ -8,7 +7,6 @@ from tests.exchange.sites import writers
 
 from muster import MissingExtraError, MissionError, ParameterError, load, read_site
 from muster.exchange.formula_cells import cell
-from muster.exchange.sites.cells import CellError, amount, duration, lat_lon, moment, number, pairs, words
 
 
 @pytest.fixture
@@ -24,123 +22,12 @@ def read(tmp_path, robots, text, encoding="utf-8", **options):
     return read_site(file, robots=robots, **options)
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("12,5", 12.5),
-        ("1.234,5", 1234.5),
-        ("1,234.5", 1234.5),
-        ("1 234,5", 1234.5),
-        ("\u22123e2", -300),
-        ("1'234", 1234),
-    ],
-)
-def test_numbers_as_people_write_them(text, value):
-    assert number(text) == value
-
-
-@pytest.mark.parametrize("text", ["", "nan", "inf", "1,2,3", "12 bananas", "1.2.3", "0x10"])
-def test_what_is_no_number(text):
-    with pytest.raises(CellError, match="a number"):
-        number(text)
-
-
-@pytest.mark.parametrize(
-    ("told", "read"),
-    [
-        ("12,5", 12.5),
-        ("500 g", 0.5),
-        ("-2", -2),
-        ("2 parcels", {"parcels": 2}),
-        ("2 parcels, 1.5 water_l", {"parcels": 2, "water_l": 1.5}),
-    ],
-)
-def test_amounts(told, read):
-    assert amount(told) == read
-
-
-@pytest.mark.parametrize("told", ["much", "2 parcels, some", "2 3", "1 a, 2 a", True])
-def test_what_is_no_amount(told):
-    with pytest.raises(CellError, match="a number, 12 kg, or amounts by commodity"):
-        amount(told)
-
-
-@pytest.mark.parametrize(
-    ("value", "seconds"),
-    [
-        ("90", 90), ("90 s", 90), ("15 min", 900), ("1 h 30 min", 5400), ("00:15", 900), ("00:15:30", 930),
-        ("PT15M", 900), ("1,5 h", 5400), (90, 90), (datetime.time(0, 15), 900), (datetime.timedelta(minutes=2), 120),
-    ],
-)  # fmt: skip
-def test_durations(value, seconds):
-    assert duration(value) == seconds
-
-
-@pytest.mark.parametrize("value", ["soon", "-5", "1:75", "3 m", True, "5 min 3 kg"])
-def test_what_is_no_duration(value):
-    with pytest.raises(CellError, match="a duration"):
-        duration(value)
-
-
-@pytest.mark.parametrize(
-    ("told", "read"),
-    [
-        ("01.03.2027 08:30", "2027-03-01T08:30:00"),
-        ("1.3.2027, 8:30:15 Uhr", "2027-03-01T08:30:15"),
-        ("8:30 Uhr", "08:30"),
-        ("8.30 Uhr", "08:30"),
-        ("17 uhr", "17:00"),
-        ("24:00", "24:00"),
-    ],
-)
-def test_moments_as_germans_write_them(told, read):
-    assert moment(told) == read
-
-
-@pytest.mark.parametrize("told", ["31.02.2027 08:30", "01.13.2027 08:30", "24:01", "25 Uhr", "03/01/2027 08:30"])
-def test_what_is_no_moment(told):
-    with pytest.raises(CellError, match="a clock time"):
-        moment(told)
-
-
 def test_the_end_of_a_day(tmp_path, robots):
     text = "name,x,y,window,due\na,1,2,00:00-24:00,24:00\n"
     (task,) = read(tmp_path, robots, text, starts_at="2027-03-01T00:00", origin=(47, 8)).mission.tasks
     assert (task.window_s, task.due_s) == (((0, 86400),), 86400)
     found = read(tmp_path, robots, text.replace("00:00-", "10:00-"), origin=(47, 8))
     assert found.mission.starts_at == "2000-01-01T10:00"
-
-
-def test_moments_and_windows():
-    assert [moment(one) for one in ("9:30", "2:30 pm", "12 am", "600", datetime.time(10, 0))] == [
-        "09:30", "14:30", "00:00", 600.0, "10:00:00",
-    ]  # fmt: skip
-    assert pairs("10:00 - 11:00; 15:00\u201316:00") == [["10:00", "11:00"], ["15:00", "16:00"]]
-    assert pairs("600 1200; 2000 inf") == [[600.0, 1200.0], [2000.0, None]]
-    assert pairs([600, None]) == [[600, None]]
-    with pytest.raises(CellError, match="a clock time"):
-        moment("25:00")
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "35.53, 24.06",
-        "35,53; 24,06",
-        "35.53 24.06",
-        "N35.53 E24.06",
-        "35\u00b031'48\"N, 24\u00b03'36\"E",
-        [35.53, 24.06],
-    ],
-)
-def test_latitude_and_longitude_in_one_cell(text):
-    assert lat_lon(text) == pytest.approx((35.53, 24.06))
-
-
-def test_lists():
-    assert words("camera; gripper arm") == ["camera", "gripper arm"]
-    assert words("[1,18]") == ["1", "18"]
-    assert words('["a,b", "c"]') == ["a,b", "c"]
 
 
 SEMICOLONS = """Panel name;Latitude;Longitude;Duration (min);Opens;Prio;Required skills;After;Remark
@@ -385,96 +272,6 @@ def test_what_a_row_is_of_is_its_name_where_no_other_column_is(tmp_path, robots)
     assert [task.id for task in found.mission.tasks] == ["A1", "A2"]
     found = read(tmp_path, robots, "Panel,name,lat,lon\n7,A1,47,8\n8,A2,47,8\n", origin=(47, 8))
     assert [task.id for task in found.mission.tasks] == ["A1", "A2"]
-
-
-def test_a_workbook_with_robots_on_a_second_sheet(tmp_path):
-    book = tmp_path / "site.xlsx"
-    writers.write_workbook(
-        book,
-        {
-            "Panels": [
-                ["Panel ID", "GPS", "Duration", "Opens", "Deadline", "Flag"],
-                [
-                    1,
-                    "47.3775, 8.5417",
-                    datetime.time(0, 15),
-                    datetime.time(10, 0),
-                    datetime.datetime(2027, 3, 1, 17),
-                    True,
-                ],
-                [],
-                [2, "47.3770, 8.5425", "00:05", None, None, None],
-            ],
-            "Robots": [
-                ["Robot", "Latitude", "Longitude", "Skills", "Shift"],
-                ["r1", 47.3768, 8.5416, "a, b", "08:00-18:00"],
-            ],
-            "Read me": [["of this workbook"], ["remarks"]],
-        },
-    )
-    found = read_site(book, starts_at="2027-03-01T08:00")
-    (robot,), (first, second) = found.mission.robots, found.mission.tasks
-    assert (robot.id, robot.skills, robot.available_until_s) == ("r1", ("a", "b"), 36000)
-    assert (first.id, first.duration_s, first.window_s, first.deadline_s) == ("1", 900, ((7200, None),), 32400)
-    assert (second.id, second.duration_s) == ("2", 300)
-    assert f"{book}, Read me: passed over, it has no places" in found.notes
-
-
-def test_a_cell_of_a_workbook_is_named_by_sheet_and_row(tmp_path):
-    book = tmp_path / "site.xlsx"
-    writers.write_workbook(book, {"Robots": [["id", "x", "y", "speed"], ["r", 0, 0, "fast"]]})
-    with pytest.raises(MissionError, match=r"site.xlsx:2: sheet Robots, speed: fast; expected a number in m/s, km/h"):
-        read_site(book)
-
-
-def test_cells_of_workbooks_without_values_are_named(tmp_path):
-    book = tmp_path / "site.xlsx"
-    rows = [
-        ["name", "x", "y", "duration", "remark"],
-        ["a", '=1+1&"<"', "#DIV/0!", None, "=A2"],
-        ["b", 1, 2, "=NOW()", None],
-    ]
-    writers.write_workbook(
-        book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], "Tasks": [[], *[[None, *r] for r in rows]]}
-    )
-    with pytest.raises(MissionError) as caught:
-        read_site(book)
-    stored, error = "open the workbook in the spreadsheet program and save it", "a value in place of this error"
-    told = [(f.line, f.field, f.value) for f in caught.value.findings]
-    assert told == [
-        (3, "sheet Tasks, x", '=1+1&"<"'), (3, "sheet Tasks, y", "#DIV/0!"), (4, "sheet Tasks, duration", "=NOW()"),
-    ]  # fmt: skip
-    assert [stored in f.expected for f in caught.value.findings] == [True, False, True]
-    assert error in caught.value.findings[1].expected
-
-
-@pytest.mark.parametrize(
-    ("sheet", "rows", "message"),
-    [
-        ("Stations", [["name", "x", "y", "services"], ["s", 1, 2, "charge"]], "sheet Stations, charge_per_s: missing"),
-        ("Stations", [["name", "x", "y"], ["s", 1, 2]], "sheet Stations, services: missing"),
-        (
-            "Tasks",
-            [["name", "x", "y", "duration"], ["a", 1, 2, datetime.datetime(2027, 3, 1, 8, 30)]],
-            "sheet Tasks, duration: 2027-03-01 08:30:00; expected a duration",
-        ),
-    ],
-)
-def test_what_is_missing_or_wrong_in_a_sheet_is_named(tmp_path, sheet, rows, message):
-    book = tmp_path / "site.xlsx"
-    writers.write_workbook(book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], sheet: rows})
-    with pytest.raises(MissionError, match=f"site.xlsx:2: {message}"):
-        read_site(book)
-
-
-def test_merged_cells_over_rows_of_data_are_told(tmp_path):
-    book = tmp_path / "site.xlsx"
-    tasks = [["Plan of the year"], ["name", "x", "y", "type"], ["a", 1, 2, "dig"], ["b", 2, 2], ["c", 3, 2]]
-    merged = {"Tasks": ["A1:D1", "D3:D5"]}
-    writers.write_workbook(book, {"Robots": [["id", "x", "y"], ["r", 0, 0]], "Tasks": tasks}, merged)
-    found = read_site(book)
-    assert [task.type for task in found.mission.tasks] == ["dig", None, None]
-    assert f"{book}, Tasks: merged cells D3:D5: only the first cell of each has its value" in found.notes
 
 
 @pytest.mark.parametrize(("module", "extra"), [("python_calamine", "sites"), ("pymap3d", "map")])
