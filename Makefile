@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-auction campaign-goods campaign-server campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: standing demo test test-all docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-auction campaign-goods campaign-server campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -24,7 +24,10 @@ demo: $(VENV)/installed
 	@echo "Maps, physics, ROS 2, MAVLink, mission control in the browser, ...: $(BIN)/pip install -e '.[all]' (1.3 GB; docs/index.md)"
 
 test: $(VENV)/developed test-packages
-	$(BIN)/python -m pytest -n 3 --dist loadgroup $(PYTEST_FLAGS)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --suite fast $(PYTEST_FLAGS)
+
+test-all: $(VENV)/developed test-packages
+	$(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_FLAGS)
 
 docs: $(VENV)/documented
 	$(BIN)/python -m tools.docs_site
@@ -79,7 +82,8 @@ standing: $(VENV)/developed
 
 help:
 	@echo "make demo       plan, draw and simulate a mission (DEMO_MISSION=$(DEMO_MISSION))"
-	@echo "make test       run all tests"
+	@echo "make test       run the fast tests, and the short forms of long ones"
+	@echo "make test-all   run all tests, the long ones too"
 	@echo "make docs       build the documentation site in build/docs/site, and run its notebooks; reads no network"
 	@echo "make docs-check  run what the documents show: blocks, pictures, numbers"
 	@echo "make docs-check-long  make what takes minutes, and store it in docs/measured (DOCS='NAME...')"

@@ -1,4 +1,4 @@
-"""What all tests share."""
+"""Hooks and fixtures of every test: suites, profiles of Hypothesis, names of parameters, skipped tests as failures."""
 
 import gc
 import logging
@@ -7,6 +7,8 @@ import signal
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from tests.suites import SUITES, chosen
 
 # The same examples at every run: a failure in CI is a failure everywhere. HYPOTHESIS_PROFILE=search looks for new ones.
 settings.register_profile(
@@ -36,6 +38,13 @@ def pytest_make_parametrize_id(val, argname):
     return None
 
 
+def pytest_collection_modifyitems(config, items):
+    """Deselect what the suite leaves out; pytest says how many tests that are."""
+    left_out = chosen(items, config.getoption("suite"), config.getoption("turn"), config.getoption("only"))
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+
+
 @pytest.fixture(autouse=True)
 def log_level():
     """What `-q` of a verb does to the log of this process ends with the test."""
@@ -46,6 +55,9 @@ def log_level():
 
 
 def pytest_addoption(parser):
+    parser.addoption("--suite", choices=SUITES, default="all", help="which tests run (docs/tests.md); all by default")
+    parser.addoption("--turn", type=int, default=0, help="the turn whose tenth of the long tests runs: --suite share")
+    parser.addoption("--only", metavar="FILE", help="run the test functions alone that this file lists, an id a line")
     parser.addoption("--no-skips", action="store_true", help="a skipped test is a failure, unless it needs hardware")
 
 
