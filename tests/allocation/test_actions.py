@@ -67,6 +67,7 @@ def test_who_may_do_what_is_what_the_judge_says(seed, over_map):
             assert problem.refusal(i, j) == (None if reason is None else ("skill", reason))
 
 
+@pytest.mark.long(keep=6)
 @pytest.mark.parametrize(("seed", "over_map"), CASES)
 def test_plans_are_admissible(seed, over_map):
     """By each of four allocators, over a map and without."""

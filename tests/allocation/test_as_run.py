@@ -32,6 +32,7 @@ def test_from_the_greedy_plan_hill_climbing_ends_at_the_published_values():
     assert not set(np.round(runs("greedy+hill-climbing", 4, 30_000), 2)) & set(A_15["greedy+hill-climbing"])
 
 
+@pytest.mark.long
 def test_climbing_from_random_plans_is_trapped_as_published():
     values = runs("hill-climbing-as-run", 20, 30_000)
     assert min(p_values("hill-climbing", values)) > 0.05

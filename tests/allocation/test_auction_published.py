@@ -170,6 +170,7 @@ OTHERS = ("berlin52", "eil51", "eil76", "collapsed-building", "warehouse")  # fi
 SHIPPED = [name for name in mission_names() if name not in OTHERS]
 
 
+@pytest.mark.long(keep=8)
 @pytest.mark.parametrize(("number", "name"), [*enumerate(SHIPPED)])
 def test_auctions_of_every_kind_are_admissible(number, name):
     """Three kinds for each mission: of any eight missions, every kind there is."""
@@ -179,6 +180,7 @@ def test_auctions_of_every_kind_are_admissible(number, name):
         admissible(problem, "auction", Stop(), bid=bid, placement=placement, winner=winner)
 
 
+@pytest.mark.long(keep=8)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_markets_are_admissible_or_refused(name):
     problem = Problem.compile(muster.load(name))

@@ -54,6 +54,7 @@ def by_table(seed):
     )
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("make", [forgiving, by_table])
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_no_plan_that_does_every_task_is_below_the_bound(make, objective):
@@ -70,6 +71,7 @@ def test_no_plan_that_does_every_task_is_below_the_bound(make, objective):
     assert gap / complete < 0.7  # a bound that is always 0 is none
 
 
+@pytest.mark.long(keep=10)
 @pytest.mark.parametrize("seed", range(40))
 def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(seed):
     random = Random(seed)
@@ -92,6 +94,7 @@ def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(see
             assert shares[used - 1] <= usages.max() * (1 + ROUNDING) + ROUNDING
 
 
+@pytest.mark.long(keep=20)
 @pytest.mark.parametrize("merged", [False, True])
 @pytest.mark.parametrize("seed", range(40))
 def test_no_routes_have_a_lower_sum_of_arrivals_than_forests_and_paths(seed, merged, monkeypatch):

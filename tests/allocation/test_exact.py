@@ -37,24 +37,28 @@ def assert_exact(problem, **more):
     assert result.lower_bound <= value * (1 + 1e-12)
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_it_finds_the_best_of_all_plans(objective):
     for seed in range(8):
         assert_exact(Problem.compile(random_mission(seed, tasks=5, robots=2), objective))
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_it_finds_the_best_where_travel_is_by_table(objective):
     for seed in range(5):
         assert_exact(Problem.compile(by_table(seed), objective))
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_it_finds_the_best_where_most_tasks_can_be_done(objective):
     for seed in range(5):
         assert_exact(Problem.compile(forgiving(seed), objective))
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_like_robots_are_told_apart_by_their_routes_alone(objective):
     """Salesmen: the order of like robots in the program does not hide plans, and a start fits into it."""
@@ -84,6 +88,7 @@ def test_it_does_not_deadlock():
         assert_exact(Problem.compile(mission, objective))
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_bound_exact_search(objective):
     for seed in range(3):

@@ -72,6 +72,7 @@ def test_routes_begin_with_them_and_the_plan_is_admissible(allocator, seed):
     assert muster.verify(mission, plan).valid
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_it_finds_the_best_of_all_such_plans(objective):
     """The exact solver, the search and the bounds, against all plans."""

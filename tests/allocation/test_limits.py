@@ -123,6 +123,7 @@ def test_two_tasks_too_far_apart_for_the_only_robot():
     assert not UsageBounds(compiled([robot(), robot("r_1")], *problem.tasks)).forbid([0, 1])
 
 
+@pytest.mark.long(keep=10)
 @pytest.mark.parametrize("seed", range(30))
 def test_no_plan_does_what_is_said_to_be_impossible(seed):
     """Of tasks alone and of pairs of tasks, beside every plan of small missions."""

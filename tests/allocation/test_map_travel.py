@@ -90,7 +90,7 @@ def test_lengths_are_those_of_the_judge(seed):
     assert_as_judged(random_mission(seed), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [pytest.param(0, marks=pytest.mark.long), 1])
 def test_in_space_they_are_nearly(seed):
     assert_as_judged(random_mission(seed, tasks=4, spatial=True), rel=1e-2)
 
@@ -130,8 +130,12 @@ def test_lengths_are_those_of_the_judge_between_places_on_borders(seed, offset):
         ((box(0, 8, 4, 1), box(4, 7, 6, 1)), 0.0),  # corner to corner
         ((box(0, 8, 3.5, 1), box(4, 8, 6, 1)), 0.25),  # as far apart as the drone is wide
         ((box(1e-9, 8, 10, 1),), 0.0),  # almost at the boundary
-        ((box(0, 8, 10, 1, ceiling_m=4), box(0, 8, 10, 1, floor_m=4)), 0.0),  # one upon the other
-        ((box(0, 8, 10, 1, ceiling_m=4), box(0, 9, 10, 1, floor_m=4)), 0.0),  # edge to edge
+        pytest.param(  # one upon the other
+            (box(0, 8, 10, 1, ceiling_m=4), box(0, 8, 10, 1, floor_m=4)), 0.0, marks=pytest.mark.long
+        ),
+        pytest.param(  # edge to edge
+            (box(0, 8, 10, 1, ceiling_m=4), box(0, 9, 10, 1, floor_m=4)), 0.0, marks=pytest.mark.long
+        ),
     ],
 )
 def test_a_drone_does_not_pass_where_zones_touch(zones, radius):
@@ -160,6 +164,7 @@ def test_on_the_shipped_floor_plan_they_are_those_of_the_judge():
     assert_as_judged(muster.load("floor"), rel=1e-6)
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize(("seed", "allocator"), list(enumerate(2 * ["search", "greedy", "auction"])))
 def test_plans_are_admissible(seed, allocator):
     mission = random_mission(seed, spatial=seed in (0, 4))

@@ -41,6 +41,7 @@ def test_a_division_holds_every_robot_once_and_no_task_twice(seed, parts, divisi
         assert all(set(problem.prerequisites[j]) <= held for j in held)
 
 
+@pytest.mark.long
 def test_more_divisions_help_and_the_plan_is_nearly_that_of_a_whole_search():
     mission = large_mission(400, 20)
     whole = muster.solve(mission, "search", iterations=20_000)
@@ -69,7 +70,7 @@ def test_number_of_parts(tasks, parts):
     assert number_of_parts(tasks) == parts
 
 
-@pytest.mark.parametrize("tasks", [600, 16_000])
+@pytest.mark.parametrize("tasks", [600, pytest.param(16_000, marks=pytest.mark.long)])
 def test_interrupted_before_anything_has_begun_there_is_a_whole_plan(tasks):
     mission = large_mission(tasks, tasks // 50)
     problem = Problem.compile(mission)

@@ -71,12 +71,12 @@ def test_small_missions_are_solved_to_the_optimum(seed, robots):
     ("name", "ignore", "value", "iterations"),
     [
         ("31T-6R", (), 213.5615, 50_000),
-        ("31T-6R", ("prerequisites", "suitability"), 191.1537, 50_000),
+        pytest.param("31T-6R", ("prerequisites", "suitability"), 191.1537, 50_000, marks=pytest.mark.long),
         ("16T-3R", (), 342.9001, 50_000),
         ("24T-5R", (), 189.2522, 50_000),
         ("31T-3R44-3R26", (), 219.4802, 50_000),
-        ("31T-2R65-4R25", (), 232.1816, 150_000),
-        ("eil51-5", (), 629.9601, 50_000),
+        pytest.param("31T-2R65-4R25", (), 232.1816, 150_000, marks=pytest.mark.long),
+        pytest.param("eil51-5", (), 629.9601, 50_000, marks=pytest.mark.long),
     ],
 )
 def test_best_known_values_are_reached(name, ignore, value, iterations):

@@ -11,23 +11,25 @@ from tests.carried_missions.every_plan import EveryPlan
 from tests.carried_missions.missions import carried_mission
 from tests.carried_missions.trial import Report, Trial, trial
 
-MISSIONS, CHUNK = 60, 20
+CHUNK = 20
 # Where calls after the last task, two stations on one way, windows that close, or a capacity decided once.
 DECIDED = (33, 68, 99, 127, 130, 136, 140, 349, 381)
 
 
-@pytest.mark.parametrize("first", range(0, MISSIONS, CHUNK))
+@pytest.mark.parametrize("first", [*(pytest.param(k, marks=pytest.mark.long) for k in (0, CHUNK)), 2 * CHUNK])
 def test_routes_and_bounds_agree_with_every_plan(first):
     reports = [trial(seed, planned=False) for seed in range(first, first + CHUNK)]
     assert {report.seed: report.failures for report in reports if report.failures} == {}
     assert sum(report.counts["routes that keep the rules"] for report in reports) > 100
 
 
+@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("seed", DECIDED)
 def test_routes_that_were_wrong_once_agree_with_every_plan(seed):
     assert trial(seed, planned=False).failures == []
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("seed", [*range(8), 662, 904])
 def test_no_plan_is_better_than_the_best(seed):
     report = trial(seed)
@@ -35,6 +37,7 @@ def test_no_plan_is_better_than_the_best(seed):
     assert report.counts["search misses the best"] == 0
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", [1, 5, 8, 13, 19])
 def test_the_exact_solver_proves_the_best(seed):
     pytest.importorskip("ortools", reason="needs the extra exact")

@@ -80,6 +80,7 @@ def test_an_allocator_of_ones_own_beside_search_on_generated_missions():
             assert run.value == pytest.approx(muster.verify(mission, routes).value())
 
 
+@pytest.mark.long
 def test_processes_give_what_one_gives_and_lose_single_runs_alone(capfd):
     given = {"greedy": "greedy", "own": in_order, "local": lambda problem: in_order(problem)}
     one = muster.compare(small(), given, seeds=1, jobs=1)
@@ -242,6 +243,7 @@ print([run.status for run in found.runs], [run.tasks_completed for run in found.
 """
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("through", ["file", "standard input"])
 def test_functions_of_a_script_go_to_processes(through, tmp_path):
     """Without `if __name__ == "__main__"`, and as in a notebook, where there is no file."""

@@ -23,6 +23,7 @@ def without_times(plan):
     return replace(plan, elapsed_s=None, history=tuple((0.0, value) for _, value in plan.history))
 
 
+@pytest.mark.long(keep=12)
 @every_allocator
 @given(seed=st.integers(0, 10**6), ignore=st.sets(st.sampled_from(RULES)), tasks=st.integers(0, 12))
 def test_every_plan_is_admissible_and_its_figures_are_the_judges(allocator, seed, ignore, tasks):
@@ -35,6 +36,7 @@ def test_every_plan_is_admissible_and_its_figures_are_the_judges(allocator, seed
     assert plan.ignored == tuple(rule for rule in RULES if rule in ignore)
 
 
+@pytest.mark.long(keep=8)
 @every_allocator
 @given(seed=st.integers(0, 10**6))
 def test_every_task_left_out_has_a_reason_for_every_robot(allocator, seed):
@@ -47,6 +49,7 @@ def test_every_task_left_out_has_a_reason_for_every_robot(allocator, seed):
         assert {reason.reason for reason in item.reasons} <= set(REASONS)
 
 
+@pytest.mark.long(keep=21)
 @every_allocator
 @pytest.mark.parametrize("name", ["31T-6R50", "market-rescue", "eil51-5"])
 def test_the_same_seed_and_iterations_give_the_same_plan(allocator, name):
@@ -55,6 +58,7 @@ def test_the_same_seed_and_iterations_give_the_same_plan(allocator, name):
     assert without_times(first).text() == without_times(second).text()
 
 
+@pytest.mark.long(keep=6)
 @pytest.mark.parametrize("allocator", [name for name, a in ALLOCATORS.items() if a.anytime])
 def test_other_seeds_give_other_plans(allocator):
     mission = muster.load("eil51-5")
@@ -62,6 +66,7 @@ def test_other_seeds_give_other_plans(allocator):
     assert len(plans) > 1
 
 
+@pytest.mark.long(keep=8)
 @every_allocator
 def test_history_only_improves_and_ends_at_the_plan(allocator):
     plan = muster.solve(muster.load("eil51-5"), allocator, iterations=300)
@@ -128,6 +133,7 @@ def test_no_reasons_are_looked_for_long_after_the_time_is_up():
     assert not any(item.reasons for item in ALLOCATORS["auction"].solve(problem, stop).unassigned)
 
 
+@pytest.mark.long(keep=8)
 @every_allocator
 def test_an_anytime_run_never_ends_below_its_start(allocator):
     mission = muster.load("31T-6R50")

@@ -183,6 +183,7 @@ def figures(answer):
     return {name: value for name, value in plain.items() if name != "elapsed_s"}
 
 
+@pytest.mark.long(keep=16)
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.name.replace(" ", "-")) for case in (*VALID, *INVALID)])
 def test_the_doors_answer_alike(case, worker, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

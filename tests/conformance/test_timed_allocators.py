@@ -69,6 +69,7 @@ def holds_true(mission, plan):
         assert stop.arrive_s <= stop.begin_s + 1e-9
 
 
+@pytest.mark.long(keep=84)
 @every_allocator
 @pytest.mark.parametrize("word", sorted(ALL))
 def test_each_rule_is_kept_or_refused_by_name(allocator, word):
@@ -102,6 +103,7 @@ def returning(seed, *, counted):
     return muster.Mission(name="returning", rules=rules, robots=robots, tasks=tasks)
 
 
+@pytest.mark.long(keep=6)
 @pytest.mark.parametrize("allocator", RETURNING)
 def test_plans_are_better_where_the_return_counts(allocator):
     """An allocator that can count the return finds routes that end earlier, on average, than without counting it."""

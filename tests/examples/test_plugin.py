@@ -53,6 +53,7 @@ def test_check_knows_the_action(muster):
     assert (answer["errors"], answer["impossible"]) == ([], [])
 
 
+@pytest.mark.long
 def test_check_refuses_what_the_action_does_not_take(muster, tmp_path):
     wrong = tmp_path / "wrong.yaml"
     for key, expected in {
@@ -73,6 +74,7 @@ def test_solve_knows_the_allocator_and_its_parameter(muster):
     assert "nearest" in muster("solve", "--list-allocators").stdout
 
 
+@pytest.mark.long
 def test_simulate_carries_the_action_out(muster, tmp_path):
     muster("solve", MISSION, "--allocator", "nearest", "-o", tmp_path / "plan.json", "-q")
     report = json.loads(muster("simulate", MISSION, "--plan", tmp_path / "plan.json", "--format", "json").stdout)

@@ -26,6 +26,7 @@ def run(name, folder):
     ).stdout
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("name", SAID)
 def test_a_script_says_what_it_is_for(name, tmp_path):
     said = run(name, tmp_path)
@@ -33,6 +34,7 @@ def test_a_script_says_what_it_is_for(name, tmp_path):
         assert words in said
 
 
+@pytest.mark.long
 def test_the_comparison_has_every_allocator_that_ends_by_itself(tmp_path):
     said = run("compare_allocators.py", tmp_path)
     for name in ("genetic", "search", "market"):

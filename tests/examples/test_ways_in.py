@@ -53,6 +53,7 @@ def plant(tmp_path_factory, run):
     return folder
 
 
+@pytest.mark.long
 def test_a_researcher_compares_an_allocator_of_her_own(tmp_path):
     code = block("Compare methods")
     (tmp_path / "notebook.py").write_text(code, encoding="utf-8")
@@ -66,6 +67,7 @@ def test_a_researcher_compares_an_allocator_of_her_own(tmp_path):
     assert (tmp_path / "profile.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 @PLANT
 def test_a_plant_is_inspected_within_its_windows(plant):
     mission, plan = muster.load(plant / "plant.yaml"), muster.read_plan(plant / "plan.json")
@@ -79,6 +81,7 @@ def test_a_plant_is_inspected_within_its_windows(plant):
     assert all(any(low <= report.starts_s[name] <= high for low, high in windows[name]) for name in windows)
 
 
+@pytest.mark.long
 @PLANT
 def test_a_plant_gets_sheets_and_flights(plant):
     assert (plant / "sheets.pdf").read_bytes().startswith(b"%PDF")
@@ -88,6 +91,7 @@ def test_a_plant_gets_sheets_and_flights(plant):
     assert [item.get("complexItemType") for item in items].count("survey") == 2
 
 
+@pytest.mark.long
 def test_a_warehouse_does_its_orders_and_charges(tmp_path, run):
     folder = tmp_path / "warehouse"
     shutil.copytree(ROOT / "examples" / "warehouse", folder)

@@ -161,6 +161,7 @@ def test_travel_tables_hold_from_where_robots_are(seed):
     } == {task.id for task in mission.tasks}
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("name", ["floor", "yard"])
 def test_over_a_map_a_failed_robots_work_is_done_by_the_others(name):
     mission = muster.load(name)

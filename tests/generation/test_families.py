@@ -90,7 +90,7 @@ def test_a_battery_lasts_to_each_customer_and_back(battery, stations):
         assert plan.tasks_completed == plan.tasks_total
 
 
-@pytest.mark.parametrize("values", [{"tasks": 10_000}, {"species": 1, "most": 1}])
+@pytest.mark.parametrize("values", [pytest.param({"tasks": 10_000}, marks=pytest.mark.long), {"species": 1, "most": 1}])
 def test_coalitions_of_many_tasks_are_drawn(values):
     assert all(task.needs for task in muster.generate("coalitions", **values)[0].tasks)
 

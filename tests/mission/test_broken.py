@@ -58,6 +58,7 @@ def test_json_has_the_same_findings(name, capsys, monkeypatch):
     assert "".join(line_of(error) for error in data["errors"]) == expected(name)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     "name", ["several-errors", "prerequisite-cycle-of-3", "csv-robots-duplicate-id", "yaml-empty-file"]
 )

@@ -75,6 +75,7 @@ def test_fixes_bound_the_error_of_a_drone():
     assert max(with_fixes) < 3 * math.sqrt(3) * 0.05
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("speed", [0.26, -0.26])
 def test_a_robot_on_the_ground(speed):
     """The gyro makes dead reckoning better, fixes bound it: mean errors over seeds."""

@@ -35,6 +35,7 @@ def test_routes_spread_and_the_plan_says_what_its_traffic_takes(mission):
     assert spread[0].objective_value == pytest.approx(muster.verify(mission, spread[0]).value())
 
 
+@pytest.mark.long
 def test_varied_by_its_traffic_a_plan_is_better_than_those_it_comes_from(mission, monkeypatch):
     """What varies keeps the rules, and the plan tells the time that the traffic of its own routes takes."""
     monkeypatch.setattr(spreading, "VARIATIONS_BY_ITERATIONS", 200)

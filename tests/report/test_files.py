@@ -33,6 +33,7 @@ def test_pdf(mission, plan, verdict, tmp_path):
     assert b"/CreationDate" not in data
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_the_same_picture_gives_the_same_bytes(mission, plan, verdict, tmp_path, suffix):
     for name in ("one", "two"):

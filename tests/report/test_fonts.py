@@ -48,6 +48,7 @@ def test_numbers_stand_for_ids_that_no_font_has(tmp_path):
     assert "r_0" in routes & gantt
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.usefixtures("no_fallbacks")
 @pytest.mark.parametrize(("robot", "task"), [("r_1", "a"), ("Δφ", "ж"), ("ש", "ü")])
 def test_names_that_the_usual_font_has_stand_as_they_are(robot, task, tmp_path):

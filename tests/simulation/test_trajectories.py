@@ -113,6 +113,7 @@ def test_a_mission_is_carried_out_on_trajectories(world):
     assert (len(report.tasks_done), report.contacts) == (6, 0)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(2))
 def test_walls_stop_no_trajectory(seed):
     shipped = muster.load("floor")

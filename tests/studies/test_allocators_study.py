@@ -45,6 +45,7 @@ def test_tasks_left_out_are_told(compared):
     assert cell == f"{plan.objective_value:.2f} ({plan.tasks_completed})"
 
 
+@pytest.mark.long
 def test_weight_is_told_where_priorities_differ():
     table = study_named("allocators").run(Effort(iterations=20, tables=("flood",))).tables[1]
     cell = next(row for row in table.records() if row["allocator"] == "greedy")["total+max"]

@@ -21,6 +21,7 @@ def test_numbers_and_tables_are_a_study_s_own(name):
         assert not figure.shows.endswith(".")
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize(
     ("study", "number"),
     [("auction-5", "5.3"), ("auction-5", "5.16"), ("auction-5", "5.15"), ("thesis-6", "6.12"), ("market-rescue", "6"),

@@ -13,6 +13,7 @@ def test_shipped_missions_take_as_long_as_planned(name):
     assert abs(times_of(Job(name).mission).off) <= 5
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("seed", [1000, 1001])
 @pytest.mark.parametrize(
     "setting", [s for s in SETTINGS if not (s.over_map and "air" in s.kinds)], ids=lambda s: s.name
@@ -24,6 +25,7 @@ def test_random_missions_take_as_long_as_planned(setting, seed):
     assert abs(times.off) <= 10
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [5, 13])
 def test_ways_round_corners_take_what_the_plan_says(seed):
     """Robots that drive keep to the bends: they went wide by half a metre, came back, and took 10 to 12 % longer."""

@@ -30,11 +30,34 @@ QUICK = ("--seeds", "1", "--iterations", "100")
 TEAM = ("handBot", "eyeBot", "rangeBot")
 
 
+def result_of(search):
+    """Return the result of a search. In the physics world, which takes longer, the first seed stands for the second."""
+    first, second = searches(EFFORT, ["physics"])
+    return performed(first if search == second else search)
+
+
 @pytest.fixture(scope="module")
 def found():
-    """Of two seeds; in the physics world, which takes longer, the second stands for the first again."""
-    first, second = searches(EFFORT, ["physics"])
-    return {search: performed(first if search == second else search) for search in searches(EFFORT)}
+    """The results of all searches: of two seeds in each world."""
+    return {search: result_of(search) for search in searches(EFFORT)}
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(search, marks=[] if (search.world, search.seed) == ("kinematic", 0) else pytest.mark.long)
+        for search in searches(EFFORT)
+    ],
+    ids=lambda search: f"{search.world}-{search.seed}",
+)
+def search(request):
+    """Each search; the fast suite has the first one in the kinematic world."""
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def result(search):
+    return result_of(search)
 
 
 @pytest.fixture(scope="module")
@@ -56,48 +79,44 @@ def test_cylinders_stand_free():
         assert math.dist(task.position, SURVIVORS[task.id]) <= 0.15 + 1e-9
 
 
-def test_no_robot_drives_over_a_cylinder(found):
-    for one in found.values():
-        places = one.flown[LANDMARKED].positions.reshape(-1, 1, 2)
-        assert np.linalg.norm(places - CYLINDERS[:, :2], axis=2).min() > BODY_RADIUS_M + CYLINDER_RADIUS_M
+def test_no_robot_drives_over_a_cylinder(result):
+    places = result.flown[LANDMARKED].positions.reshape(-1, 1, 2)
+    assert np.linalg.norm(places - CYLINDERS[:, :2], axis=2).min() > BODY_RADIUS_M + CYLINDER_RADIUS_M
 
 
-def test_all_survivors_are_found_and_nothing_else(found):
+def test_all_survivors_are_found_and_nothing_else(search, result):
     """But that in the physics world a robot that skids at a corner is off by centimetres until it sees a landmark."""
-    for search, one in found.items():
-        table = one.found()
-        assert {match.name for match in table.matches} == set(SURVIVORS)
-        assert table.missed == ()
-        assert len(table.extra) <= (2 if search.world == "physics" else 0)
-        assert table.greatest_error_m < 0.01
-        assert not one.flown[LANDMARKED].report.contacts
+    table = result.found()
+    assert {match.name for match in table.matches} == set(SURVIVORS)
+    assert table.missed == ()
+    assert len(table.extra) <= (2 if search.world == "physics" else 0)
+    assert table.greatest_error_m < 0.01
+    assert not result.flown[LANDMARKED].report.contacts
 
 
-def test_the_team_knows_better_than_one_sighting_tells(found):
-    for one in found.values():
-        for match in one.found().matches:
-            single = [math.dist(seen.place.mean, match.truth) for seen in one.sightings(match.name)]
-            assert match.error_m < np.mean(single)
+def test_the_team_knows_better_than_one_sighting_tells(result):
+    for match in result.found().matches:
+        single = [math.dist(seen.place.mean, match.truth) for seen in result.sightings(match.name)]
+        assert match.error_m < np.mean(single)
 
 
-def test_what_landmarks_and_team_mates_are_is_no_target(found):
+def test_what_landmarks_and_team_mates_are_is_no_target(result):
     """Sightings are near survivors, but for a few in a hundred; of no landmark."""
-    for one in found.values():
-        places = raw_estimates(one.seen).positions
-        near = np.linalg.norm(places[:, None] - np.array(list(SURVIVORS.values())), axis=2).min(axis=1) <= FARTHEST_M
-        assert near.mean() > 0.9
-        assert np.linalg.norm(places[:, None] - np.array(BEACONS), axis=2).min() > 0.05
+    places = raw_estimates(result.seen).positions
+    near = np.linalg.norm(places[:, None] - np.array(list(SURVIVORS.values())), axis=2).min(axis=1) <= FARTHEST_M
+    assert near.mean() > 0.9
+    assert np.linalg.norm(places[:, None] - np.array(BEACONS), axis=2).min() > 0.05
 
 
-def test_landmarks_bring_back_whom_odometry_leads_astray(found):
-    for search, one in found.items():
-        for robot in TEAM:
-            assert one.off[robot, LANDMARKED].mean() < 0.5 * one.off[robot, ALONE].mean()
-            assert one.off[robot, LANDMARKED].mean() < 0.01
-            assert one.off[robot, LANDMARKED].max() < (0.06 if search.world == "physics" else 0.01)
-            assert one.surprise[robot, LANDMARKED][1:].mean() / 2 < 20
+def test_landmarks_bring_back_whom_odometry_leads_astray(search, result):
+    for robot in TEAM:
+        assert result.off[robot, LANDMARKED].mean() < 0.5 * result.off[robot, ALONE].mean()
+        assert result.off[robot, LANDMARKED].mean() < 0.01
+        assert result.off[robot, LANDMARKED].max() < (0.06 if search.world == "physics" else 0.01)
+        assert result.surprise[robot, LANDMARKED][1:].mean() / 2 < 20
 
 
+@pytest.mark.long
 def test_the_error_at_the_goal_is_at_most_what_is_printed(found, tables):
     """True distances of robots from the places of their survivors when their work ends."""
     places = {task.id: task.position for task in mission_of(ARENA).tasks}
@@ -113,13 +132,13 @@ def test_the_error_at_the_goal_is_at_most_what_is_printed(found, tables):
         assert (record["mark"], record["tasks"]) == ("✓", 5)
 
 
-def test_at_the_beginning_all_places_are_the_same(found):
-    for one in found.values():
-        starts = [one.flown[place].positions[0] for place in PLACES]
-        assert starts[1] == pytest.approx(starts[0], abs=5e-3)  # the first scan is taken in
-        assert starts[2] == pytest.approx(starts[0], abs=1e-9)
+def test_at_the_beginning_all_places_are_the_same(result):
+    starts = [result.flown[place].positions[0] for place in PLACES]
+    assert starts[1] == pytest.approx(starts[0], abs=5e-3)  # the first scan is taken in
+    assert starts[2] == pytest.approx(starts[0], abs=1e-9)
 
 
+@pytest.mark.long
 def test_the_same_seed_finds_the_same(found):
     """Errors are those of the same sensors in both worlds, so the faster one is flown again."""
     first, second = searches(EFFORT, ["kinematic"])
@@ -129,6 +148,7 @@ def test_the_same_seed_finds_the_same(found):
     assert [one.place.mean.tolist() for one in other.seen] != [one.place.mean.tolist() for one in before.seen]
 
 
+@pytest.mark.long
 def test_figure_8_is_of_equations_7_and_8(found, tables):
     """The table's mean of one robot, by hand from the flights: (7) over the points of the reference, and (8)."""
     world = World.of(mission_of(ARENA))
@@ -149,6 +169,7 @@ def test_figure_8_is_of_equations_7_and_8(found, tables):
         assert risk[place] == pytest.approx(np.mean(risks))
 
 
+@pytest.mark.long
 def test_figure_8_beside_what_is_printed(found, tables):
     table = tables["Figure 8"]
     assert len(table.rows) == 2 * len(SHOWN) * len(TEAM)
@@ -162,6 +183,7 @@ def test_figure_8_beside_what_is_printed(found, tables):
     assert (record[ALONE], record[f"{ALONE} ±"]) == pytest.approx((np.mean(values), np.std(values, ddof=1)))
 
 
+@pytest.mark.long
 def test_figure_7(found, tables):
     records = tables["Figure 7"].records()
     assert [(record["world"], record["seed"]) for record in records] == [
@@ -176,6 +198,7 @@ def test_figure_7(found, tables):
         assert record["rangeBot m"] < record["each m"] < 0.01
 
 
+@pytest.mark.long
 def test_targets(tables):
     table = tables["Targets"]
     for world in ("kinematic", "physics"):
@@ -185,12 +208,14 @@ def test_targets(tables):
         assert rows(table, world=world, survivor="none of them")[0]["found"] == "0"
 
 
+@pytest.mark.long
 def test_localisation(tables):
     for record in tables["Localisation"].records():
         assert record["better"] == "2/2"
         assert record["landmarks mean m"] < 0.01 < record["alone most m"]
 
 
+@pytest.mark.long
 def test_it_is_a_study_and_says_what_the_paper_does_not_print(capsys, monkeypatch, tmp_path):
     pytest.importorskip("matplotlib")
     monkeypatch.setenv("COLUMNS", "120")
@@ -204,6 +229,7 @@ def test_it_is_a_study_and_says_what_the_paper_does_not_print(capsys, monkeypatc
     assert sorted(path.name for path in folder.iterdir()) == ["figure-4.png", "figure-7.png", "figure-8.png"]
 
 
+@pytest.mark.long
 def test_json(capsys):
     assert muster(["study", "market-5", *QUICK, "--tables", "Targets", "--format", "json"]) == 0
     (table,) = json.loads(capsys.readouterr().out)["tables"]

@@ -48,6 +48,8 @@ HELP = [
 ]
 LACKING = {"physics": ["study", "thesis-6.1"], "plot": ["solve", "6T-2R", "--plot", "plan.png", "-q"]}
 """What cannot be done with the core install alone, by the extra that it needs."""
+FAST = ((), ("physics",))
+"""The sets of extras whose studies the fast suite runs; each set costs a process with its imports."""
 
 
 def group(extras):
@@ -106,7 +108,15 @@ def test_every_verb_says_its_help_with_the_core_install_alone(answers):
 
 
 @pytest.mark.parametrize(
-    "extras", [pytest.param(extras, marks=group(extras), id=",".join(extras) or "none") for extras in EXTRAS]
+    "extras",
+    [
+        pytest.param(
+            extras,
+            marks=[group(extras)] if extras in FAST else [group(extras), pytest.mark.long],
+            id=",".join(extras) or "none",
+        )
+        for extras in EXTRAS
+    ],
 )
 def test_the_first_table_needs_the_extras_of_its_study_alone(answers, extras):
     for call in map(of_first_table, names_with(extras)):

@@ -73,6 +73,7 @@ PAIRS = [
 ]
 
 
+@pytest.mark.long(keep=9)
 @pytest.mark.parametrize(("name", "peer", "objective"), PAIRS)
 def test_plans_are_admissible_and_worth_what_the_peer_says(name, peer, objective):
     mission = large_mission(12, 3) if name.startswith("uniform") else muster.load(name)
@@ -90,6 +91,7 @@ def test_cp_sat_finds_the_best_plan_of_a_small_mission(objective):
     assert checked(mission, EXACT, objective).value(objective) == pytest.approx(best.objective_value, rel=1e-5)
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_cp_sat_has_at_least_the_plan_of_greedy(objective):
     mission = muster.load("31T-6R50")
@@ -100,6 +102,7 @@ def test_cp_sat_has_at_least_the_plan_of_greedy(objective):
         assert verdict.value(objective) <= greedy.objective_value * (1 + 1e-9)
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("seed", range(12))
 def test_every_rule_is_translated(seed):
     """Skills, suitability, locks, capacities, priorities, ends, speeds, entries: what is wrong in a model is seen."""
@@ -114,6 +117,7 @@ def test_every_rule_is_translated(seed):
                 assert verdict.weight_completed == best.weight_completed
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(2))
 def test_prerequisites_hold_across_robots(seed, objective):

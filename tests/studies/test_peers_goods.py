@@ -50,6 +50,7 @@ def task(name, x, **more):
     return Task(id=name, position=(x, 0), **more)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("peer", PEERS_WITH_GOODS)
 def test_what_finds_no_room_is_left_out(peer):
     tasks = (task("1", 10, load=3), task("2", 20, load=2), task("3", 30, load=2), task("4", 40))
@@ -60,6 +61,7 @@ def test_what_finds_no_room_is_left_out(peer):
     assert answered(on_a_line(*tasks, robots=2, load_capacity=5.9), peer).tasks_completed == 4
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("peer", PEERS_WITH_GOODS)
 def test_one_robot_picks_up_and_delivers(peer):
     far = (task("1", 30, load=2), task("2", 10, delivers="1"), task("3", 20, load=1), task("4", 15, delivers="3"))
@@ -175,6 +177,7 @@ def test_some_missions_alone_have_the_longest_limit():
     assert (rows[0]["reference"], rows[0][OWN], rows[1][OWN]) == (100.0, pytest.approx(10), 0)
 
 
+@pytest.mark.long
 def test_the_study_is_quick_where_asked():
     report = peers_goods_study().run(Effort(quick=True))
     loads, customers, transports, charging = (table.records() for table in report.tables)

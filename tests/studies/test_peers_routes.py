@@ -35,17 +35,12 @@ TASKS = {"mtsp100": 99, "rand100": 99, "mtsp150": 149, "kroa200": 199, "rat783":
 DEPOTS = {"md2": 200, "md4": 395, "md12": 100, "md24": 400}
 
 
-@pytest.fixture(scope="module")
-def quick():
-    """The report of all families, each in its smallest form."""
+@pytest.mark.long(keep=1)
+@pytest.mark.parametrize("number", BY_NUMBER)
+def test_a_family_is_compared_in_its_smallest_form(number):
     for package in ("ortools", "pyvrp"):
         pytest.importorskip(package)
-    return peers_routes_study().run(Effort(quick=True))
-
-
-@pytest.mark.parametrize("number", BY_NUMBER)
-def test_a_family_is_compared_in_its_smallest_form(quick, number):
-    table = next(table for table in quick.tables if table.number == number)
+    (table,) = peers_routes_study().run(Effort(quick=True, tables=(number,))).tables
     row, mean = table.records()
     solvers = BY_NUMBER[number].solvers
     assert {OWN, *solvers} <= set(table.columns)

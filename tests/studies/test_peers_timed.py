@@ -109,6 +109,7 @@ def test_a_solver_is_stopped_by_processor_time():
     assert time.process_time() - begin >= 0.05
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("solver", [OWN, "PyVRP", "OR-Tools"])
 def test_all_have_as_much_processor_time(solver):
     match = Match(mission="solomon-R201-4", objective="total", complete=True)

@@ -88,6 +88,7 @@ def test_the_way_back_counts_where_the_mission_says_so(rules, end):
     assert answered(mission).makespan_s == pytest.approx(end)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_few_tasks_end_as_early_as_with_search(shape):
     match, limits = Match(mission=f"waiting-{shape}-8-2-0", objective="makespan"), {OWN: 0.3, PEER: 6.0}
@@ -130,6 +131,7 @@ def test_gaps_are_to_cp_sat():
     assert table.table(effort, lost).records()[0]["search 5 s"] is None
 
 
+@pytest.mark.long
 def test_the_study_is_quick_where_asked():
     report = peers_waiting_study().run(Effort(quick=True))
     rows = report.tables[0].records()

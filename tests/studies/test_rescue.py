@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -24,9 +25,17 @@ def rescue_report():
     return study_named("rescue").run(EFFORT)
 
 
+class OnDemand(dict):
+    """The tables of the report by number, each made when a test asks for it."""
+
+    def __missing__(self, number):
+        (self[number],) = study_named("rescue").run(replace(EFFORT, tables=(number,))).tables
+        return self[number]
+
+
 @pytest.fixture(scope="module")
-def rescue_tables(rescue_report):
-    return {table.number: table for table in rescue_report.tables}
+def rescue_tables():
+    return OnDemand()
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +102,7 @@ def test_figure_8(rescue_tables):
     assert all(record["least"] > 0.13 for record in rows(table, metric="least distance to a robot, m"))
 
 
+@pytest.mark.long
 def test_of_three_robots_with_a_skill_each_tasks_are_lost(rescue_tables):
     for robot, skill in (("handBot", "gripper"), ("eyeBot", "camera"), ("rangeBot", "laser-rangefinder")):
         (record,) = rows(rescue_tables["Section 6"], team=ARENA, fails=robot)
@@ -102,6 +112,7 @@ def test_of_three_robots_with_a_skill_each_tasks_are_lost(rescue_tables):
         assert f"{record['mark']} lost: no other robot has {skill}." in rescue_tables["Section 6"].notes
 
 
+@pytest.mark.long
 def test_of_two_robots_a_skill_the_other_does_it_all_where_no_body_is_in_the_way(rescue_tables):
     failed = [record for record in rows(rescue_tables["Section 6"], team=POINTS) if record["fails"] != "none"]
     assert len(failed) == len(sent(POINTS, 100))
@@ -111,6 +122,7 @@ def test_of_two_robots_a_skill_the_other_does_it_all_where_no_body_is_in_the_way
         assert record["moved"] >= 2
 
 
+@pytest.mark.long
 def test_in_the_richer_mission_only_what_one_robot_alone_can_do_is_lost():
     mission = mission_of(RICHER)
     required = {task.id: set(task.requires) for task in mission.tasks}
@@ -200,6 +212,7 @@ def test_iterations_are_the_markets():
     assert undisturbed(Effort(iterations=7)) == Flight(team=ARENA, iterations=7)
 
 
+@pytest.mark.long
 def test_a_line_of_the_tables_fits_120_columns(rescue_report, capsys, monkeypatch, tmp_path):
     monkeypatch.setenv("COLUMNS", "120")
     monkeypatch.setattr(type(study_named("rescue")), "run", lambda *_: rescue_report)

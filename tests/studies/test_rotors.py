@@ -14,6 +14,7 @@ if find_spec("mujoco") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)
 
 
+@pytest.mark.long
 def test_all_figures_are_within_ten_per_cent():
     report = study_named("rotors").run(Effort())
     assert [table.number for table in report.tables] == ["hover", "steps"]

@@ -45,6 +45,7 @@ def test_of_the_circle_orca_alone_promises_something(rvo_tables):
     assert sum(record["contacts"] for record in rows(rvo_tables["circle"], method="RVO", robots=32)) > 0
 
 
+@pytest.mark.long
 def test_orca_on_a_circle_of_100():
     found = Found.of(Job(100, "ORCA", 0).perform())
     assert (found.arrived, found.contacts) == (100, 0)

@@ -7,6 +7,7 @@ import pytest
 from muster_studies.benches.search_quality import CASES, Case, Quality, quality
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("case", [c for c in CASES if c.mission == "16T-3R"], ids=lambda case: case.name)
 def test_the_best_known_plans_of_a_small_mission_are_found(case):
     found = quality(case, seeds=2, iterations=20_000)

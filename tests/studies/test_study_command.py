@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -116,6 +117,7 @@ def test_text_goes_to_a_file_too(capsys, tmp_path):
     assert "3 runs" in captured.err
 
 
+@pytest.mark.long
 def test_a_terminal_without_check_marks():
     code = "from muster.cli.main import run; raise SystemExit(run(['study', 'thesis-3.3', '--tables', '3.5']))"
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
@@ -124,6 +126,15 @@ def test_a_terminal_without_check_marks():
     assert b"= " in done.stdout
 
 
+def until_it_has_children(pid):
+    """Wait until the process has started its workers."""
+    until = time.monotonic() + 120
+    while not any(file.read_text() for file in Path(f"/proc/{pid}/task").glob("*/children")):
+        assert time.monotonic() < until, "no worker has started"
+        time.sleep(0.05)
+
+
+@pytest.mark.long
 def test_ctrl_c_ends_it():
     study = subprocess.Popen(
         [sys.executable, "-c", WAITING],
@@ -134,7 +145,7 @@ def test_ctrl_c_ends_it():
     )
     assert study.stdout is not None
     assert study.stdout.readline() == "ready\n"
-    time.sleep(1.0)
+    until_it_has_children(study.pid)
     os.killpg(study.pid, signal.SIGINT)  # as a terminal does: to all processes
     out, err = study.communicate(timeout=300)  # however busy the machine is: its processes start first
     assert (study.returncode, out, err.strip()) == (130, "", "interrupted")

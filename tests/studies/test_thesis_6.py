@@ -23,6 +23,7 @@ from muster_studies.thesis_6.totals import best_of, search_flights
 
 ROUTES = ("6.2", "6.6", "6.8", "6.9")
 FLOWN_PLANS = [plan for number in ROUTES for plan in plans(number)]
+BESIDE_PHYSICS = BesidePhysics(routes=("6.8", "6.9"))
 TABLES = ("6.2", "6.3", "6.6", "6.7", "6.8", "6.9", "6.10", "6.11", "actions", "noise")
 ACTIONS = ("16T-3R-actions", "31T-6R50-actions", "6T-2R-actions", "11T-2R-actions")
 
@@ -33,7 +34,7 @@ def report():
     report = study_named("thesis-6").run(Effort(seeds=2, iterations=300, tables=TABLES))
     assert report.runs > 0
     reserves = study_named("thesis-6").run(Effort(seeds=1, iterations=300, tables=("capacity-reserve",)))
-    return replace(report, tables=(*report.tables, *reserves.tables, table_of(BesidePhysics(routes=("6.8", "6.9")))))
+    return replace(report, tables=(*report.tables, *reserves.tables, table_of(BESIDE_PHYSICS)))
 
 
 def table_of(reproduction):
@@ -42,9 +43,21 @@ def table_of(reproduction):
     return reproduction.table(effort, {flight: fly(flight) for flight in reproduction.jobs(effort)})
 
 
+class OnDemand(dict):
+    """The tables of the report by number, each made when a test asks for it."""
+
+    def __missing__(self, number):
+        seeds = 1 if number == "capacity-reserve" else 2
+        if number == "physics":
+            self[number] = table_of(BESIDE_PHYSICS)
+        else:
+            (self[number],) = study_named("thesis-6").run(Effort(seeds=seeds, iterations=300, tables=(number,))).tables
+        return self[number]
+
+
 @pytest.fixture(scope="module")
-def tables(report):
-    return {table.number: table for table in report.tables}
+def tables():
+    return OnDemand()
 
 
 def records(table, **wanted):
@@ -180,6 +193,7 @@ needs_physics = pytest.mark.skipif(find_spec("mujoco") is None, reason="the extr
 
 
 @needs_physics
+@pytest.mark.long
 def test_ground_missions_in_the_physics_world(tables):
     """All tasks done, no contact, each robot within 3 % of the kinematic world."""
     rows = tables["physics"].records()
@@ -242,6 +256,7 @@ def test_slip_costs_half_of_it(tables):
         assert (record["runs"], record["lost"], record["contacts"]) == (2, 0, 0)
 
 
+@pytest.mark.long
 def test_capacity_is_never_exceeded(tables):
     rows = tables["capacity-reserve"].records()
     assert len(rows) == 3 * 2 * 4
@@ -295,6 +310,7 @@ def test_the_command(tmp_path, capsys):
     assert captured.err.count("drew ") == 2
 
 
+@pytest.mark.long
 def test_no_line_is_longer_than_a_terminal(report, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "120")
     monkeypatch.setattr(type(study_named("thesis-6")), "run", lambda *_: report)  # as it was, which took a minute

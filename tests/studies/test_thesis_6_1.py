@@ -67,6 +67,7 @@ def test_the_mission_of_six_tags_is_the_published_flight():
     assert route.tasks == tuple(str(view["order"]) for view in views)
 
 
+@pytest.mark.long
 def test_six_tags_are_found_more_precisely_than_published(six_tags):
     rows = six_tags.records()
     assert [record["tag"] for record in rows] == [*tags("6.5"), "all"]
@@ -80,6 +81,7 @@ def test_six_tags_are_found_more_precisely_than_published(six_tags):
         assert record["seen"] >= 10
 
 
+@pytest.mark.long
 def test_the_flight_in_physics_is_the_planned_one(six_tags):
     flown = fly(six())
     assert flown.report.tasks_done == tuple(str(k) for k in range(1, 19))
@@ -90,6 +92,7 @@ def test_the_flight_in_physics_is_the_planned_one(six_tags):
     assert flown.best.image.shape == (480, 640, 3)
 
 
+@pytest.mark.long
 def test_without_anything_found_tables_have_gaps(six_tags):
     flown = fly(six(world="kinematic"))
     blind = replace(flown, points=(), raw=RawEstimates.joined([]))
@@ -120,6 +123,7 @@ def test_totals_add_up():
     assert (gazebo["C"], gazebo["F"], gazebo["mark"]) == (218.04, 295.87, "✓")
 
 
+@pytest.mark.long
 def test_thirty_tags_are_found_by_geometry():
     for noise, below in ((None, 0.002), (NOISE, 0.05)):
         flown = fly(thirty(world="kinematic", **({"noise": noise} if noise else {})))
@@ -142,6 +146,7 @@ def clustered():
     return Clusterings().table(QUICK, FOUND)
 
 
+@pytest.mark.long
 def test_table_of_clusters(clustered):
     samples = ["physics", "physics, noise", "scattered", "scattered, rare", "rare, 3 tags"]
     expected = [(sample, method) for sample in samples for method in METHODS] + [("thesis", "k-means")]
@@ -149,6 +154,7 @@ def test_table_of_clusters(clustered):
     assert clustered.records()[-1]["tag 1"] == 1.142
 
 
+@pytest.mark.long
 def test_k_means_loses_a_tag_that_is_seen_rarely_and_decoded_tags_mend_it(clustered):
     """As the thesis' tag 1; where estimates scatter little, k-means does not lose it."""
     for sample in ("physics", "physics, noise"):
@@ -181,6 +187,7 @@ def test_flights_of_the_clusters_are_those_of_the_tables():
     assert {CALM, NOISY} <= set(TagErrors(number="6.4", title="", below_m=(1, 1), thesis={}).jobs(QUICK))
 
 
+@pytest.mark.long
 def test_pictures(tmp_path, six_tags, capsys):
     pytest.importorskip("matplotlib")
     assert (
@@ -213,6 +220,7 @@ def test_a_tag_is_placed_by_its_corners_where_the_printed_equations_err():
         assert row["by size, noise"] < 0.05 < row["as printed"]
 
 
+@pytest.mark.long
 def test_images_that_are_late_make_patterns_along_the_flight(monkeypatch):
     monkeypatch.setattr(delays, "DELAYS_S", (0.0, 0.2, 0.4))
     (table,) = study_named("thesis-6.1").run(replace(QUICK, tables=("delays",))).tables

@@ -21,6 +21,7 @@ from tests.timed_missions.trial import Report, Trial, trial
 MISSIONS, CHUNK = 45, 15
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("first", range(0, MISSIONS, CHUNK))
 def test_judge_bounds_reasons_and_remedies_agree_with_every_plan(first):
     reports = [trial(seed, planned=False) for seed in range(first, first + CHUNK)]
@@ -28,6 +29,7 @@ def test_judge_bounds_reasons_and_remedies_agree_with_every_plan(first):
     assert sum(report.counts["remedies: a plan was found"] for report in reports) > 0
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("first", range(0, 18, 6))
 def test_the_exact_solver_finds_the_best_of_every_plan(first):
     pytest.importorskip("ortools", reason="needs the extra exact")

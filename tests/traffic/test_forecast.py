@@ -18,6 +18,7 @@ def forecast_of(mission, plan):
     return forecast(mission, {route.robot: route.stops for route in plan.routes}, shared.plan())
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("scene", [scenes.aisles, scenes.dead_ends])
 def test_runs_take_as_long_as_forecast(scene):
     mission = scene("differential-drive", 1, 6)

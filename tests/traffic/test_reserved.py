@@ -11,6 +11,7 @@ COUNTS = {"one_way_door": 8, "two_way_door": 6, "corridor": 8, "aisles": 4, "dea
 KINEMATICS = ("holonomic", "differential-drive", "holonomic", "differential-drive", "differential-drive")
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize(("scene", "kinematics"), list(zip(COUNTS, KINEMATICS, strict=True)))
 def test_all_get_through(scene, kinematics):
     mission = getattr(scenes, scene)(kinematics, 1, COUNTS[scene])

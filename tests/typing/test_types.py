@@ -37,7 +37,7 @@ def pyright():
     return found
 
 
-@pytest.fixture(scope="module", params=[mypy, pyright], ids=["mypy", "pyright"])
+@pytest.fixture(scope="module", params=[pytest.param(mypy, marks=pytest.mark.long), pyright], ids=["mypy", "pyright"])
 def errors(request):
     return request.param()
 

@@ -96,6 +96,7 @@ def test_random_cells_as_by_brute_force(seed):
         assert found == (None if expected is None else pytest.approx(0.1 * expected, rel=1e-8))
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("seed", range(12))
 def test_random_polygons_as_by_brute_force(seed):
     random = np.random.default_rng(seed)
@@ -235,6 +236,7 @@ def test_the_boundary_of_the_air():
     assert found == pytest.approx(2 * math.hypot(5, 25), rel=5e-3)
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", range(5))
 def test_endless_prisms_are_as_polygons(seed):
     random = np.random.default_rng(seed)

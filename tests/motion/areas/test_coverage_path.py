@@ -68,13 +68,13 @@ def test_every_place_of_random_areas_is_seen(seed):
 @pytest.mark.parametrize(
     ("area", "holes", "width"),
     [
-        (square(0, 0, 1000, 0.5), (), 2.0),
+        pytest.param(square(0, 0, 1000, 0.5), (), 2.0, marks=pytest.mark.long),
         (((0, 0), (1000, 1000), (1000, 1000.5), (0, 0.5)), (), 2.0),
         (L_SHAPE, (), 5.0),
         (THIN_L, (), 5.0),
         (star(5, 0.4), (), 5.0),
-        (star(5, 0.05), (), 5.0),
-        (star(7, 0.3), (square(-5, -5, 10),), 4.0),
+        pytest.param(star(5, 0.05), (), 5.0, marks=pytest.mark.long),
+        pytest.param(star(7, 0.3), (square(-5, -5, 10),), 4.0, marks=pytest.mark.long),
         (square(0, 0, 100), (square(0.01, 40, 20),), 5.0),
         (square(0, 0, 100), tuple(square(5 + 16 * k, 45, 10) for k in range(6)), 5.0),
         (square(0, 0, math.sqrt(0.1)), (), 20.0),

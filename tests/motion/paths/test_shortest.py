@@ -57,6 +57,7 @@ def without_pinches(blocked):
         blocked[1:, :-1] |= pinches
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(2))
 def test_among_many_corners_nothing_is_shorter(seed):
     """So many that each way is bounded by one over cells, and looked for in an ellipse."""

@@ -42,6 +42,7 @@ def task_states(browser):
     )
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize(
     ("name", "size", "dark"),
     [

@@ -35,6 +35,7 @@ def test_a_drone_holds_its_place_in_wind_by_leaning_against_it():
     assert -up[0] / up[2] == pytest.approx(drag * up[2] / (FIREFLY.mass_kg * 9.81), rel=0.03)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(2))
 def test_eight_that_cross_in_light_gusts_do_not_touch(seed):
     team = []
