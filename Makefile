@@ -1,4 +1,4 @@
-# For a newcomer: `make demo` plans, draws and simulates a mission, `make test` runs everything. `make help` lists the rest.
+# For a newcomer: `make demo` plans, draws and simulates a mission, `make test` runs the fast tests. `make help` lists the rest.
 
 PYTHON ?= python3
 VENV := .venv
@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test test-all docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-auction campaign-goods campaign-server campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: standing demo test test-all quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-auction campaign-goods campaign-server campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -29,11 +29,23 @@ test: $(VENV)/developed test-packages
 test-all: $(VENV)/developed test-packages
 	$(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_FLAGS)
 
+quick: $(VENV)/developed
+	@$(BIN)/python -m tools.suites.quick $(if $(BASE),--base $(BASE)) $(if $(BUDGET),--budget $(BUDGET)) $(PYTEST_FLAGS)
+
+turn: $(VENV)/developed test-packages
+	$(BIN)/python -m tools.suites.turn $(TURN_FLAGS)
+
+flakes: $(VENV)/developed test-packages
+	$(BIN)/python -m tools.suites.flakes $(FLAKES_FLAGS)
+
+ci: $(VENV)/developed test-packages
+	$(BIN)/python -m tools.suites.ci
+
 docs: $(VENV)/documented
 	$(BIN)/python -m tools.docs_site
 
 docs-check: $(VENV)/developed
-	$(BIN)/python -m tools.docs_check
+	$(BIN)/python -m tools.docs_check $(DOCS)
 
 docs-check-long: $(VENV)/developed
 	$(BIN)/python -m tools.docs_check --long $(DOCS)
@@ -60,7 +72,7 @@ campaign-coverage: $(VENV)/developed
 	MUSTER_AREAS=$(or $(CAMPAIGN_FLAGS),200) $(BIN)/python -m pytest tests/motion/areas/test_coverage_path.py
 
 campaign-api: $(VENV)/developed
-	MUSTER_SCHEMA_EXAMPLES=60 $(BIN)/python -m pytest tests/server/api/test_schema.py
+	MUSTER_SCHEMA_EXAMPLES=$(or $(CAMPAIGN_FLAGS),60) $(BIN)/python -m pytest tests/server/api/test_schema.py
 
 network-figures: $(VENV)/developed
 	$(BIN)/python -m tests.negotiation.real_figures $(NETWORK_FLAGS)
@@ -84,8 +96,12 @@ help:
 	@echo "make demo       plan, draw and simulate a mission (DEMO_MISSION=$(DEMO_MISSION))"
 	@echo "make test       run the fast tests, and the short forms of long ones"
 	@echo "make test-all   run all tests, the long ones too"
+	@echo "make quick      run the fast tests that executed what has changed (BASE=COMMIT BUDGET=SECONDS)"
+	@echo "make turn       the last step of a change: raise .ci/turn and remake a tenth of the map of tests"
+	@echo "make flakes     run the fast tests five times in random order, beside two busy loops"
+	@echo "make ci         what .ci/run executes (CI_ALL=1: everything)"
 	@echo "make docs       build the documentation site in build/docs/site, and run its notebooks; reads no network"
-	@echo "make docs-check  run what the documents show: blocks, pictures, numbers"
+	@echo "make docs-check  run what the documents show: blocks, pictures, numbers (DOCS='README.md ...')"
 	@echo "make docs-check-long  make what takes minutes, and store it in docs/measured (DOCS='NAME...')"
 	@echo "make figures    draw every figure of every study, and docs/figures.md (STUDIES='rvo ...'); minutes"
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"

@@ -4,11 +4,12 @@ import gc
 import logging
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.suites import SUITES, chosen
+from tests.suites import SUITES, chosen, function_id, shuffle
 
 # The same examples at every run: a failure in CI is a failure everywhere. HYPOTHESIS_PROFILE=search looks for new ones.
 settings.register_profile(
@@ -40,9 +41,15 @@ def pytest_make_parametrize_id(val, argname):
 
 def pytest_collection_modifyitems(config, items):
     """Deselect what the suite leaves out; pytest says how many tests that are."""
-    left_out = chosen(items, config.getoption("suite"), config.getoption("turn"), config.getoption("only"))
+    given = {name: config.getoption(name) for name in ("suite", "turn", "only", "also")}
+    left_out = chosen(items, **given)
     if left_out:
         config.hook.pytest_deselected(items=left_out)
+    if config.getoption("functions"):
+        names = sorted({function_id(item.nodeid) for item in items})
+        Path(config.getoption("functions")).write_text("\n".join(names) + "\n", encoding="utf-8")
+    if config.getoption("shuffle") is not None:
+        shuffle(items, config.getoption("shuffle"))
 
 
 @pytest.fixture(autouse=True)
@@ -58,6 +65,9 @@ def pytest_addoption(parser):
     parser.addoption("--suite", choices=SUITES, default="all", help="which tests run (docs/tests.md); all by default")
     parser.addoption("--turn", type=int, default=0, help="the turn whose tenth of the long tests runs: --suite share")
     parser.addoption("--only", metavar="FILE", help="run the test functions alone that this file lists, an id a line")
+    parser.addoption("--also", metavar="FILE", help="with --suite share: run the listed long tests besides the tenth")
+    parser.addoption("--functions", metavar="FILE", help="write the ids of the collected test functions to a file")
+    parser.addoption("--shuffle", type=int, metavar="SEED", help="run the tests in a random order")
     parser.addoption("--no-skips", action="store_true", help="a skipped test is a failure, unless it needs hardware")
 
 

@@ -1,12 +1,13 @@
 """Suites of tests: which tests `make test`, `make test-all`, `make quick` and `.ci/run` choose.
 
 A test that takes long is marked `long`. `@pytest.mark.long` leaves all of its cases out of the fast suite;
-`@pytest.mark.long(keep=2)` keeps two of its parametrised cases there, always the same ones. Each long test belongs to one of ten
-shares, by a checksum of its id, so that ten turns in a row of `.ci/run` execute every test that exists.
+`@pytest.mark.long(keep=2)` keeps two of its parametrised cases there, always the same ones. Each long test belongs to
+one of ten shares, by a checksum of its id, so that ten turns in a row of `.ci/run` execute every test that exists.
 """
 
 from collections import defaultdict
 from pathlib import Path
+from random import Random
 from zlib import crc32
 
 SUITES = ("all", "fast", "long", "share")
@@ -33,20 +34,23 @@ def long_items(items):
     return {item for of_one in cases.values() for item in _beyond_kept(of_one)}
 
 
-def chosen(items, suite, turn=0, only=None):
+def chosen(items, suite, turn=0, only=None, also=None):
     """Reduce `items` in place to those of a suite, and return the items that were removed.
 
-    `turn` selects a tenth of the long tests where `suite` is "share". `only` is the path of a file with ids of test functions,
-    one a line, to which the choice is restricted.
+    `turn` selects a tenth of the long tests where `suite` is "share". `only` and `also` are paths of files that list
+    test functions by their ids, and whole test files, one a line: the choice is restricted to `only`; a share has the
+    long tests of `also` besides.
     """
     long = long_items(items) if suite != "all" else set()
-    listed = set(Path(only).read_text(encoding="utf-8").splitlines()) if only else None
+    only, also = _listed(only), _listed(also)
 
     def belongs(item):
-        if listed is not None and function_id(item.nodeid) not in listed:
+        if only is not None and not _names(only, item):
             return False
         if suite == "share":
-            return item in long and share_of(item.nodeid) == turn % SHARES
+            return item in long and (
+                share_of(item.nodeid) == turn % SHARES or (also is not None and _names(also, item))
+            )
         return suite == "all" or (item in long) == (suite == "long")
 
     kept, removed = [], []
@@ -54,6 +58,30 @@ def chosen(items, suite, turn=0, only=None):
         (kept if belongs(item) else removed).append(item)
     items[:] = kept
     return removed
+
+
+def shuffle(items, seed):
+    """Put test files, and the tests of each file, in a random order; the stories of one group keep theirs."""
+    order = Random(seed)  # equal in all processes
+    files = defaultdict(list)
+    for item in items:
+        files[item.path].append(item)
+    shuffled = list(files.values())
+    order.shuffle(shuffled)
+    for of_file in shuffled:
+        if not any(item.get_closest_marker("xdist_group") for item in of_file):
+            order.shuffle(of_file)
+    items[:] = [item for of_file in shuffled for item in of_file]
+
+
+def _listed(path):
+    return set(Path(path).read_text(encoding="utf-8").splitlines()) if path else None
+
+
+def _names(listed, item):
+    """Return whether a list names a test, by its function or its file."""
+    name = function_id(item.nodeid)
+    return name in listed or name.partition("::")[0] in listed
 
 
 def _beyond_kept(cases):

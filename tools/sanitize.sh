@@ -1,9 +1,9 @@
 #!/bin/sh
 # Builds the core with the address and undefined-behaviour sanitizers into an environment of its own, build/sanitized,
-# which sees the packages of the development environment, and runs the tests that exercise it, with few examples of each
-# property. Left out are those of the planning doors, as a server's worker may take too little memory for the sanitizers'
-# shadow of it, and those that spend their time in Python, NumPy, Ray, Shapely or a solver. The first report of a
-# sanitizer ends the run with an error.
+# which sees the packages of the development environment, and runs the tests that exercise it, with few examples of
+# each property (SANITIZED_TESTS names other test files). Left out are long tests, those of the planning doors, as a
+# server's worker may take too little memory for the sanitizers' shadow of it, and those that spend their time in
+# Python, NumPy, Ray, Shapely or a solver. The first report of a sanitizer ends the run with an error.
 set -eu
 python=${PYTHON:-.venv/bin/python}
 environment=build/sanitized
@@ -23,8 +23,9 @@ LD_PRELOAD="$(g++ -print-file-name=libasan.so) $(g++ -print-file-name=libubsan.s
 ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
 HYPOTHESIS_PROFILE=few \
-    "$environment/bin/python" -m pytest -p no:cacheprovider -n 3 --dist loadgroup --max-worker-restart 0 -rs \
-    tests/core tests/allocation tests/conformance tests/motion tests/simulation tests/traffic \
+    "$environment/bin/python" -m pytest -p no:cacheprovider -n 2 --dist loadgroup --max-worker-restart 0 -rs \
+    --suite fast ${SANITIZED_TESTS:-tests/core tests/allocation tests/conformance tests/motion tests/simulation
+    tests/traffic} \
     --ignore tests/core/test_stub.py --ignore tests/conformance/test_planning_doors.py \
     --ignore tests/allocation/test_bounds.py --ignore tests/allocation/test_exact.py \
     --ignore tests/allocation/test_ray_cluster.py --ignore tests/allocation/test_as_run.py \
