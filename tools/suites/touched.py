@@ -132,15 +132,14 @@ def _all_importers(file: str) -> set[str]:
 
 
 def _importers(file: str) -> set[str]:
-    """Return the Python files that import a file by an import statement that names its module."""
+    """Return the Python files that name the module of a file: in an import, or as the text of an entry point."""
     path = Path(file)
     parts = path.with_suffix("").parts[1 if file.startswith("src/") else 0 :]
     parts = parts[:-1] if parts[-1] == "__init__" else parts
     package, module = re.escape(".".join(parts[:-1])), parts[-1]
     whole = re.escape(".".join(parts))
-    pattern = re.compile(
-        rf"^\s*(?:import {whole}\b|from {whole} import|from {package} import .*\b{module}\b)", re.MULTILINE
-    )
+    listed = rf"from {package} import (?:\([^)]*|[^(\n]*)\b{module}\b"
+    pattern = re.compile(rf"\b{whole}\b|^\s*{listed}", re.MULTILINE)
     return {name for name, text in _python_files().items() if name != file and pattern.search(text)}
 
 
