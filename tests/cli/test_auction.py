@@ -171,6 +171,7 @@ def test_three_processes_agree_and_say_who_is_there(three, ports):
     assert sorted(task for route in plans[0] for task in route["tasks"]) == ["1", "2", "3"]
 
 
+@pytest.mark.long
 def test_without_the_third_the_others_go_on_when_they_have_waited(three, ports):
     processes = [robot(name, ports, "--wait", 4, "--linger", 1, "--format", "json") for name in "ab"]
     for code, out, err in ended(*processes):
@@ -179,6 +180,7 @@ def test_without_the_third_the_others_go_on_when_they_have_waited(three, ports):
         assert json.loads(out)["tasks_completed"] == 3
 
 
+@pytest.mark.long
 def test_with_its_memory_a_robot_that_starts_again_has_what_it_had(three, ports):
     first = [robot(name, ports, "--linger", 30, "--memory", f"{name}.memory", "--wait", 50) for name in "abc"]
     guard_s = time.monotonic() + GUARD_S
@@ -208,6 +210,7 @@ def owned(kept):
     return [claim["task"] for claim in kept["memory"]["claims"]]
 
 
+@pytest.mark.long
 def test_of_two_processes_of_one_robot_the_first_ends_and_says_why(three, ports):
     (spare,) = free_ports(1)
     first = robot("a", ports, "--wait", 50)
@@ -238,6 +241,7 @@ def test_without_either_something_is_missing(muster):
     assert err.endswith("Error: Missing argument 'MISSION'.\n")
 
 
+@pytest.mark.long
 def test_another_key_and_another_mission_are_told(muster, three, ports):
     """The first two robots have the same key, the third and the first the same mission."""
     assert muster("auction", "--new-key", "other")[0] == 0

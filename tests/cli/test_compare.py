@@ -96,6 +96,7 @@ def test_what_is_wrong_is_told(arguments, said, muster):
     assert said in err
 
 
+@pytest.mark.long
 def test_ctrl_c_keeps_what_there_is_and_the_same_command_goes_on(muster):
     """A first allocator is quick; the second tells when it has begun, and never ends."""
     Path("of_this_cli_test_too.py").write_text(

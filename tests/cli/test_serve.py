@@ -72,8 +72,12 @@ def test_from_start_to_end(tmp_path):
             assert (second.process.returncode, said.count("\n")) == (2, 1)
         assert server.end(signal.SIGINT) == (0, "ended\n")
     assert stat.S_IMODE((tmp_path / "muster.db.lock").stat().st_mode) == 0o600
+
+
+@pytest.mark.long
+def test_a_mission_file_is_uploaded_once(tmp_path):
     (tmp_path / "yard.yaml").write_text(MISSION.replace("name: yard", "name: court"), encoding="utf-8")
-    for _ in range(2):  # it is uploaded once
+    for _ in range(2):
         with served(tmp_path, "yard.yaml") as again:
             assert again.address.endswith("/plan/court")
             assert got(again.address).status_code == 200
@@ -206,6 +210,7 @@ def test_a_new_file_of_tokens_can_be_read_by_a_service(muster, tmp_path):
     assert stat.S_IMODE((tmp_path / "tokens").stat().st_mode) == 0o644
 
 
+@pytest.mark.long
 def test_tokens_that_are_added_at_once_have_a_line_each(tmp_path):
     (tmp_path / "tokens").write_text("watch wall -")
     names = [f"n{k}" for k in range(4)]

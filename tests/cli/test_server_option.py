@@ -121,6 +121,7 @@ def test_tasks_that_no_plan_does_together_are_named(folder, muster, url):
     assert muster("check", "apart.yaml", "--format", "json", "--server", url) == here
 
 
+@pytest.mark.long
 def test_a_simulation_is_as_here(plan, muster, url):
     arguments = ("simulate", "yard.yaml", "--plan", plan, "--seed", 3, "--format", "json")
     assert muster(*arguments, "--server", url)[:2] == muster(*arguments)[:2]

@@ -47,6 +47,7 @@ def answer(muster, *arguments):
     return json.loads(out)
 
 
+@pytest.mark.long(keep=8)
 @pytest.mark.parametrize("name", [name for name in mission_names() if name not in ("eil51", "berlin52", "eil76")])
 def test_shipped_missions_are_carried_out(name):
     """Every planned task is done, once, no contact, and nothing starts before what it waits for has ended.
@@ -231,6 +232,7 @@ def is_written(muster, record, seconds):
     return code == 0 and json.loads(out)["duration_s"] >= seconds
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("written_s", "after_s"), [(0.0, 0.5), (1.0, 0.0)])
 def test_killed_at_any_moment_it_leaves_a_record_that_replays(muster, tmp_path, written_s, after_s):
     """The point of the record: what was carried out up to there can be looked at."""

@@ -16,6 +16,7 @@ from muster.mission.plan_reader import read_plan
 pytestmark = pytest.mark.usefixtures("folder")
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -96,6 +97,7 @@ def test_progress_is_not_shown_where_there_is_no_terminal():
     assert "planning" not in done.stdout
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("form", ["table", "json"])
 def test_progress_is_shown_on_a_terminal_and_ctrl_c_keeps_the_best_plan_so_far(form, muster):
     run_ = OnTerminal("solve", "eil51-5", "--time-limit", 600, "-o", "plan.json", "--format", form)

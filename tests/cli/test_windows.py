@@ -44,6 +44,7 @@ def on_windows(*arguments):
     return ended.returncode, ended.stdout, ended.stderr
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("arguments", "purpose"),
     [

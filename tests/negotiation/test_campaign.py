@@ -19,6 +19,7 @@ from muster.running.negotiation_trials.scenario import scenario_of
 RUNS = 15
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("timed", [False, True], ids=["untimed", "with rules of time"])
 def test_nothing_fails(timed):
     assert {seed: what for seed in range(RUNS) if (what := trial(seed, timed=timed).failures)} == {}
@@ -130,6 +131,7 @@ PLANTED_IN_TIME = {  # which run finds the fault with which seed, or soon after 
 }
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("fault", PLANTED_IN_TIME)
 def test_a_fault_in_time_is_found(monkeypatch, fault):
     tried, first, *where = PLANTED_IN_TIME[fault]
@@ -137,6 +139,7 @@ def test_a_fault_in_time_is_found(monkeypatch, fault):
     assert any(tried(seed).failures for seed in range(first, first + 20))
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("tried", [like_the_centre, calm], ids=lambda tried: tried.__name__)
 def test_nothing_fails_of_teams_at_work(tried):
     """For those that carry a mission out see test_carried_out."""

@@ -9,6 +9,7 @@ from tests.negotiation.campaign.team_missions import team_scene
 SEEDS, CHUNK = 12, 6
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("first", range(0, SEEDS, CHUNK))
 def test_no_team_is_too_small_or_apart_and_nothing_is_left_without_a_reason(first):
     failures = {seed: what for seed in range(first, first + CHUNK) if (what := carried_out(seed).failures)}

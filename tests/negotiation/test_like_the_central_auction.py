@@ -44,6 +44,7 @@ def assert_like_central(problem, terms):
     }
 
 
+@pytest.mark.long(keep=10)
 @pytest.mark.parametrize(("number", "name"), list(enumerate(mission_names())))
 def test_on_every_shipped_mission(number, name):
     more = {"salesmen": 3} if mission_path(name).suffix == ".tsp" else {}

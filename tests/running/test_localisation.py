@@ -49,6 +49,7 @@ def off_at_the_end(world, localise, *, noise=SLIPS, pose=None, robot=None, seed=
     return math.dist(truth[:2], SQUARE[-1]), math.dist(truth, robots.ports["r"].telemetry().position)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 def test_odometry_leads_astray_and_lasers_back(world):
     off, _ = off_at_the_end(world, None)

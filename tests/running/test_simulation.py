@@ -85,6 +85,7 @@ SHIPPED = {
 }
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize(
     ("name", "robot", "task"), [(name, *pair) for name, pairs in SHIPPED.items() for pair in pairs]
 )

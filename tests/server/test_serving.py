@@ -22,7 +22,7 @@ async def _app(scope, receive, send):
 
 async def _told(*pieces):
     """What a server answers to these pieces, until it ends the connection or has completed nothing for a while."""
-    config = uvicorn.Config(_app, http=PatientProtocol, log_config=None, lifespan="off", timeout_keep_alive=1)
+    config = uvicorn.Config(_app, http=PatientProtocol, log_config=None, lifespan="off", timeout_keep_alive=0.2)
     config.load()
     state = ServerState()
     loop = asyncio.get_running_loop()
@@ -47,7 +47,7 @@ async def _told(*pieces):
 
 @pytest.mark.parametrize("before", [(), (_WHOLE,)])
 def test_headers_that_do_not_come(monkeypatch, before):
-    monkeypatch.setattr(serving, "_HEADERS_S", 1.0)  # within which those that are whole are there, busy as it may be
+    monkeypatch.setattr(serving, "_HEADERS_S", 0.5)  # within which those that are whole are there, busy as it may be
     answer, ended = asyncio.run(asyncio.wait_for(_told(*before, b"GET / HTTP/1.1\r\nHost: loc"), 30))
     assert ended
     assert answer.count(b"200 OK") == len(before)

@@ -132,7 +132,7 @@ def two(sky, faults=None, speed=3.0):
     return [sky(faults, system=k + 1, speed=speed, origin=origin_at(ORIGIN, (0.0, 8.0 * k, 0.0))) for k in range(2)]
 
 
-@pytest.mark.parametrize("more", [(), ("--offboard",)])
+@pytest.mark.parametrize("more", [(), pytest.param(("--offboard",), marks=pytest.mark.long)])
 def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
     drones = two(sky, speed=1.0 if more else 3.0)
     process = flying(*more)
@@ -150,6 +150,7 @@ def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
     assert all(drone.armed and drone.mode == PX4.hold for drone in drones)
 
 
+@pytest.mark.long
 def test_ctrl_c_while_drones_arm_leaves_none_armed(sky, flying):
     drones = two(sky, Faults(slow_arm_s=4.0))
     process = flying()
@@ -167,7 +168,11 @@ def asked_to_arm(drone):
 
 @pytest.mark.parametrize(
     ("end", "mode", "more"),
-    [("return", PX4.back, ()), ("land", PX4.land, ()), ("hold", PX4.hold, ("--offboard",))],
+    [
+        ("return", PX4.back, ()),
+        ("land", PX4.land, ()),
+        pytest.param("hold", PX4.hold, ("--offboard",), marks=pytest.mark.long),
+    ],
 )
 def test_what_drones_do_at_the_end(mission, port, sky, end, mode, more, capsys):
     drone = sky(speed=1.0 if more else 8.0)

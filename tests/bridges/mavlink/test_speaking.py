@@ -68,6 +68,7 @@ def test_a_simulator_that_stood_still_has_not_lost_its_link(drone, monkeypatch):
     assert 0.2 <= told[-1] < 0.7
 
 
+@pytest.mark.long
 def test_what_ends_the_thread_is_raised_and_drones_can_be_told_to_hover_all_the_same(fleet, drone):
     set_out(fleet, drone)
     (link,) = fleet._links

@@ -26,6 +26,7 @@ def said_to(drone, since=0):
     )
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 @pytest.mark.parametrize("offboard", [False, True], ids=["mission", "offboard"])
 def test_three_drones_one_of_which_runs_low(kind, offboard):

@@ -35,6 +35,7 @@ def said(heard, topic):
     return [one for k, one in enumerate(found) if k == 0 or one != found[k - 1]]
 
 
+@pytest.mark.long
 def test_eleven_tasks_are_done_by_two_after_the_third_was_killed(own_ros, mission):
     """While two are there that say of themselves what they cannot mean, and do not join."""
     ros = own_ros

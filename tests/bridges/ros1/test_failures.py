@@ -5,6 +5,7 @@ import signal
 import time
 from contextlib import ExitStack
 
+import pytest
 from tests.bridges.ros1.conftest import NODES, alive, family, ros_in
 
 FAR = """
@@ -37,6 +38,7 @@ def velocities(listener):
     return [data for topic, data in listener.so_far() if topic == "/r_0/cmd_vel"]
 
 
+@pytest.mark.long
 def test_masters_that_go_away_end_the_whole_and_one_that_is_started_anew_does_not(rospy_there, tmp_path):
     """One hangs, one refuses connections, one is back in time: each under a mission of its own, for each takes long."""
     with ExitStack() as stack:
@@ -62,6 +64,7 @@ def test_masters_that_go_away_end_the_whole_and_one_that_is_started_anew_does_no
             assert robot.poll() is None
 
 
+@pytest.mark.long
 def test_robots_stand_when_their_controller_ends_or_another_takes_its_place(ros):
     (ros.folder / "far.yaml").write_text(VERY_FAR, "utf-8")
     ros.robot("r_0", 0, 0)
@@ -101,6 +104,7 @@ def test_robots_stand_when_their_controller_ends_or_another_takes_its_place(ros)
     assert speeds[-10:] == [0.0] * 10
 
 
+@pytest.mark.long
 def test_who_reports_while_its_node_says_goodbye_does_not_complain(ros):
     """Topics are closed for a while before `rospy.is_shutdown`, and long where the machine is busy."""
     monitor = ros.start(ros.file("slow_goodbye.py"))

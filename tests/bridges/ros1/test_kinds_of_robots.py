@@ -56,6 +56,7 @@ def nearest(points, place):
     return min(math.dist(point, place) for point in points)
 
 
+@pytest.mark.long
 def test_a_plan_is_carried_out_from_where_motion_capture_sees_robots_and_drawn_for_rviz(ros, tmp_path):
     """On the ground and in the air, as vrpn_client_ros does: poses on topics of its own, in any frame.
 
@@ -105,6 +106,7 @@ def test_a_plan_is_carried_out_from_where_motion_capture_sees_robots_and_drawn_f
     assert set(ended) == {ended[0]} != {begun}  # all are done at the end
 
 
+@pytest.mark.long
 def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is_from_its_start(ros, tmp_path):
     """(4.2)-(4.4) of [tcf-thesis]: team/r_0/odom is tied to the map by the start in the mission alone.
 
@@ -166,6 +168,7 @@ def test_options_that_cannot_be_meant_are_one_line(rospy_there, one, monkeypatch
     assert err.count("\n") == 1
 
 
+@pytest.mark.long
 def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path):
     """A stranger and a robot of the mission, driven by hand while another of the mission's is waited for in vain.
 

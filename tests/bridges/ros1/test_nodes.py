@@ -38,6 +38,7 @@ def ctrl_c(process):
     os.killpg(process.pid, signal.SIGINT)
 
 
+@pytest.mark.long
 def test_missions_are_loaded_carried_out_as_they_change_and_follow_one_another(ros):
     ros.robot("r_0", 0, 0)
     topics = ("/muster/events", "/mission_planner/plan", "/muster/status")
@@ -160,6 +161,7 @@ SIX = """index,x,y,type,actuation_cost,prerequisites
 SUITABILITY = "robot_type,D,E\nbeta,0.9,0.9\nzeta,0.9,0.0\n"
 
 
+@pytest.mark.long
 def test_without_a_mission_robots_are_watched_and_planned_for(ros):
     """And a task list is carried out by them: [tcf-thesis], 5.2: command_interface takes the name of one."""
     (ros.folder / "six.csv").write_text(SIX, encoding="utf-8")
@@ -226,6 +228,7 @@ def test_without_a_mission_robots_are_watched_and_planned_for(ros):
     assert set(json.loads(out)["tasks_done"]) == {"1", "2", "3"}
 
 
+@pytest.mark.long
 def test_a_node_that_dies_ends_the_whole(ros):
     (ros.folder / "far.yaml").write_text(FAR, encoding="utf-8")
     ros.robot("r_0", 0, 0)
@@ -246,6 +249,7 @@ def test_a_node_that_dies_ends_the_whole(ros):
     assert twists[-1]["linear"]["x"] == 0
 
 
+@pytest.mark.long
 def test_ctrl_c_while_planning_leaves_nobody_behind(ros):
     tasks = [(f"t_{k}", k % 7, 3 * k % 11) for k in range(60)]
     (ros.folder / "long.yaml").write_text(mission("long", *tasks), encoding="utf-8")

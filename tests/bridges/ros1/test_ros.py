@@ -59,6 +59,7 @@ def test_robots_are_given_goals_wait_for_a_window_and_begin_together(ros):
             assert any(math.dist((goal["x"], goal["y"]), where[row["task"]]) < 1e-6 for goal in goals)
 
 
+@pytest.mark.long
 def test_a_robot_without_a_pose_is_one_line(ros, mission):
     carried = ros.muster(mission, "--wait", "0.5")
     out, err = carried.communicate(timeout=20)

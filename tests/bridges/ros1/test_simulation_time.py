@@ -42,6 +42,7 @@ def carried_out(ros):
     return json.loads(out), events, odometry
 
 
+@pytest.mark.long
 def test_a_slow_clock_that_stands_and_is_set_back_takes_no_time_back_and_then_a_fast_one_is_gone_by(simulated):
     times = 4.0
     simulated.start(simulated.file("clock.py"), 0.8, 1.0, times)
@@ -59,6 +60,7 @@ def test_a_slow_clock_that_stands_and_is_set_back_takes_no_time_back_and_then_a_
     assert 0.5 < (east - west) / (late - early) <= 3.0 * 1.1  # it is as fast as it can be, by that clock
 
 
+@pytest.mark.long
 def test_no_clock_is_one_line(simulated):
     carried = simulated.muster("m.yaml", "--wait", "0.5")
     out, err = carried.communicate(timeout=20)

@@ -54,6 +54,7 @@ def camera(ros, *arguments):
     return ros.start("-m", "muster.cli.uav_camera", "d_0", *arguments)
 
 
+@pytest.mark.long
 def test_what_a_drone_sees_becomes_a_task_of_another_robot_whose_laser_shows_obstacles(ros):
     """The rover's task is known to nobody until the drone's camera has seen the tag.
 

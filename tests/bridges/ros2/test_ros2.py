@@ -48,6 +48,7 @@ def newest(participant, reader):
     return taken[-1].pose.pose.position
 
 
+@pytest.mark.long
 def test_robots_of_a_namespace_carry_a_mission_out_one_joins_and_one_that_dies_is_planned_for(
     simulated, start, mission, tmp_path
 ):
@@ -80,6 +81,7 @@ def test_robots_of_a_namespace_carry_a_mission_out_one_joins_and_one_that_dies_i
     assert record.stat().st_size > 0
 
 
+@pytest.mark.long
 def test_ctrl_c_lets_robots_stay_where_they_are(simulated, start, mission):
     simulated("r_0", 0, 0)
     simulated("r_1", 0, 3)

@@ -44,6 +44,7 @@ found:
 """
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not any(map(_is_there, BACKENDS.values())), reason="neither EGL nor OSMesa is installed")
 def test_what_a_drone_sees_becomes_a_task_of_another_robot(simulated, start, tmp_path):
     (tmp_path / "yard.yaml").write_text(YARD, encoding="utf-8")

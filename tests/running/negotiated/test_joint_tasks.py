@@ -63,6 +63,7 @@ def test_all_of_a_team_begin_and_end_at_one_moment_however_much_is_lost(seed):
     assert abs(x - y) <= MOMENT_S
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("seed", range(12))
 def test_a_member_that_fails_at_any_moment_frees_the_task_and_nothing_is_done_by_fewer_or_twice(seed):
     random = Random(seed)

@@ -51,6 +51,7 @@ def test_without_faults_every_task_is_done_once_after_what_it_waits_for(seed):
     assert all(ended[before] <= began[task.id] for task in mission.tasks for before in task.prerequisites)
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("seed", range(12))
 def test_while_robots_hear_each_other_nothing_is_done_twice_whoever_crashes(seed):
     mission, random = square(seed), Random(seed)

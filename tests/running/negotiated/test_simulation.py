@@ -34,7 +34,7 @@ def carried_out(mission, **how):
     return report, told
 
 
-@pytest.mark.parametrize("transport", ["udp", "zenoh"])
+@pytest.mark.parametrize("transport", ["udp", pytest.param("zenoh", marks=pytest.mark.long)])
 def test_without_faults_they_do_what_the_auction_in_one_process_says(transport):
     mission = line()
     report, told = carried_out(mission, negotiation=Negotiation(transport=transport))
@@ -47,6 +47,7 @@ def test_without_faults_they_do_what_the_auction_in_one_process_says(transport):
     assert [h.data for h in told["mission_ended"]] == [{}]
 
 
+@pytest.mark.long
 def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and_go(tmp_path):
     new, joining = Task(id="new", position=(5.0, 30.0)), Robot(id="j", position=(10.0, 30.0), radius_m=0.3)
     mission = line(
@@ -90,6 +91,7 @@ def test_when_all_robots_fail_the_mission_ends_with_what_was_done():
     assert sum(robot.usage_flown for robot in report.robots) > 10  # that of the dead, too
 
 
+@pytest.mark.long
 def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
     mission = Mission(
         robots=tuple(Robot(id=f"r_{k}", position=(12.0 * k, 0.0), radius_m=0.3) for k in range(2)),
@@ -107,6 +109,7 @@ def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
     assert all(sorted(robots) == ["r_0", "r_1"] for robots in report.done_twice.values())
 
 
+@pytest.mark.long
 def test_tasks_that_must_not_be_done_twice_wait_for_who_is_cut_off():
     mission = line(
         [Event(at_s=1, robot_silent="r_0"), Event(at_s=45, robot_returns="r_0")], across_partition="at-most-once"

@@ -31,6 +31,7 @@ def kinds(log):
     return {entry["kind"] for entry in log}
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 def test_robots_that_err(world):
     whole = muster.load("6T-2R")
@@ -42,6 +43,7 @@ def test_robots_that_err(world):
     assert plain != noisy
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 def test_what_cameras_find_is_found_again(world):
     drone = replace(looking.DRONE, camera=replace(looking.CAMERA, rate_hz=2))
@@ -52,6 +54,7 @@ def test_what_cameras_find_is_found_again(world):
     assert {"found-4", "found-9"} <= set(log[-1]["data"]["tasks_done"])
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(3))
 def test_walls(seed):
     mission = walled(random_mission(seed, tasks=6, robots=3), Random(seed))

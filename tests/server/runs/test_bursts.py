@@ -3,6 +3,7 @@
 from contextlib import closing
 from itertools import pairwise
 
+import pytest
 from tests.server.runs.stage import Kept, performed, performed_with_crashes, require_same
 
 import muster
@@ -65,6 +66,7 @@ class Stream:
         return {"id": k + 1, "verb": "event", "data": new_task(k), "who": "ada"}
 
 
+@pytest.mark.long
 def test_while_orders_come_without_end_the_clock_goes_on():
     kept, clock = Kept(), VirtualClock(step_s=STEPS_FIRST_S / 10)
     with closing(SimulatedRun(MISSION, PLAN, "kinematic", {}, LogRecorder(MISSION, kept))) as world_run:

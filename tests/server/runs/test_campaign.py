@@ -1,8 +1,10 @@
 """The campaign of kills, a short one; `make campaign-server` runs the long one."""
 
+import pytest
 from tests.server.runs.campaign import Campaign
 
 
+@pytest.mark.long
 def test_what_is_killed_at_random_moments_goes_on(tmp_path):
     counted = Campaign(3, 4, f"sqlite:///{tmp_path / 'muster.db'}").go()
     assert counted["servers"] + counted["runners"] + counted["workers"] == 3

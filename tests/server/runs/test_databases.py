@@ -6,6 +6,7 @@ import os
 import signal
 from itertools import pairwise
 
+import pytest
 from tests.server.databases import postgresql, postgresql_url
 from tests.server.runs.process import kill, serving, until
 from tests.server.runs.store import ADA, planned
@@ -51,6 +52,7 @@ def judge(store, run, tasks, resumed):
     return log
 
 
+@pytest.mark.long
 def test_a_run_and_a_job_outlive_the_databases_server(postgresql, postgresql_url):
     mission = muster.load("31T-6R50")
 
@@ -87,6 +89,7 @@ def test_a_run_and_a_job_outlive_the_databases_server(postgresql, postgresql_url
     assert asked == [(f"run.{verb}", "done") for verb in ("speed", "resume", "pause", "start")]
 
 
+@pytest.mark.long
 def test_a_run_and_then_its_server_are_killed_and_another_goes_on(postgresql_url):
     """On SQLite see test_runs and the campaign."""
     with serving(postgresql_url) as first:

@@ -4,6 +4,8 @@ import json
 import subprocess
 import sys
 
+import pytest
+
 HUNGRY = """
 import sys
 from muster.server.runs import runner
@@ -28,5 +30,6 @@ def test_a_simulated_run_may_have_so_much_and_says_what_it_would_need():
     assert hungry("kinematic") == [{"type": "failed", "reason": reason}]
 
 
+@pytest.mark.long
 def test_what_commands_real_robots_is_not_ended_for_that():
     assert hungry("mavlink") == []  # it has its mission, which is none

@@ -62,6 +62,7 @@ def heard(endpoint, seconds):
     return [place for _, *place in said]
 
 
+@pytest.mark.long
 def test_drones_stand_when_the_server_is_killed_and_what_may_be_begun_once_is(tmp_path, sky):
     """For who kills their runner alone see test_ros."""
     database = f"sqlite:///{tmp_path / 'muster.db'}"

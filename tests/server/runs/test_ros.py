@@ -76,6 +76,7 @@ def judge(run, log, stood, there):
         assert math.dist(stood[0][name][:2], stood[-1][name][:2]) < 0.05
 
 
+@pytest.mark.long
 def test_robots_on_ros_1_are_paused_and_found_again(store, ros):
     for name, place in PLACES.items():
         ros.robot(name, *place)
@@ -83,6 +84,7 @@ def test_robots_on_ros_1_are_paused_and_found_again(store, ros):
     judge(*asyncio.run(through(store, "ros1", there, master=ros.master.address, known_only=True)), there)
 
 
+@pytest.mark.long
 def test_robots_on_ros_2_are_paused_and_found_again(store, simulated):
     pytest.importorskip("cyclonedds")
     for name, place in PLACES.items():

@@ -167,6 +167,7 @@ READ_ONLY = ("PRAGMA query_only = ON",)
 WORKS = ("PRAGMA max_page_count = 1000000", "PRAGMA query_only = OFF")
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("refuses", "why"), [(FULL, "the disk is full"), (READ_ONLY, "may only be read")])
 def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_later(store, refuses, why):
     plan, pragma = planned(store, muster.load("31T-6R50")), Pragma(store)
@@ -202,6 +203,7 @@ def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_lat
     assert asked == dict.fromkeys(("run.start", "run.pause", "run.speed", "run.resume"), ("done", "ada"))
 
 
+@pytest.mark.long
 def test_a_pause_does_not_wait_for_a_locked_database_and_is_written_once(store):
     plan = planned(store, muster.load("31T-6R50"))
 
@@ -236,6 +238,7 @@ def test_a_pause_does_not_wait_for_a_locked_database_and_is_written_once(store):
     assert commands == ["pause", "resume", "speed"]
 
 
+@pytest.mark.long
 def test_what_the_database_took_late_is_not_done_again_after_a_crash(store):
     plan = store.plans.get(planned(store, muster.load("31T-6R50")))
     run = store.runs.add(plan.mission, plan.mission_version, plan.id, "kinematic", {}, None, "ada").id
@@ -261,6 +264,7 @@ def test_what_the_database_took_late_is_not_done_again_after_a_crash(store):
     assert [action.outcome for action in store.actions.list(run=run)] == ["done", "done"]
 
 
+@pytest.mark.long
 def test_a_runner_is_started_again_while_the_database_is_gone(store, monkeypatch):
     plan = planned(store, muster.load("31T-6R50"))
 

@@ -212,6 +212,7 @@ def test_a_job_that_is_stopped_keeps_its_best_plan(with_services, children):
     with_services(story)
 
 
+@pytest.mark.long
 def test_a_job_whose_worker_is_killed_is_done_once_more(with_services, children):
     async def story(services):
         job = await services.jobs.ask_plan(WHO, "tiny", time_limit=1.5)

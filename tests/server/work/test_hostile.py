@@ -90,12 +90,14 @@ def test_a_text_that_means_harm_is_refused(asked, text):
     assert answer["summary"] is None
 
 
+@pytest.mark.long
 def test_a_million_tasks_end_with_a_line(asked):
     tasks = "\n".join(f"  - {{id: t{k}, position: [{k}, 0]}}" for k in range(1_000_000))
     with pytest.raises((TimedOut, OutOfMemory), match=r"^it (took longer than|needs more than) [^\n]*$"):
         asked("check", limit_s=4, mission=given(TINY + tasks))
 
 
+@pytest.mark.long
 def test_an_image_that_unpacks_to_gigabytes_ends_with_a_line(asked):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
