@@ -248,6 +248,7 @@ def test_plan_files_for_drones_are_written_into_a_folder(tmp_path):
         muster.export(mission, plan, "qgc", altitud=10.0)
 
 
+@pytest.mark.long
 def test_sheets_are_bytes_and_have_options(tmp_path, mission, plan):
     files = muster.export(mission, plan, "sheets", tmp_path / "sheets.pdf")
     assert (tmp_path / "sheets.pdf").read_bytes() == files.contents["sheets.pdf"] == files.encoded["sheets.pdf"]

@@ -124,6 +124,7 @@ def test_a_part_costs_what_it_costs_in_the_whole(over_map):
             )
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("over_map", [False, True])
 def test_a_team_with_actions_can_be_divided(over_map):
     mission = random_mission(2, tasks=28, over_map=over_map, spatial=False)

@@ -168,10 +168,15 @@ def admissible(problem, allocator, stop, **params):
 
 OTHERS = ("berlin52", "eil51", "eil76", "collapsed-building", "warehouse")  # files of other kinds; teams; relations
 SHIPPED = [name for name in mission_names() if name not in OTHERS]
+WITH_MAPS = ("depot", "floor", "warehouse-charging", "yard")  # they take ten times as long as the others
 
 
-@pytest.mark.long(keep=8)
-@pytest.mark.parametrize(("number", "name"), [*enumerate(SHIPPED)])
+def case(*values):
+    """Return the parameters of a test of a shipped mission, whose name comes last."""
+    return pytest.param(*values, marks=pytest.mark.long if values[-1] in WITH_MAPS else ())
+
+
+@pytest.mark.parametrize(("number", "name"), [case(*numbered) for numbered in enumerate(SHIPPED)])
 def test_auctions_of_every_kind_are_admissible(number, name):
     """Three kinds for each mission: of any eight missions, every kind there is."""
     problem = Problem.compile(muster.load(name))
@@ -180,8 +185,7 @@ def test_auctions_of_every_kind_are_admissible(number, name):
         admissible(problem, "auction", Stop(), bid=bid, placement=placement, winner=winner)
 
 
-@pytest.mark.long(keep=8)
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", [case(name) for name in SHIPPED])
 def test_markets_are_admissible_or_refused(name):
     problem = Problem.compile(muster.load(name))
     if not problem.asked.keys() <= ALLOCATORS["market"].can:

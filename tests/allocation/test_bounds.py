@@ -183,6 +183,7 @@ def test_where_every_robot_has_a_route_its_start_is_left():
     assert bounds[1] == pytest.approx(160.0 + 52.0 + 7.0 - 1.0, abs=2.0)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("objective", "seconds"), [("makespan", 5.0), ("max", 0.0), ("max", 5.0)])
 def test_slow_robots_help_no_more_than_they_can(objective, seconds):
     """Two robots on a lattice, one of them three times as fast: in a time they do a number of tasks between them."""
@@ -275,6 +276,7 @@ def test_farthest_task_bounds_the_greatest_usage():
     assert bound.arguments == ("the farthest task",)
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize(
     ("name", "best_known", "gap"),
     [("31T-6R", 213.5616, 0.17), ("16T-3R", 342.9002, 0.11), ("24T-5R", 189.2523, 0.14), ("eil51-5", 629.9602, 0.11)],

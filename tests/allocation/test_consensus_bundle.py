@@ -120,6 +120,7 @@ def test_with_one_task_each_the_network_does_not_matter(seed, robots):
 # Plans.
 
 
+@pytest.mark.long(keep=20)
 @pytest.mark.parametrize("seed", range(60))
 def test_every_plan_is_admissible(seed):
     mission = random_mission(seed, tasks=seed % 13, robots=1 + seed % 5)
@@ -261,6 +262,7 @@ def mission_with_tables(seed):
     return replace(mission, suitability=None, tasks=tuple(replace(task, **free) for task in mission.tasks))
 
 
+@pytest.mark.long(keep=1)
 @every_topology
 @given(seed=seeds)
 def test_travel_by_tables(topology, seed):

@@ -105,6 +105,7 @@ def test_bound_exact_search(objective):
             assert lower_bound(problem) <= value * (1 + 1e-9)
 
 
+@pytest.mark.long
 def test_16t_3r_is_proven():
     """The best plan known of a shipped mission with prerequisites across robots is the best there is."""
     problem = Problem.compile(muster.load("16T-3R"))

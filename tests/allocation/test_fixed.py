@@ -60,6 +60,7 @@ def fits(mission, fixed):
     return True
 
 
+@pytest.mark.long(keep=20)
 @pytest.mark.parametrize("allocator", ["search", "greedy"])
 @pytest.mark.parametrize("seed", range(30))
 def test_routes_begin_with_them_and_the_plan_is_admissible(allocator, seed):

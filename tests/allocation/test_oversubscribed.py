@@ -78,6 +78,7 @@ def test_a_remote_task_that_fits_is_done_though_others_are_left_out():
     assert len(plan.unassigned) > 0
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_every_objective_comes_after_the_weight(objective):
     mission = orienteering(5, tasks=30, robots=3, limit=45.0)

@@ -84,6 +84,7 @@ def workers(address):
     assert signal.getsignal(signal.SIGTERM) is before  # Ray's own does not stay
 
 
+@pytest.mark.long
 def test_the_plan_is_that_of_threads_and_from_outside_of_the_cluster_joining_is_tried_again(
     cluster, monkeypatch, capfd
 ):
@@ -174,6 +175,7 @@ def jobs(improve):
 class TestOfOneWhoHasJoined:
     """First what leaves workers alive: a later test has them without a start."""
 
+    @pytest.mark.long
     def test_jobs_end_when_it_is_time(self, workers, tmp_path, monkeypatch):
         """Those at work return the best they have; those that have not begun, nothing."""
         begin = improvement(lambda seed: tmp_path.joinpath(str(seed)).touch())
@@ -186,6 +188,7 @@ class TestOfOneWhoHasJoined:
         assert len(held) >= 2  # a worker that has returned one may begin another before that is cancelled
         assert all(sorted(offer.routes[0]) == list(range(20)) for offer in held)
 
+    @pytest.mark.long
     def test_where_the_head_is_lost_parts_keep_their_routes(self, address, workers, caplog):
         start = [[i] for i in range(24)]
         problem = Problem.compile(MISSION)
@@ -197,6 +200,7 @@ class TestOfOneWhoHasJoined:
         assert [route[0] for route in better] == list(range(24))
         assert sorted(j for route in better for j in route) == list(range(600))
 
+    @pytest.mark.long
     def test_a_worker_that_cannot_do_the_work_is_named(self, address, workers):
         def lack(seed):
             raise ModuleNotFoundError("No module named 'muster'")
@@ -208,6 +212,7 @@ class TestOfOneWhoHasJoined:
             "expected Muster of this version on every machine"
         )
 
+    @pytest.mark.long
     def test_a_process_that_has_joined_one_stays_there(self, address, workers):
         with joined("auto") as again:
             assert again.count == 2
@@ -215,6 +220,7 @@ class TestOfOneWhoHasJoined:
         with pytest.raises(ParameterError, match="in a process that has joined a cluster; expected auto"):
             muster.solve(MISSION, "search", parts=4, ray=address)
 
+    @pytest.mark.long
     def test_the_command_works_on_it_and_ctrl_c_keeps_the_best_plan(
         self, cluster, workers, tmp_path, capsys, monkeypatch
     ):
@@ -237,6 +243,7 @@ class TestOfOneWhoHasJoined:
         assert written.objective_value < read_plan(start).objective_value
         assert capsys.readouterr().err == "interrupted: this is the best plan so far\n"
 
+    @pytest.mark.long
     def test_within_a_time(self, workers):
         plan = muster.solve(MISSION, "search", time_limit=2.0, parts=4, ray="auto")
         assert plan.complete
@@ -244,6 +251,7 @@ class TestOfOneWhoHasJoined:
         values = [value for _, value in plan.history]
         assert values == sorted(values, reverse=True)
 
+    @pytest.mark.long
     def test_a_worker_that_dies_is_replaced(self, workers, tmp_path):
         mark = tmp_path / "died"
 
@@ -257,6 +265,7 @@ class TestOfOneWhoHasJoined:
         alone = Threads(1).map(jobs(improvement(lambda seed: None)), Stop())
         assert [offer.routes for offer in offers] == [offer.routes for offer in alone]
 
+    @pytest.mark.long
     def test_a_part_whose_workers_die_keeps_its_routes(self, workers, caplog, monkeypatch):
         monkeypatch.setattr("muster.allocation.partition._DIVISIONS", 1)  # in which two workers die and start
 

@@ -35,6 +35,7 @@ def test_every_string_stands_for_an_admissible_plan(seed):
             assert figures[k, 3] == max(inspection.usages)
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("name", ["31T-6R50", "24T-5R", "eil51-5", "depot"])
 def test_the_string_of_a_complete_plan_decodes_to_the_plan(name):
     problem = Problem.compile(muster.load(name))

@@ -57,6 +57,7 @@ def test_in_regions(planner, data):
         assert space.region.buffer(1e-6).covers(shapely.LineString(answer.points))
 
 
+@pytest.mark.long(keep=5)
 @every_planner
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
@@ -71,6 +72,7 @@ def test_on_grids(planner, data):
             assert planner not in ("shortest", "theta-star") or grid_sees(space.grid.blocked, a, b)
 
 
+@pytest.mark.long(keep=5)
 @every_planner
 def test_the_same_for_the_same_seed(planner):
     space = PolygonSpace(shapely.box(0, 0, 10, 10).difference(shapely.box(4, 2, 6, 9)))

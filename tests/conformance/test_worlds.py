@@ -62,6 +62,7 @@ def test_robots_reach_way_points_turn_and_hold(world_of, kind):
     assert said.velocity == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.long(keep=4)
 @every_kind
 def test_robots_go_at_their_top_speed(world_of, kind):
     world = world_of(mission(robot(**kind)))

@@ -124,6 +124,7 @@ def sold_in_random_order(problem, random, figure="growth", insert=True):
         bidders.award(*random.choice(offers))
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("insert", [True, False])
 @pytest.mark.parametrize("figure", FIGURES)
 @given(seed=seeds, tables=st.booleans())

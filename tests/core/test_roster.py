@@ -105,6 +105,7 @@ def _check(problem: Problem, roster: core.Roster) -> None:
     assert fresh.objective == pytest.approx(roster.objective)
 
 
+@pytest.mark.long(keep=12)
 @pytest.mark.parametrize("objective", ["total", "makespan", "lateness", "total+max"])
 @pytest.mark.parametrize("seed", range(12))
 def test_schedule_after_random_changes_is_the_earliest(seed: int, objective: str, tmp_path: Path) -> None:

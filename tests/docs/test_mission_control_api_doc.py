@@ -32,6 +32,7 @@ def test_the_routes_are_those_of_the_description():
     assert set(re.findall(r"^\| `([A-Z]+ /[^`]*)` \|", TEXT, flags=re.MULTILINE)) == there
 
 
+@pytest.mark.long
 def test_the_python_example_runs(url, capsys):
     exec(compile(block("python").replace(DESCRIBED, url), "mission-control-api.md", "exec"), {})
     *_, entry, took = capsys.readouterr().out.splitlines()

@@ -16,6 +16,7 @@ from muster.server.work import Pool
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plugin"
 MISSION = EXAMPLE / "mission.yaml"
 ROUTES = {"r_0": ["statue"], "r_1": ["gate"]}
+pytestmark = pytest.mark.xdist_group("plugin")  # the package is installed once
 
 
 @pytest.fixture(scope="module")
@@ -66,6 +67,7 @@ def test_check_refuses_what_the_action_does_not_take(muster, tmp_path):
         assert ended.stderr.splitlines()[0] == f"{wrong}:7: {expected}"
 
 
+@pytest.mark.long
 def test_solve_knows_the_allocator_and_its_parameter(muster):
     plan = json.loads(muster("solve", MISSION, "--allocator", "nearest", "--format", "json").stdout)
     assert {route["robot"]: route["tasks"] for route in plan["routes"]} == ROUTES

@@ -199,6 +199,7 @@ def test_routes_found_are_taken_over_only_if_they_are_better_now():
     assert insertion.merged(newer, {"r_0": ("a", "c", "b")}).routes == {"r_0": ("c", "b")}
 
 
+@pytest.mark.long
 def test_what_is_forgotten_lives_on_in_sums():
     orders = [replace(one, new_task=replace(one.new_task, due_s=one.at_s + 3)) for one in stream(60)]
     mission = fleet(objective="lateness")

@@ -66,6 +66,7 @@ def test_a_mission_is_that_of_its_own_seed_and_name(family, tmp_path):
     assert muster.load(tmp_path / "m.yaml") == missions[0]
 
 
+@pytest.mark.long(keep=6)
 @pytest.mark.parametrize("family", GENERATORS.shipped)
 def test_most_tasks_can_be_done(family):
     (mission,) = muster.generate(family)
@@ -80,6 +81,7 @@ def test_the_smallest_missions_are_missions(family):
     assert muster.verify(mission, muster.solve(mission, "greedy")).valid
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("battery", "stations"), [(20, 40), (1, 3)])
 def test_a_battery_lasts_to_each_customer_and_back(battery, stations):
     for seed in range(8):

@@ -104,6 +104,7 @@ def test_names_are_the_yaml_missions_and_then_the_tsplib_instances():
     assert mission_names() == [*COUNTS, *INSTANCES]
 
 
+@pytest.mark.long(keep=15)
 @pytest.mark.parametrize("name", COUNTS)
 def test_reads_without_findings_and_goes_round_through_yaml(name):
     mission = shipped(name)

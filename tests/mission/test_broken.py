@@ -44,6 +44,7 @@ def test_message(name, capsys, monkeypatch):
     assert (code, out) == (2, "")
 
 
+@pytest.mark.long(keep=80)
 @pytest.mark.parametrize("name", NAMES)
 def test_json_has_the_same_findings(name, capsys, monkeypatch):
     monkeypatch.chdir(FOLDER)

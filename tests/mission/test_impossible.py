@@ -404,6 +404,7 @@ def in_some_admissible_plan(mission, ignored):
 RULES = [(), ("capacity",), ("skills", "suitability")]
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("ignored", RULES)
 @examples(70)
 @given(asked=tiny_missions())
@@ -412,6 +413,7 @@ def test_an_impossible_task_is_in_no_admissible_plan(ignored, asked):
     assert possible.isdisjoint(lost(asked, *ignored))
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("ignored", RULES)
 @examples(70)
 @given(asked=tiny_missions())
@@ -430,6 +432,7 @@ def test_without_prerequisites_and_fixed_ends_every_other_task_is_in_one(ignored
     assert possible == {one.id for one in free.tasks} - set(lost(free, *ignored))
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("ignored", RULES)
 @examples(100)
 @given(asked=tiny_missions(max_tasks=6, tabled=False))

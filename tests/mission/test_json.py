@@ -69,6 +69,7 @@ def test_there_are_enough_broken_files():
     assert len(BROKEN) >= 200
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_broken_files_get_the_same_messages_and_lines(layout, both, monkeypatch):
     monkeypatch.chdir(FOLDER)

@@ -35,6 +35,7 @@ def test_yaml_with_travel_tables_is_read_back(folder, mission):
     assert read_yaml(folder / "mission.yaml") == mission
 
 
+@pytest.mark.long(keep=15)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_missions_are_read_back(name):
     mission = muster.load(name)

@@ -38,6 +38,7 @@ def test_the_waypoint_moves_as_printed(before, speed, course, climb, dt):
     assert synthetic_waypoint(before, speed, course, climb, dt) == pytest.approx([x, y, -z], abs=1e-9)
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("kind", KINEMATICS)
 @pytest.mark.parametrize("law", GUIDANCE)
 def test_every_law_brings_every_robot_to_the_goal(law, kind):

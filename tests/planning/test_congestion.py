@@ -22,13 +22,14 @@ def planned(mission, **asked):
     return answer(Request(mission=mission, iterations=1500, **asked)).plan
 
 
-def test_routes_spread_and_the_plan_says_what_its_traffic_takes(mission):
+@pytest.mark.parametrize("seeds", [1, pytest.param(2, marks=pytest.mark.long)])
+def test_routes_spread_and_the_plan_says_what_its_traffic_takes(mission, seeds):
     """The time with traffic is on average shorter than that of plans that know nothing of it."""
-    free = [planned(mission, seed=seed, traffic="free") for seed in range(2)]
+    free = [planned(mission, seed=seed, traffic="free") for seed in range(seeds)]
     assert {plan.time_with_traffic_s for plan in free} == {None}
     shared = SharedPassages.of(mission, "auto")
     of_free = [shared.told(plan).time_with_traffic_s for plan in free]
-    spread = [planned(mission, seed=seed) for seed in range(2)]
+    spread = [planned(mission, seed=seed) for seed in range(seeds)]
     assert all(plan.complete and plan.time_without_traffic_s <= plan.time_with_traffic_s for plan in spread)
     assert sum(plan.time_with_traffic_s for plan in spread) < 0.95 * sum(of_free)
     assert spread[0].routes == planned(mission).routes

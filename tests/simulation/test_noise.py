@@ -102,6 +102,7 @@ def test_the_velocity_that_is_said_is_what_odometry_counts(name, given):
     assert way > 1.05 * world.distances_m["r"]
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.skipif(find_spec("mujoco") is None, reason="needs the extra `physics`")
 @pytest.mark.parametrize("name", ["6T-2R", "11T-2R-actions"])
 def test_encoders_count_the_true_way(name):

@@ -18,6 +18,7 @@ class Pose:
         return self._stamp_s
 
 
+@pytest.mark.long
 def test_poses_of_few_robots_arrive_and_the_robots_drive():
     try:
         rows = under_load(runs=1, robots=3, window_s=1.0)

@@ -1,6 +1,7 @@
 """The instances of `muster bench --only traffic`, in short."""
 
 import numpy as np
+import pytest
 from tests.traffic import annotated
 
 from muster.traffic.movingai import map_text
@@ -48,6 +49,7 @@ def test_500_robots_of_one_seed():
     assert row.note.startswith("1 of 1 solved")
 
 
+@pytest.mark.long
 def test_200_robots_on_a_roadmap():
     (row,) = roadmap_bench(1)
     assert row.note.startswith("1 of 1 to all goals")

@@ -47,6 +47,7 @@ def test_skill_sets_are_the_published_instances():
     assert dict(one.tasks[0].needs) == {"skill_1": 1, "skill_2": 1}
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("skill_set", SKILL_SETS.values(), ids=SKILL_SETS)
 @pytest.mark.parametrize("seed", range(3))
 def test_the_robots_together_can_do_every_task(skill_set, seed):

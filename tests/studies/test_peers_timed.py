@@ -51,6 +51,7 @@ def on_a_line(*windows, **robot):
     )
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("peer", PEERS)
 def test_work_begins_within_its_window(peer):
     verdict = checked(on_a_line(((60, 100),), ((0, 20),)), peer)
@@ -59,6 +60,7 @@ def test_work_begins_within_its_window(peer):
     assert [visit.starts_s for visit in verdict.routes[0].visits] == pytest.approx([20, 60])
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("peer", PEERS)
 def test_a_task_whose_window_is_missed_is_left_out(peer):
     verdict = checked(on_a_line(((0, 10),), ((0, 19.9),), ((31, 40),)), peer)
@@ -77,6 +79,7 @@ def test_a_robot_leaves_when_it_is_available(peer):
     assert checked(on_a_line(((0, 14.9),), ((0, 99),), available_from_s=5), peer).tasks_completed == 1
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("peer", ["OR-Tools", "CP-SAT", "VROOM"])
 def test_one_of_several_windows_will_do(peer):
     verdict = checked(on_a_line(((0, 5), (60, 70)), ((0, 21),)), peer)

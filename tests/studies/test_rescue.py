@@ -222,6 +222,7 @@ def test_a_line_of_the_tables_fits_120_columns(rescue_report, capsys, monkeypatc
     assert max(map(len, file.read_text(encoding="utf-8").splitlines())) <= 120
 
 
+@pytest.mark.long
 def test_json_and_pictures(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     arguments = ["--tables", "Figure 7,Figure 8", "--seeds", "1", "--iterations", "100", "--format", "json"]

@@ -98,6 +98,7 @@ def test_found_of_trajectories():
     assert Found.of(ways) == Found(2, 1, 1.0, 1.5, 0.5, 0)
 
 
+@pytest.mark.long
 def test_pictures(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     assert muster(["study", "rvo", "--tables", "A.22", "--seeds", "1", "--plot", str(tmp_path / "new")]) == 0

@@ -58,6 +58,7 @@ def test_refuses(capsys, arguments, message):
     assert captured.out == ""
 
 
+@pytest.mark.long
 def test_quick_study_prints_all_tables(capsys, tmp_path):
     file = tmp_path / "study.json"
     assert run(["study", "thesis-3.3", "--quick", "--iterations", "50", "--workers", "2", "-o", str(file)]) == 0

@@ -115,6 +115,7 @@ def missions_of(plan):
     return [mission for mission in (plan.mission, plan.with_actions) if mission]
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize(
     ("plan", "mission"),
     [(plan, mission) for plan in FLOWN_PLANS for mission in missions_of(plan)],
@@ -266,6 +267,7 @@ def test_capacity_is_never_exceeded(tables):
         assert record["lost in"] <= record["again"] <= record["runs"] == 1
 
 
+@pytest.mark.long
 def test_a_reserve_spares_planning_again():
     """Over five seeds, where capacity is tightest and robots slip."""
     flights = [

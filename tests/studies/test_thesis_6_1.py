@@ -133,6 +133,7 @@ def test_thirty_tags_are_found_by_geometry():
         assert flown.report.contacts == 0
 
 
+@pytest.mark.long
 def test_seeds_make_flights_repeatable():
     first = fly(six(world="kinematic", noise=NOISE))
     again = fly.__wrapped__(six(world="kinematic", noise=NOISE))
@@ -170,11 +171,13 @@ def test_k_means_loses_a_tag_that_is_seen_rarely_and_decoded_tags_mend_it(cluste
         assert by["tag"]["mean error"] < by["k-means"]["mean error"] / 3
 
 
+@pytest.mark.long
 def test_the_least_sum_of_squares_is_the_wrong_answer():
     raw = near(seen_rarely(FOUND[SCATTERED].raw)).raw
     assert inertia(raw.positions, by_means(raw.positions, 3)) < inertia(raw.positions, raw.tags) - 1.0
 
 
+@pytest.mark.long
 def test_only_late_sightings_of_one_tag_are_left_out():
     raw = FOUND[SCATTERED].raw
     rare = seen_rarely(raw)

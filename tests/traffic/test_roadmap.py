@@ -43,6 +43,7 @@ def free_points(space, count, seed):
     return space.grid.to_map(free[rng.integers(len(free), size=count)] + rng.random((count, 2)))
 
 
+@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("seed", range(15))
 def test_a_roadmap_connects_what_the_free_cells_connect(seed):
     space = GridSpace(inflated(noisy_grid(seed), RADIUS))
@@ -81,6 +82,7 @@ def walls(seed):
     return [shapely.box(*corner, *(corner + rng.uniform(0.3, 2.5, size=2))) for corner in low]
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("seed", range(10))
 def test_a_roadmap_connects_what_a_region_connects_and_keeps_the_radius(seed):
     obstacles, hall = walls(seed), shapely.box(0, 0, 12, 10)

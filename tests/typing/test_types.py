@@ -11,6 +11,7 @@ import pytest
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 FILES = ("right.py", "wrong.py")
+pytestmark = pytest.mark.xdist_group("types")  # each checker runs once
 
 
 def mypy():

@@ -43,10 +43,10 @@ def test_a_page_for_each_robot(tmp_path):
     assert "No stops: this robot stays where it is." in idle
 
 
-def test_the_same_plan_gives_the_same_bytes(tmp_path):
+@pytest.mark.parametrize("form", ["sheets", pytest.param("overview", marks=pytest.mark.long), "xlsx", "ics"])
+def test_the_same_plan_gives_the_same_bytes(tmp_path, form):
     given = crew(tmp_path)
-    for form in ("sheets", "overview", "xlsx", "ics"):
-        assert printed(given, form) == printed(given, form)
+    assert printed(given, form) == printed(given, form)
 
 
 def test_a_file_for_each_robot_that_has_stops(tmp_path):
@@ -102,6 +102,7 @@ def test_the_overview_has_figures_robots_and_what_is_left_out(tmp_path):
         assert word in page
 
 
+@pytest.mark.long
 def test_the_overview_of_many_robots_and_tasks_left_out_goes_on(tmp_path):
     robots = "".join(f"  - {{id: r{k}, position: [{k}, 0, 1]}}\n" for k in range(40))
     tasks = "".join(f"  - {{id: task{k}, position: [{k}, 5, 2]}}\n" for k in range(30))

@@ -60,6 +60,7 @@ L_SHAPE = ((0, 0), (100, 0), (100, 20), (20, 20), (20, 100), (0, 100))
 THIN_L = ((0, 0), (100, 0), (100, 2), (2, 2), (2, 100), (0, 100))
 
 
+@pytest.mark.long(keep=6)
 @pytest.mark.parametrize("seed", sorted({*range(SEEDS), 96}))  # slivers at a hole that is not crossed
 def test_every_place_of_random_areas_is_seen(seed):
     check(*random_area(seed), cross_holes=seed % 3 == 2)

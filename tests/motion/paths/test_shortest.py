@@ -72,6 +72,7 @@ def test_among_many_corners_nothing_is_shorter(seed):
     assert_lengths(space, places, sparse_region_lengths(cells_region(blocked), places))
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("share", [0.01, 0.05, 0.3])
 def test_a_way_alone_is_as_long_as_in_the_graph(share):
     rng = np.random.default_rng(7)

@@ -42,14 +42,13 @@ def task_states(browser):
     )
 
 
-@pytest.mark.long(keep=4)
 @pytest.mark.parametrize(
     ("name", "size", "dark"),
     [
         *(("31T-6R", size, dark) for size in (WIDE, NARROW) for dark in (False, True)),
-        ("floor", NARROW, False),
+        pytest.param("floor", NARROW, False, marks=pytest.mark.long),
         ("yard", WIDE, True),
-        ("depot", NARROW, True),
+        pytest.param("depot", NARROW, True, marks=pytest.mark.long),
     ],
 )
 def test_it_loads_without_complaint_and_without_network(name, size, dark, browser, page):

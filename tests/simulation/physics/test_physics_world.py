@@ -99,6 +99,7 @@ def test_bodies_do_not_outrun_their_wheels(scale):
     assert rates[-1] == pytest.approx(1.0, rel=0.02)
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("dt_s", [0.02, 0.05, 0.2, 0.5])
 @pytest.mark.parametrize("given", [WAFFLE, DRONE, WAFFLE | {"radius_m": 0.1, "speed_mps": 1.0}], ids=str)
 def test_robots_arrive_whatever_the_step(given, dt_s):
@@ -142,6 +143,7 @@ def test_a_robot_that_joins_leaves_the_others_in_flight():
     assert world.velocities[0] == pytest.approx((0.5, 0.0, 0.0), abs=0.01)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("name", ["6T-2R", "11T-2R"])
 def test_ground_missions_are_done_as_in_the_kinematic_world(name):
     team = muster.load(name)

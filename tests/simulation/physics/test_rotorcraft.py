@@ -172,6 +172,7 @@ def test_it_flies_to_way_points_and_does_not_overshoot(kinematics, radius_m):
     assert world.headings[0] == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("heading", [0.0, 2.0])
 def test_the_predicted_place_moves_as_commanded(heading):
     """Which is why the crowd may decide by it: position plus lag, while the drone answers late."""

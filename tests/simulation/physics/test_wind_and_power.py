@@ -60,6 +60,7 @@ def test_robots_on_the_ground_feel_no_wind():
     np.testing.assert_array_equal(driven(), driven(wind=Wind(velocity_mps=(20.0, 0.0, 0.0), gusts_mps=10.0)))
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("kinematics", "airframe"), [("hexacopter", FIREFLY), ("quadcopter", RB5)])
 def test_hovering_empties_a_battery_in_the_flight_time(kinematics, airframe):
     given = HEXACOPTER | {"kinematics": kinematics, "radius_m": 0.2}
