@@ -1,7 +1,7 @@
 """Plant a fault in each of ten rooms, one after the other, and see `make quick` catch it.
 
-`python -m tests.planted_faults [NAME...]`. The checkout must be clean: every fault is one replaced text in one file, which is put back as
-HEAD has it. The exit code is 1 where a fault is not caught, or where a text is not found once.
+`python -m tests.planted_faults [NAME...]`. A fault is one replaced text in one file, which is put back afterwards. The exit
+code is 1 where a fault is not caught.
 """
 
 import argparse
@@ -79,7 +79,8 @@ def main():
         if not asked.names or name in asked.names:
             found, seconds, last = caught(fault)
             missed += not found
-            print(f"{'caught' if found else 'MISSED'}  {seconds:4.0f} s  {name}: {fault.path}: {last}", flush=True)
+            sys.stdout.write(f"{'caught' if found else 'MISSED'}  {seconds:4.0f} s  {name}: {fault.path}: {last}\n")
+            sys.stdout.flush()
     return int(missed > 0)
 
 

@@ -17,7 +17,9 @@ def _write():
     )
     if test and inside:
         path = _ROOT / "build" / "executed" / f"child-{os.getpid()}.json"
-        path.write_text(json.dumps({"test": test, "sources": inside}), encoding="utf-8")
+        unfinished = path.with_suffix(".part")  # the process may be killed while it writes
+        unfinished.write_text(json.dumps({"test": test, "sources": inside}), encoding="utf-8")
+        unfinished.rename(path)
 
 
 atexit.register(_write)
