@@ -38,7 +38,7 @@ turn: $(VENV)/developed test-packages
 flakes: $(VENV)/developed test-packages
 	$(BIN)/python -m tools.suites.flakes $(FLAKES_FLAGS)
 
-ci: $(VENV)/developed test-packages
+ci: $(VENV)/documented test-packages
 	$(BIN)/python -m tools.suites.ci
 
 docs: $(VENV)/documented

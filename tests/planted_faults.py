@@ -1,7 +1,7 @@
 """Plant a fault in each of ten rooms, one after the other, and see `make quick` catch it.
 
-`python -m tests.planted_faults [NAME...]`. A fault is one replaced text in one file, which is put back afterwards. The exit
-code is 1 where a fault is not caught.
+`python -m tests.planted_faults [NAME...]`. A fault is one replaced text in one file, which is put back afterwards. The
+exit code is 1 where a fault is not caught.
 """
 
 import argparse
