@@ -317,6 +317,7 @@ class TestNegotiate:
     def _with_net(self):
         pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
+    @pytest.mark.long
     def test_it_tells_what_happens_and_what_it_took(self, muster, tmp_path):
         """In a mission that is shorter than the others', as it takes real time."""
         eventful = tmp_path / "eventful.yaml"

@@ -51,6 +51,7 @@ def simulated(of, **how):
     return simulation
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 def test_found_becomes_done(world):
     report = flown(mission(), world=world)

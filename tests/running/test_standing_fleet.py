@@ -70,7 +70,7 @@ def files(tmp_path):
 
 
 def asked(files, *options):
-    return run(["simulate", str(files / "fleet.yaml"), "-q", *options])
+    return run(["simulate", str(files / "fleet.yaml"), "-q", "--iterations", "100", *options])
 
 
 def test_the_command_does_orders_from_a_file_and_tells_how_fast(files, capsys):
@@ -162,5 +162,5 @@ def test_orders_that_are_not_listed_any_more_are_counted(files, capsys):
     ],
 )
 def test_what_does_not_go_together_is_refused(files, capsys, options, message):
-    assert asked(files, *options) == 2
+    assert run(["simulate", str(files / "fleet.yaml"), "-q", *options]) == 2
     assert message in capsys.readouterr().err

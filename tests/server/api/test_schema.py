@@ -29,9 +29,20 @@ GENERATION = GenerationConfig(deterministic=True, max_examples=EXAMPLES, databas
 PROJECT = ProjectConfig(checks=CHECKS, generation=GENERATION)
 DESCRIPTION = api(lambda: pytest.fail("a description needs no services")).openapi()
 
-schema = schemathesis.openapi.from_dict(
+SCHEMA = schemathesis.openapi.from_dict(
     DESCRIPTION, config=SchemathesisConfig(seed=1, projects=ProjectsConfig(default=PROJECT))
 )
+LABELS = [f"{method.upper()} {path}" for path, item in DESCRIPTION["paths"].items() for method in sorted(item)]
+_under_test = set()
+"""The label of the operation whose test runs."""
+
+
+@pytest.fixture
+def description(label):
+    """The description. Cases of one operation are made when its test runs: making all at collection takes seconds."""
+    _under_test.add(label)
+    yield SCHEMA
+    _under_test.remove(label)
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +59,9 @@ def busy(tmp_path_factory):
         yield f"{url}/api/v1"
 
 
-@schema.parametrize()
+@pytest.mark.long(keep=8)
+@pytest.mark.parametrize("label", LABELS)
+@schemathesis.pytest.from_fixture("description").include(lambda it: it.operation.label in _under_test).parametrize()
 @settings(
     max_examples=EXAMPLES,
     phases=(Phase.explicit, Phase.generate),
@@ -57,5 +70,6 @@ def busy(tmp_path_factory):
     deadline=None,
     database=None,
 )
-def test_answers_are_as_described(case, busy):
+def test_answers_are_as_described(case, busy, label):
+    assert case.operation.label == label
     case.call_and_validate(base_url=busy, timeout=60)

@@ -63,8 +63,9 @@ def running_chromium():
         browser.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def chromium():
+    """One browser for all of these tests, which are one group of xdist. Its loop must end before other tests begin."""
     with running_chromium() as browser:
         yield browser
 

@@ -17,7 +17,7 @@ from muster.server.services.missions import Missions
 from muster.server.services.plans import Plans
 from muster.server.store.database import Database
 
-pytestmark = pytest.mark.xdist_group("slowly")
+pytestmark = pytest.mark.xdist_group("browser")
 
 MISSION = "6T-2R"
 SCENE_MS = 90_000
@@ -86,6 +86,7 @@ def wait_for(condition):
         time.sleep(0.02)
 
 
+@pytest.mark.long
 def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client, hold):
     page = watched.page
     older, newer = (client.plan(MISSION, iterations=20, seed=seed).wait().id for seed in (1, 2))
@@ -119,6 +120,7 @@ def test_the_plan_that_was_chosen_last_is_shown_and_carried_out(watched, client,
     watched.require_clean()
 
 
+@pytest.mark.long
 def test_a_page_waits_for_a_database_that_takes_its_time(served, hold):
     """Beyond the three seconds after which NiceGUI would by itself show an error page."""
     held = hold(Missions, "list")
@@ -126,6 +128,7 @@ def test_a_page_waits_for_a_database_that_takes_its_time(served, hold):
     assert httpx.get(served, timeout=60).status_code == 200
 
 
+@pytest.mark.long
 def test_two_missions_are_duplicated_at_once_and_the_list_is_shown_once(watched, client, monkeypatch):
     """It is made anew by whichever is first, while the other is under way."""
     read, page = Missions.list, watched.page
@@ -187,6 +190,7 @@ def test_live_opens_and_stops_robots_while_the_database_is_gone(watched, client)
     watched.require_clean()
 
 
+@pytest.mark.long
 def test_live_and_records_open_while_workers_are_busy(watched, client, hold):
     page = watched.page
     run = client.start(client.plan(MISSION, iterations=20).wait(), speed=0.2).id
@@ -203,6 +207,7 @@ def test_live_and_records_open_while_workers_are_busy(watched, client, hold):
     watched.require_clean()
 
 
+@pytest.mark.long
 def test_a_page_with_unsaved_work_waits_longer_for_its_browser(watched, chromium, client, monkeypatch):
     monkeypatch.setattr(core.app.config, "reconnect_timeout", 0.1)
     text = client.missions.get(MISSION).text

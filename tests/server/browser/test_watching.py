@@ -12,7 +12,7 @@ from tests.server.serving import served
 from muster.client import Client
 from muster.server.work.turns import Turns
 
-pytestmark = pytest.mark.xdist_group("watching")
+pytestmark = pytest.mark.xdist_group("browser")
 
 MISSION = "6T-2R"
 COMMANDS = re.compile(
@@ -87,6 +87,7 @@ def test_the_watcher_sees_missions_plans_and_runs_without_a_button_that_commands
     watched.shoot("watching")
 
 
+@pytest.mark.long
 def test_work_for_a_page_and_for_the_api_takes_the_turn_of_who_asks(chromium, tmp_path, monkeypatch):
     users, turn = [], Turns.turn
     monkeypatch.setattr(Turns, "turn", lambda self, user: users.append(user) or turn(self, user))

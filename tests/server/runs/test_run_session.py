@@ -184,6 +184,7 @@ def test_a_server_that_closes_while_a_run_begins_does_not_wait_for_it(store, run
     assert store.runs.get(run).state == "starting"
 
 
+@pytest.mark.long
 def test_a_server_can_be_closed_while_the_database_refuses_the_end_of_a_run(store, run, monkeypatch):
     play(monkeypatch, ends)
 
@@ -227,6 +228,7 @@ def test_an_error_of_ours_ends_the_runner_too(store, run, monkeypatch):
 @pytest.mark.parametrize("error", [NotFoundError("no run"), RuntimeError("odd")])
 def test_whatever_keeps_a_log_from_being_written_is_said_and_tried_again(store, run, monkeypatch, error):
     play(monkeypatch, stays)
+    monkeypatch.setattr("muster.server.runs.log_writer.AGAIN_S", 0.1)
     append, broken = store.log.append, [True]
 
     def odd(*arguments):

@@ -208,6 +208,7 @@ def test_cancelled_work_is_killed_within_a_second():
     in_pool(story)
 
 
+@pytest.mark.long
 def test_work_that_takes_too_long_is_stopped():
     async def story(pool):
         await pool.run("echo", {})  # a process that has begun, so that it is the work that takes so long

@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import expect
 from tests.server.browser.missions_and_plan.plan_view import plan_view, text_of
 
-pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
+pytestmark = pytest.mark.xdist_group("browser")
 
 
 def test_a_cell_of_the_form_changes_the_text_and_keeps_comments(watched, page):
@@ -30,6 +30,7 @@ def test_a_cell_of_the_form_changes_the_text_and_keeps_comments(watched, page):
     page.click("#undo")
 
 
+@pytest.mark.long
 def test_a_cell_is_that_of_its_task_though_another_is_taken_out_meanwhile(watched, page):
     plan_view(watched, "31T-6R50")
     page.get_by_role("button", name="Form", exact=True).click()
@@ -70,6 +71,7 @@ def test_what_is_being_typed_into_a_cell_stays_whatever_the_server_sends(watched
     text_of(page, "speed_mps: 0.75")
 
 
+@pytest.mark.long
 def test_a_row_that_gets_another_id_stays_the_same_row(watched, page, yard):
     plan_view(watched, yard)
     page.get_by_role("button", name="Form", exact=True).click()

@@ -5,7 +5,7 @@ import re
 import pytest
 from tests.server.browser.missions_and_plan.plan_view import SCENE, choose_task, plan_view, task_place
 
-pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
+pytestmark = pytest.mark.xdist_group("browser")
 
 
 def test_the_keyboard_alone_chooses_and_moves_a_task(watched, page, yard):
@@ -56,6 +56,7 @@ def test_undo_right_after_a_nudge_takes_it_back(watched, page, yard):
     page.wait_for_function(f"{SCENE}.tasks.find(({{ id }}) => id === '1').x === {before['x']}")
 
 
+@pytest.mark.long
 def test_what_is_nudged_on_and_on_never_jumps_back(watched, page, yard):
     plan_view(watched, yard)
     choose_task(page, "1")
@@ -81,6 +82,7 @@ def test_what_is_nudged_on_and_on_never_jumps_back(watched, page, yard):
     page.get_by_text("version 1", exact=True).wait_for()
 
 
+@pytest.mark.long
 def test_delete_pressed_on_and_on_takes_out_one_zone(watched, page):
     plan_view(watched, "yard")
     zones = page.evaluate(f"{SCENE}.zones.length")

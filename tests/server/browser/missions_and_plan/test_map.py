@@ -15,7 +15,7 @@ from tests.server.browser.missions_and_plan.plan_view import (
 
 from muster.client import Client
 
-pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
+pytestmark = pytest.mark.xdist_group("browser")
 
 
 def test_an_empty_mission_is_made_and_edited_on_the_map_and_undone(watched, page):
@@ -43,6 +43,7 @@ def test_an_empty_mission_is_made_and_edited_on_the_map_and_undone(watched, page
     text_of(page, "position: [5, 8]")
 
 
+@pytest.mark.long
 def test_a_zone_is_drawn_by_its_corners_and_the_map_stays(watched, page, yard):
     plan_view(watched, yard)
     page.get_by_role("combobox", name="What a click on the map does").click()

@@ -11,7 +11,7 @@ from tests.server.browser.missions_and_plan.plan_view import SLOW_MS, plan_view
 from muster.client import Client
 from muster.mission.plan_reader import plan_of
 
-pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
+pytestmark = pytest.mark.xdist_group("browser")
 
 
 def test_focus_is_seen_and_words_on_buttons_are_read_in_the_dark(watched, page):
@@ -26,6 +26,7 @@ def test_focus_is_seen_and_words_on_buttons_are_read_in_the_dark(watched, page):
     expect(page.locator("#plan")).to_have_css("color", "rgb(255, 255, 255)")
 
 
+@pytest.mark.long
 def test_a_run_that_failed_before_it_began_has_no_record_to_show(watched, page):
     with Client(watched.origin) as client:
         run = client.start(client.plan("yard", iterations=1).wait(), avoidance="rvo")
@@ -71,6 +72,7 @@ tasks:
 """
 
 
+@pytest.mark.long
 def test_drones_in_the_plane_get_heights_where_they_are_exported(watched, page):
     with Client(watched.origin) as client:
         mission = client.missions.create(FLAT).id
@@ -114,6 +116,7 @@ def test_robots_keep_the_colours_of_the_plan_that_is_shown_while_others_come(wat
     watched.shoot("colours")
 
 
+@pytest.mark.long
 def test_two_plans_are_compared_side_by_side(watched, page):
     plan_view(watched, "31T-6R50")
     page.get_by_label("Allocator").click()

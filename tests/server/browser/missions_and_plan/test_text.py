@@ -3,7 +3,7 @@
 import pytest
 from tests.server.browser.missions_and_plan.plan_view import plan_view, text_of
 
-pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
+pytestmark = pytest.mark.xdist_group("browser")
 
 
 HELD = """() => {
@@ -40,6 +40,7 @@ def end_of_text(page):
     page.keyboard.press("Control+End")
 
 
+@pytest.mark.long
 def test_what_is_typed_while_another_text_is_on_its_way_is_put_into_that(watched, page, yard):
     plan_view(watched, yard)
     before = text_of(page)
@@ -74,6 +75,7 @@ def test_what_is_typed_before_the_server_knows_that_the_text_is_shown_stays(watc
     assert text_of(page).endswith("# at once")
 
 
+@pytest.mark.long
 def test_what_is_typed_while_a_mark_is_on_its_way_stays(watched, page, yard):
     plan_view(watched, yard)
     end_of_text(page)
@@ -107,6 +109,7 @@ def test_what_cannot_be_put_into_another_text_is_told_and_gone_on_both_sides(wat
     page.get_by_text("version 1", exact=True).wait_for()
 
 
+@pytest.mark.long
 def test_a_change_of_a_text_that_is_not_known_cuts_nothing(watched, page, yard):
     plan_view(watched, yard)
     before = text_of(page)
