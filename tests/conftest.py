@@ -66,7 +66,7 @@ def pytest_addoption(parser):
     parser.addoption("--turn", type=int, default=0, help="the turn whose tenth of the long tests runs: --suite share")
     parser.addoption("--only", metavar="FILE", help="run the test functions alone that this file lists, an id a line")
     parser.addoption("--also", metavar="FILE", help="with --suite share: run the listed long tests besides the tenth")
-    parser.addoption("--functions", metavar="FILE", help="write the ids of the collected test functions to a file")
+    parser.addoption("--functions", metavar="FILE", help="write the ids of the chosen test functions to a file")
     parser.addoption("--shuffle", type=int, metavar="SEED", help="run the tests in a random order")
     parser.addoption("--no-skips", action="store_true", help="a skipped test is a failure, unless it needs hardware")
 

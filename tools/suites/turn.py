@@ -17,11 +17,11 @@ from tools.suites.record import RECORDS
 _LIST = ROOT / "build" / "recorded.txt"
 
 
-def collected() -> list[str]:
-    """Return the ids of all test functions."""
+def collected(*options: str) -> list[str]:
+    """Return the ids of all test functions, or of those that options of pytest choose."""
     listing = ROOT / "build" / "functions.txt"
     listing.parent.mkdir(exist_ok=True)
-    _pytest("--collect-only", "-q", "--functions", str(listing))
+    _pytest("--collect-only", "-qq", "--functions", str(listing), *options)
     return listing.read_text(encoding="utf-8").splitlines()
 
 
