@@ -146,6 +146,7 @@ tasks: [{id: a, position: [20, 0]}]
 """
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("place", "why"),
     [

@@ -122,6 +122,7 @@ def test_the_height_of_a_ground_robot_changes_evenly(muster):
     assert found["length_m"] == pytest.approx(math.hypot(10, 2))
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("planner", ["theta-star", "a-star", "dijkstra", "rrt-star"])
 def test_so_it_does_by_other_planners(muster, planner, tmp_path):
     ends = ("yard", "--from", "3,3,0", "--to", "3,13,2", "--planner", planner)

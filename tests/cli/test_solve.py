@@ -27,6 +27,7 @@ def test_solve_prints_a_table(muster):
     assert ["left", "out", "lift", "(`muster", "explain`", "says", "why)"] in rows
 
 
+@pytest.mark.long(keep=7)
 @pytest.mark.parametrize("allocator", ALLOCATORS)
 def test_the_same_seed_gives_the_same_plan(allocator, muster):
     for name in ("one.json", "two.json"):

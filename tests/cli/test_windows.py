@@ -60,6 +60,7 @@ def test_what_needs_posix_says_so(arguments, purpose):
     assert err == f"{purpose} does not work on win32; expected Linux, macOS, or WSL on Windows\n"
 
 
+@pytest.mark.long
 def test_plans_are_made_and_judged():
     code, _, err = on_windows("solve", "yard.yaml", "--iterations", "10", "-o", "plan.json", "-q")
     assert (code, err) == (0, "")

@@ -30,6 +30,7 @@ def agreed(network, within_s=60.0):
     return network.run(network.now + within_s, lambda: all(node.settled for node in network.nodes.values()))
 
 
+@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("name", MISSIONS)
 @pytest.mark.parametrize("bundle_size", [0, 1])
 def test_without_faults_it_is_the_central_one(name, bundle_size):

@@ -26,6 +26,7 @@ def lifting(robots=4, **more):
     )
 
 
+@pytest.mark.long(keep=8)
 @pytest.mark.parametrize("seed", range(30))
 def test_the_plan_is_that_of_coalitions_in_one_process(seed):
     random = Random(seed)

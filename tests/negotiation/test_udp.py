@@ -174,6 +174,7 @@ def test_a_group_agrees():
     assert agree(nodes) == team.central_routes()
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(3))
 def test_they_agree_where_a_third_is_lost_and_some_comes_twice(seed):
     team = Team("auction-2", QUICK, bid="total")

@@ -47,6 +47,7 @@ def first_that_comes(sender, receiver, data, to=None):
     return None
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("mode", ["peer", "client"])
 def test_to_all_and_to_one_with_ids_of_any_letters(mode):
     names = ("r/1 *", "r$2?#", "@ü%/**")
@@ -131,6 +132,7 @@ def test_a_team_agrees(mode):
     assert agree([team.node(robot, transport) for robot, transport in made.items()]) == team.central_routes()
 
 
+@pytest.mark.long
 def test_a_team_agrees_where_a_third_is_lost_and_some_comes_twice():
     team = Team("auction-2", QUICK, bid="total")
     made = transports("auction-2", team.robots)

@@ -66,6 +66,7 @@ def watched(name, world, noise=NOISE, seed=1):
     return mission, hearing
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 @pytest.mark.parametrize("name", ["6T-2R", "auction-1"])
 def test_fused_poses_are_nearer_to_the_truth_by_more_than_half(name, world):
@@ -92,11 +93,13 @@ def test_filters_learn_what_wheels_slip_and_gyros_have_too_much():
         assert slip == pytest.approx(0.025, abs=0.008)  # of 0 to 0.05 in each step
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("name", ["6T-2R-actions", "11T-2R", "market-rescue-arena", "auction-1"])
 def test_all_tasks_are_done_where_robots_err(name):
     all_are_done_by_robots_that_err(name, "kinematic")
 
 
+@pytest.mark.long(keep=1)
 @needs_physics
 @pytest.mark.parametrize("name", ["6T-2R-actions", "auction-1"])
 def test_all_tasks_are_done_where_bodies_err(name):

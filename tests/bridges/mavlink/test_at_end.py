@@ -32,6 +32,7 @@ def ended(kind, faults, at_end):
     return report, fleet, states, sky.drones
 
 
+@pytest.mark.long(keep=2)
 @KINDS
 @pytest.mark.parametrize("at_end", ["hold", "return", "land"])
 def test_a_drone_whose_heartbeats_were_late_by_7_s_ends_as_the_others(kind, at_end):

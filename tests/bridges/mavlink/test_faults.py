@@ -97,7 +97,7 @@ def confuse(telemetry):
     telemetry.hear = hear
 
 
-@pytest.mark.long(keep=12)
+@pytest.mark.long(keep=8)
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 @pytest.mark.parametrize(("fault", "case", "offboard"), EVERY)
 def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):

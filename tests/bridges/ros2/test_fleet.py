@@ -98,6 +98,7 @@ def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
     fleet.close()
 
 
+@pytest.mark.long
 def test_robots_wait_for_a_window_and_begin_together(robots):
     opens_s = 2.0
     there = replace(mission("r_0", "r_1", "r_2"), tasks=tasks_of(opens_s))

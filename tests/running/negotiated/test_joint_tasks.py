@@ -50,6 +50,7 @@ def check_each_was_done_once(team):
     assert not any(node.twice for node in team.net.nodes.values())
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", range(6))
 def test_all_of_a_team_begin_and_end_at_one_moment_however_much_is_lost(seed):
     team = SimulatedTeam(lifting(seed), seed=seed, loss=0.1 * seed, delay_s=0.05, jitter_s=0.1, duplication=0.1)

@@ -74,6 +74,7 @@ def test_while_robots_hear_each_other_nothing_is_done_twice_whoever_crashes(seed
     assert set(done) >= {task.id for task in mission.tasks} - waiting
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("seed", range(8))
 def test_across_a_cut_only_tasks_that_allow_it_are_done_twice(seed):
     mission, random = square(seed, robots=5), Random(seed)

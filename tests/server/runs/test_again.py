@@ -74,6 +74,7 @@ def test_who_cancels_gets_a_report_of_all_tasks():
     assert [entry["data"] for entry in performed(mission, plan, log=kept.log[:-1]).log] == [report]
 
 
+@pytest.mark.long
 def test_a_crash_just_before_the_report_leaves_the_report_the_last_entry():
     mission = muster.load("31T-6R50")
     plan = muster.solve(mission, iterations=20)
@@ -93,6 +94,7 @@ def test_what_a_pause_holds_up_takes_effect_where_it_stands():
     assert (after["kind"], after["data"]["robot"], after["time_s"]) == ("robot_fails", "r_0", 10.0)
 
 
+@pytest.mark.long
 def test_a_log_that_does_not_come_about_again_is_refused():
     mission = muster.load("31T-6R50")
     plan = muster.solve(mission, iterations=20)

@@ -51,6 +51,7 @@ async def gone(runs, run):
         await asyncio.sleep(0.01)
 
 
+@pytest.mark.long
 def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
     mission = muster.load("31T-6R50")
     plan = planned(store, mission)

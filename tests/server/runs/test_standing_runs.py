@@ -43,6 +43,7 @@ def test_a_fleet_on_duty_takes_orders_and_ends_when_all_are_done():
     assert log[-2]["time_s"] >= 40.0
 
 
+@pytest.mark.long
 def test_a_run_on_duty_that_is_killed_goes_on_as_if_nothing_had_been():
     whole = performed(MISSION, PLAN, asked(), settings=ON_DUTY)
     for crash in range(5, len(whole.log) - 1, 7):

@@ -267,6 +267,7 @@ sys.exit(run(["serve", "--port", "0"]))
 """
 
 
+@pytest.mark.long
 def test_the_command_ends_while_a_look_hangs(postgresql_url, tmp_path):
     environment = {**os.environ, "XDG_DATA_HOME": str(tmp_path), "MUSTER_DB": postgresql_url}
     with subprocess.Popen(

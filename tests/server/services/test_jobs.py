@@ -115,6 +115,7 @@ def test_a_job_whose_start_is_gone_fails_with_a_line(with_services):
     with_services(story)
 
 
+@pytest.mark.long
 def test_sixty_requests_are_queued_and_done_in_order(with_services):
     async def story(services):
         asked = [await services.jobs.ask_plan(WHO, "tiny", allocator="greedy") for _ in range(60)]
@@ -128,6 +129,7 @@ def test_sixty_requests_are_queued_and_done_in_order(with_services):
     with_services(story)
 
 
+@pytest.mark.long
 def test_a_job_is_found_behind_many_others(with_services):
     async def story(services):
         running = await services.jobs.ask_plan(WHO, "tiny", **LONG)
@@ -460,6 +462,7 @@ def test_a_mission_that_is_not_there(with_services):
     with_services(story)
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize(
     ("asked", "said"),
     [

@@ -49,6 +49,7 @@ def rows(store):
         }
 
 
+@pytest.mark.long(keep=2)
 def test_a_copy_goes_into_either_database(full, database_url, other_url, tmp_path):
     file = tmp_path / "copy.db"
     backup(database_url, file)
@@ -105,6 +106,7 @@ def test_a_copy_while_a_server_writes_is_of_one_moment(filled, database_url, tmp
     assert lasts == sorted(lasts)
 
 
+@pytest.mark.long(keep=2)
 def test_only_an_empty_database_takes_a_copy(full, database_url, other_url, tmp_path):
     file = tmp_path / "copy.db"
     backup(database_url, file)

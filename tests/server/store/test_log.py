@@ -91,6 +91,7 @@ COLUMNS = {
 }
 
 
+@pytest.mark.long(keep=8)
 @pytest.mark.parametrize("table", COLUMNS)
 @pytest.mark.parametrize("statement", REFUSED)
 def test_the_database_itself_refuses_changes(filled, log, table, statement):

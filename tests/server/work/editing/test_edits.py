@@ -87,6 +87,7 @@ def test_a_bomb_is_edited_without_blowing_it_up() -> None:
 SHIPPED = [name for name in library.mission_names() if str(library.mission_path(name)).endswith(".yaml")]
 
 
+@pytest.mark.long(keep=12)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_missions_are_edited_in_place(name: str) -> None:
     path = library.mission_path(name)
