@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.optimize import linear_sum_assignment
 
 from muster.allocation.assignment_prices import assign
 from muster.allocation.bertsekas_auction import assignment
@@ -12,6 +11,8 @@ from muster.allocation.bertsekas_auction import assignment
 
 @given(seed=st.integers(0, 10**6), persons=st.integers(1, 8), more=st.integers(0, 8), whole=st.booleans())
 def test_the_sum_is_within_epsilon_a_person_of_the_greatest(seed, persons, more, whole):
+    from scipy.optimize import linear_sum_assignment
+
     random = np.random.default_rng(seed)
     benefit = random.uniform(-10, 10, (persons, persons + more))
     benefit = benefit.round() if whole else benefit
@@ -33,6 +34,8 @@ def test_what_cannot_be_assigned_is_refused(shape, epsilon):
 
 @given(seed=st.integers(0, 10**6), robots=st.integers(1, 6), tasks=st.integers(0, 10))
 def test_most_robots_get_a_task_and_their_bids_are_the_lowest(seed, robots, tasks):
+    from scipy.optimize import linear_sum_assignment
+
     random = np.random.default_rng(seed)
     bids = np.where(random.random((robots, tasks)) < 0.6, random.uniform(0, 100, (robots, tasks)), np.inf)
     pairs = assignment(bids, 1e-6)

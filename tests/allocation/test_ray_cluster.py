@@ -8,6 +8,7 @@ import threading
 import time
 from contextlib import contextmanager
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -26,8 +27,8 @@ from muster.mission.errors import MusterError, ParameterError
 from muster.mission.plan_reader import read_plan
 from muster.mission.yaml_writer import yaml_text
 
-ray = pytest.importorskip("ray", reason="needs the extra ray")
-from ray.cluster_utils import Cluster  # noqa: E402
+if find_spec("ray") is None:  # it is imported by the tests that need it, as that takes half a second
+    pytest.skip("needs the extra ray", allow_module_level=True)
 
 # One cluster for all, so one worker of xdist for all. What Ray leaves open in this process is Ray's affair.
 pytestmark = [pytest.mark.xdist_group("ray"), pytest.mark.filterwarnings("ignore")]
@@ -41,6 +42,8 @@ STARTED_S = 2.5
 @pytest.fixture(scope="module")
 def cluster():
     """A cluster of two nodes with one CPU each; nothing of it runs afterwards."""
+    from ray.cluster_utils import Cluster
+
     head = {"num_cpus": 1, "include_dashboard": False, "ray_client_server_port": free_port(), **STORE}
     with pytest.MonkeyPatch.context() as environment:
         environment.setenv("GRPC_ENABLE_FORK_SUPPORT", "0")  # with it, who asks from outside is often not let in
@@ -89,6 +92,8 @@ def test_the_plan_is_that_of_threads_and_from_outside_of_the_cluster_joining_is_
     cluster, monkeypatch, capfd
 ):
     """Where the process that Ray starts for us is dead at once; but not for ever."""
+    import ray
+
     init, failures = ray.init, [1]
 
     def fail_at_first(**options):
@@ -214,6 +219,8 @@ class TestOfOneWhoHasJoined:
 
     @pytest.mark.long
     def test_a_process_that_has_joined_one_stays_there(self, address, workers):
+        import ray
+
         with joined("auto") as again:
             assert again.count == 2
         assert ray.is_initialized()

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import chi2
 
 from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
@@ -33,6 +32,8 @@ def test_headings_are_the_same_a_turn_apart(heading, off):
 
 
 def test_the_fusion_is_consistent_and_learns_the_bias():
+    from scipy.stats import chi2
+
     innovations, errors, runs, steps, dt = 0.0, 0.0, 30, 200, 0.1
     for seed in range(runs):
         random = np.random.default_rng(seed)

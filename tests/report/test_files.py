@@ -3,8 +3,6 @@ import sys
 import xml.etree.ElementTree as ET
 
 import pytest
-from matplotlib.figure import Figure
-from matplotlib.image import imread
 
 from muster.mission.errors import InputError
 from muster.report import plot_gantt, plot_routes, save_figure
@@ -12,6 +10,8 @@ from muster.report.files import check_suffix
 
 
 def test_png_shows_the_robots_colour_and_is_mostly_white(mission, plan, verdict, tmp_path):
+    from matplotlib.image import imread
+
     save_figure(plot_routes(mission, plan, verdict), tmp_path / "routes.png")
     pixels = (imread(tmp_path / "routes.png")[..., :3] * 255).round().astype(int)
     assert min(pixels.shape[:2]) > 500  # inches at 150 dots
@@ -42,6 +42,9 @@ def test_the_same_picture_gives_the_same_bytes(mission, plan, verdict, tmp_path,
 
 
 def test_figures_and_axes_of_subfigures_are_written_whole(mission, plan, verdict, tmp_path):
+    from matplotlib.figure import Figure
+    from matplotlib.image import imread
+
     figure = Figure(figsize=(12, 4), layout="constrained")
     left, right = figure.subfigures(1, 2)
     plot_gantt(mission, verdict, ax=left.add_subplot())

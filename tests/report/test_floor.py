@@ -5,7 +5,6 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.plan import Plan
@@ -22,6 +21,8 @@ CHART = Map(image="floor.png", resolution_m=2)
 
 
 def test_an_image_lies_where_origin_and_yaw_place_it(drawn):
+    from matplotlib.figure import Figure
+
     ax = Figure().add_subplot()
     ax.set_xlim(0, 30)
     ax.set_ylim(0, 30)
@@ -36,6 +37,8 @@ def test_an_image_lies_where_origin_and_yaw_place_it(drawn):
 
 def test_the_page_is_grey_where_a_cell_is_blocked():
     """Each cell's middle has its colour on the page."""
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(3, 3), dpi=100)
     ax = figure.add_axes((0, 0, 1, 1))
     ax.set_xlim(5, 11)
@@ -53,6 +56,8 @@ def test_the_page_is_grey_where_a_cell_is_blocked():
 
 
 def test_on_3d_axes_walls_are_lines_on_the_ground(drawn):
+    from matplotlib.figure import Figure
+
     ax = Figure().add_subplot(projection="3d")
     draw_map(ax, CHART, Grid(np.array([[False]]), 2.0), spatial=True)
     (lines,) = drawn(ax, "image")
@@ -115,6 +120,8 @@ def test_names_of_places_do_not_cover_walls(drawn):
     [(0, 4, "to 4 m"), (None, 4, "to 4 m"), (2, 4.5, "2-4.5 m"), (3, None, "from 3 m"), (None, None, None)],
 )
 def test_heights_are_named(drawn, floor, ceiling, text):
+    from matplotlib.figure import Figure
+
     ax = Figure().add_subplot()
     zone = Zone(polygon=((1, 1), (2, 1), (2, 2)), floor_m=floor, ceiling_m=ceiling)
     draw_map(ax, Map(boundary=((0, 0), (9, 0), (9, 9)), zones=(zone,)), spatial=False)

@@ -6,7 +6,6 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("cv2")
 pytest.importorskip("scipy")
-from matplotlib.colors import to_hex
 
 from muster.perception.clusters import by_tag
 from muster.perception.detection import Sighting, Sightings
@@ -32,6 +31,8 @@ def drawn():
 
 
 def test_estimates_are_drawn_by_robot_and_the_truth_by_name():
+    from matplotlib.colors import to_hex
+
     raw, points, _, ax = drawn()
     dots = [line.get_xydata().tolist() for line in ax.lines if line.get_marker() == "."]
     assert dots == [raw.positions[:3].tolist(), raw.positions[3:].tolist()]

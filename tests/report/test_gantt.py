@@ -4,8 +4,6 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
 from tests import carry_charge
 
 from muster.mission.errors import MissingExtraError, MusterError
@@ -63,6 +61,8 @@ def test_kinds_differ_in_height_and_hatching(mission, plan, verdict, drawn):
 
 
 def test_work_that_takes_no_time_is_a_stroke(mission, plan, verdict, drawn):
+    from matplotlib.colors import to_hex
+
     (work,) = drawn(plot_gantt(mission, verdict), "work-ada")
     assert work.get_paths()[1].get_extents().width == 0
     assert work.get_linewidth()[0] > 0
@@ -70,6 +70,8 @@ def test_work_that_takes_no_time_is_a_stroke(mission, plan, verdict, drawn):
 
 
 def test_colours_are_those_of_the_routes(mission, plan, verdict, drawn):
+    from matplotlib.colors import to_hex
+
     gantt, routes = plot_gantt(mission, verdict), plot_routes(mission, plan, verdict)
     for name in ("ada", "bob"):
         bar = to_hex(drawn(gantt, f"work-{name}")[0].get_facecolor()[0])
@@ -173,6 +175,8 @@ def test_a_large_plan_is_simplified(crowd, drawn):
 
 
 def test_given_axes_are_drawn_on(mission, plan, verdict):
+    from matplotlib.figure import Figure
+
     ax = Figure().add_subplot()
     assert plot_gantt(mission, verdict, ax=ax) is ax
     assert ax.collections
@@ -202,6 +206,8 @@ def charging():
 
 
 def test_service_at_a_station_is_a_bar_of_its_own_colour_and_name(charging, drawn):
+    from matplotlib.colors import to_hex
+
     ax = plot_gantt(charging, carry_charge.judged(charging, r="dock a", s="dock b"))
     assert [bar[:3] for bar in bars(drawn(ax, "service-r"))] == [(6, 6, 0)]
     assert [bar[:3] for bar in bars(drawn(ax, "service-s"))] == [(12, 6, 1)]

@@ -3,8 +3,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
 from tests import carry_charge
 
 from muster.mission.errors import MissingExtraError
@@ -122,6 +120,8 @@ def test_colours_belong_to_robots_not_to_plans(mission, plan, verdict, drawn):
 
 
 def test_tasks_left_out_are_grey_crosses(mission, plan, verdict, drawn):
+    from matplotlib.colors import to_hex
+
     ax = plot_routes(mission, plan, verdict)
     (crosses,) = drawn(ax, "left-out")
     np.testing.assert_array_equal(crosses.get_xydata(), [(0, 20)])
@@ -223,6 +223,8 @@ def test_boundary_and_zones_lie_beneath_the_routes(mission, plan, drawn):
 
 
 def test_given_axes_are_drawn_on(mission, plan, verdict):
+    from matplotlib.figure import Figure
+
     ax = Figure().add_subplot()
     assert plot_routes(mission, plan, verdict, ax=ax) is ax
     assert ax.lines
@@ -261,6 +263,8 @@ def test_a_3d_legend_does_not_cover_the_axes():
 
 
 def test_on_2d_axes_a_3d_mission_is_seen_from_above(drawn):
+    from matplotlib.figure import Figure
+
     ax = plot_routes(*spatial(), ax=Figure().add_subplot())
     np.testing.assert_array_equal(drawn(ax, "travel-uav")[0].get_xydata(), [(0, 0), (4, 0), (4, 0)])
 

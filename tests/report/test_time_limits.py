@@ -2,7 +2,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 
 from muster.report import plot_gantt
 from muster.report.styles import ALARM
@@ -36,6 +35,8 @@ def test_windows_are_shaded_in_the_row_of_the_robot(mission, plan, drawn):
 
 
 def test_lateness_is_red_from_the_due_time_to_the_end(mission, plan, drawn):
+    from matplotlib.colors import to_hex
+
     ax = chart(changed(mission, d={"due_s": 25.0}, c={"due_s": 33.5}), plan)
     (late,) = drawn(ax, "late")
     assert late.get_gid() == "late-d"

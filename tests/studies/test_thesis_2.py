@@ -3,7 +3,6 @@
 from types import SimpleNamespace
 
 import pytest
-from scipy.stats import bootstrap
 
 import muster
 from muster.allocation.problem import Problem
@@ -55,6 +54,8 @@ def test_verdicts_stand_beside_the_published_ones(report):
 
 
 def test_the_interval_is_that_of_a_bootstrap():
+    from scipy.stats import bootstrap
+
     values = [1.0, 2.5, 2.0, 4.0, 3.5, 3.0, 2.2, 2.8, 1.9, 3.1, 2.6, 2.4, 3.3, 1.4, 2.9, 2.7]
     low, high = bootstrap((values,), lambda x, axis: x.mean(axis), rng=0).confidence_interval
     assert samples.half_interval(values) == pytest.approx((high - low) / 2, rel=0.15)

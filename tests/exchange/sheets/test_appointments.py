@@ -2,7 +2,6 @@
 
 from datetime import UTC, datetime
 
-import icalendar
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,6 +19,8 @@ def texts(folder, text=CREW, **options):
 
 
 def events(text):
+    import icalendar
+
     calendar = icalendar.Calendar.from_ical(text)
     assert not calendar.errors
     return list(calendar.walk("VEVENT"))

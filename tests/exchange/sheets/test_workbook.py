@@ -3,7 +3,6 @@
 from datetime import datetime, timedelta
 from io import BytesIO
 
-import openpyxl
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,6 +14,8 @@ from muster.exchange.sheets.workbook import worksheet_names
 
 
 def book_of(folder, text=CREW, **options):
+    import openpyxl
+
     mission, verdict, plan = crew(folder, text)
     files = exported(mission, verdict, "xlsx", ExportOptions(**options), plan)
     return openpyxl.load_workbook(BytesIO(files.contents["plan.xlsx"]))
@@ -80,6 +81,8 @@ def test_the_overview_has_robots_and_what_is_left_out(tmp_path):
 
 
 def test_ids_are_no_formulas(tmp_path):
+    import openpyxl
+
     text = CREW.replace("id: idle", 'id: "=1+1"').replace("task: scan", 'task: "@x"').replace("id: scan", 'id: "@x"')
     (tmp_path / "crew.yaml").write_text(text, encoding="utf-8")
     from muster import load, verify

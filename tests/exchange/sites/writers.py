@@ -6,7 +6,6 @@ import struct
 import zipfile
 from contextlib import closing
 
-import openpyxl
 import shapely
 
 TASKS = [
@@ -71,6 +70,8 @@ def write_kmz(path, text, name="doc.kml"):
 
 def write_workbook(path, sheets, merged=None):
     """Sheets by name, each a list of rows; `merged` are ranges of cells by sheet."""
+    import openpyxl
+
     book = openpyxl.Workbook()
     book.remove(book.active)
     for name, rows in sheets.items():
