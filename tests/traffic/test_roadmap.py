@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 import shapely
-from scipy.ndimage import label
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from muster.mission.errors import ParameterError
 from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace
@@ -21,6 +18,9 @@ RADIUS = 0.3
 
 
 def groups(roadmap):
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     n = len(roadmap.points)
     links = coo_array((np.ones(len(roadmap.edges)), roadmap.edges.T), shape=(n, n))
     return connected_components(links, directed=False)[1]
@@ -46,6 +46,8 @@ def free_points(space, count, seed):
 @pytest.mark.long(keep=5)
 @pytest.mark.parametrize("seed", range(15))
 def test_a_roadmap_connects_what_the_free_cells_connect(seed):
+    from scipy.ndimage import label
+
     space = GridSpace(inflated(noisy_grid(seed), RADIUS))
     assert not space.grid.blocked.all()
     places = free_points(space, 20, seed)

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from muster.mission.errors import ParameterError
 from muster.traffic.space_time import NotTogether, Parameters, together
@@ -68,6 +66,9 @@ def test_no_contacts_on_random_grids(window, seed, robots, neighbours):
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10**6))
 def test_one_robot_is_as_short_as_scipy_says(seed):
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
     random = np.random.default_rng(seed)
     blocked = random.random((8, 8)) < 0.25
     blocked[0, 0] = blocked[7, 7] = False

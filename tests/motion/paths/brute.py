@@ -5,8 +5,6 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import shapely
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 SHARES = (0.5, *np.linspace(0, 1, 30)[1:-1])
 """Of the way between two points: where it is looked first whether they see each other."""
@@ -69,6 +67,9 @@ def cells_region(blocked):
 
 def sparse_region_lengths(region, places):
     """As `region_lengths`, faster: all pairs of vertices at once, one search for all places."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
     nodes = np.concatenate([places, np.unique(shapely.get_coordinates(region), axis=0)])
     first, second = np.triu_indices(len(nodes), 1)
     apart = (nodes[first] != nodes[second]).any(axis=1)
@@ -98,6 +99,9 @@ def region_lengths(region, places):
 
 
 def _lengths(places, corners, sees, free):
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
     nodes = [tuple(map(float, p)) for p in places] + corners
     usable = [k >= len(places) or free(p) for k, p in enumerate(nodes)]
     edges = [

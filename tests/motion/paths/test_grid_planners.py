@@ -5,8 +5,6 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 from tests.motion.paths.brute import grid_sees
 from tests.motion.paths.spaces import grids, places_on, regions
 
@@ -22,6 +20,9 @@ ON_GRIDS = ("dijkstra", "a-star", "theta-star", "shortest")
 
 def cell_lengths(blocked, start):
     """SciPy's lengths from the cell `start` (row, column) over eight neighbours without cut corners."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
     rows, columns = blocked.shape
     links = []
     for row, column in np.argwhere(~blocked):
