@@ -171,7 +171,10 @@ def test_the_record_of_a_killed_process_opens(tmp_path):
     file = tmp_path / "killed.mcap"
     process = subprocess.Popen([sys.executable, "-c", _ENDLESS, str(file)], stdout=subprocess.PIPE)
     assert process.stdout.readline() == b"running\n"
-    time.sleep(random.Random().random())
+    until = time.monotonic() + 120
+    while file.stat().st_size < 200_000:  # what it has said is in the file later, as chunks are written whole
+        assert time.monotonic() < until, "nothing is written"
+        time.sleep(0.02)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     process.stdout.close()
