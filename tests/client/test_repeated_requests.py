@@ -10,8 +10,9 @@ from muster.mission.errors import NetworkError
 
 
 @pytest.fixture
-def flaky():
+def flaky(monkeypatch):
     """The URL of a server that breaks its first connections off, how many of them, and the keys that it was sent."""
+    monkeypatch.setattr("muster.client.connection._PAUSE_S", 0.01)
     keys, breaks = [], [2]
 
     class Flaky(BaseHTTPRequestHandler):
@@ -30,7 +31,7 @@ def flaky():
             pass
 
     with ThreadingHTTPServer(("127.0.0.1", 0), Flaky) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
+        threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}", breaks, keys
         server.shutdown()
 

@@ -60,10 +60,12 @@ def exists(pid):
     return True
 
 
-@pytest.mark.parametrize("transport", TRANSPORTS)
 @pytest.mark.parametrize(
-    ("robots", "tasks", "victims"),
-    [(5, 40, ("r_0",)), pytest.param(20, 50, ("r_0", "r_7", "r_13"), marks=pytest.mark.long)],
+    ("transport", "robots", "tasks", "victims"),
+    [
+        ("udp", 5, 40, ("r_0",)),
+        *(pytest.param(each, 20, 50, ("r_0", "r_7", "r_13"), marks=pytest.mark.long) for each in TRANSPORTS),
+    ],
 )
 def test_when_some_are_killed_in_the_middle_the_others_do_it_all(transport, robots, tasks, victims):
     problem = problem_of(robots, tasks)
