@@ -3,6 +3,7 @@
 import sys
 
 from tests.suites import SHARES, share_of
+
 from tools.suites.campaigns import CAMPAIGNS
 from tools.suites.executed import read_map
 from tools.suites.turn import collected
