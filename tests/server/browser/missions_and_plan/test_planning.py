@@ -118,6 +118,8 @@ def test_robots_keep_the_colours_of_the_plan_that_is_shown_while_others_come(wat
 
 @pytest.mark.long
 def test_two_plans_are_compared_side_by_side(watched, page):
+    with Client(watched.origin) as client:
+        client.plan("31T-6R50", iterations=300).wait()
     plan_view(watched, "31T-6R50")
     page.get_by_label("Allocator").click()
     page.get_by_role("option", name="greedy", exact=True).click()
