@@ -12,7 +12,7 @@ from base64 import b64decode
 from contextlib import suppress
 
 NAMES = (os.environ.get("MUSTER_BROWSER", ""), "chromium", "chromium-browser", "google-chrome")
-_SECONDS = 60.0  # after which a browser that says nothing is taken for broken
+_SECONDS = 60.0  # after which a browser that does not answer is taken for broken
 
 _LAUNCH = """
 import os, sys
@@ -66,17 +66,18 @@ class Browser:
         if self._session is not None:
             message["sessionId"] = self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
+        end = time.monotonic() + _SECONDS
         while True:
-            answer = self._next()
+            answer = self._next(end)
             if answer.get("id") == self._number:
                 assert "error" not in answer, answer
                 return answer["result"]
             self.events.append(answer)
 
-    def _next(self):
+    def _next(self, end):
         while b"\0" not in self._rest:
-            ready, _, _ = select.select([self._read], [], [], _SECONDS)
-            assert ready, "the browser says nothing"
+            ready, _, _ = select.select([self._read], [], [], max(0.0, end - time.monotonic()))
+            assert ready, "the browser does not answer"
             more = os.read(self._read, 1 << 20)
             assert more, "the browser has gone"
             self._rest += more
