@@ -160,14 +160,15 @@ bench: $(VENV)/developed
 # with what builds the documentation site besides.
 
 $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
-	@echo "Building Muster; this takes two to four minutes ..."
+	@echo "Building Muster; this takes about a minute on two cores ..."
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable '.[plot,record]'
 	@touch $@
 
 $(VENV)/developed: $(BUILT_FROM) | $(VENV)/made
 	@echo "Building Muster, and installing all extras and the tools for tests; this takes minutes ..."
 	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'  # knows dependency groups
-	$(BIN)/pip install --quiet --group dev --editable '.[all]' -C cmake.define.MUSTER_WERROR=ON
+	$(BIN)/pip install --quiet --group dev --editable '.[all]' \
+		-C cmake.define.MUSTER_WERROR=ON -C cmake.define.MUSTER_UNITY=OFF  # a change of one file compiles one file
 	@touch $(VENV)/installed $@
 
 $(VENV)/documented: $(VENV)/developed

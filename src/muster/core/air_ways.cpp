@@ -2,17 +2,15 @@
 #include "air_ways.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "heap.hpp"
+#include "infinity.hpp"
 
 namespace muster {
 
 namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 // Ways as much longer than the shortest on samples are looked at: pulled straight they may be shorter.
 constexpr double kWorthTightening = 1.03;

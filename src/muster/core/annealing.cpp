@@ -5,11 +5,12 @@
 #include <limits>
 #include <stdexcept>
 
+#include "infinity.hpp"
+
 namespace muster {
 
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kCoolest = 1e-3;  // the last temperature as a share of the first
 constexpr int kTrials = 50;        // changes from which the first temperature is found
 

@@ -4,7 +4,9 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <array>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "air.hpp"
@@ -14,6 +16,9 @@ namespace muster {
 
 using PointArray = nanobind::ndarray<const double, nanobind::c_contig, nanobind::device::cpu>;
 using Table = nanobind::ndarray<nanobind::numpy, double>;
+
+inline Point point(const std::pair<double, double>& p) { return {p.first, p.second}; }
+inline Spot spot(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
 inline std::vector<Point> points_of(const PointArray& array) {
   if (array.ndim() != 2 || array.shape(1) != 2) throw std::invalid_argument("an array of points must be (n, 2)");

@@ -20,7 +20,7 @@ constexpr double kFirst = 0.1;     // the first of them, seconds
 constexpr int kSides = 32;         // of the polygon within the disc of possible speeds
 constexpr double kInside = 1e-6;   // by which share of its radius a point may lie in a disc and be on the border
 constexpr double kReserve = 0.99;  // share of the deceleration that is counted on
-constexpr double kFar = 1e6;       // m/s: a centre farther away is of a disc at no time
+constexpr double kUnreachableSpeed = 1e6;  // m/s: a centre farther away is of a disc at no time
 
 // A place of the border of an obstacle, and the way out of it there.
 struct Border {
@@ -68,7 +68,7 @@ class Obstacle {
     const double rise = std::exp(-times_[i] / response_), s = times_[i] - response_ * (1.0 - rise);
     const Vec<2> way = (-1.0 / s) * (rise * v_ + (1.0 - rise) * discs_[i].centre);   // c'
     const double shrinks = (1.0 - rise) * discs_[i].radius / s, length = norm(way);  // -r'
-    if (length <= shrinks) return {{{kFar, kFar}}, {{1.0, 0.0}}};
+    if (length <= shrinks) return {{{kUnreachableSpeed, kUnreachableSpeed}}, {{1.0, 0.0}}};
     const double cosine = shrinks / length, sine = side * std::sqrt(1.0 - cosine * cosine);
     const Vec<2> ahead = (1.0 / length) * way;
     const Vec<2> normal = cosine * ahead + sine * turned(ahead);
@@ -88,10 +88,10 @@ class Obstacle {
 
 // Chooses for one agent after another, by the change y of its velocity at which it aims: v after dt seconds is
 // v + q y, q = 1 - exp(-dt / delta).
-class Chooser {
+class AvoChooser {
  public:
-  Chooser(const Agents<2>& agents, const std::vector<double>& accelerations, const std::vector<Segment>& walls,
-          const AvoSettings& settings, double dt, const AgentTree<2>& tree)
+  AvoChooser(const Agents<2>& agents, const std::vector<double>& accelerations, const std::vector<Segment>& walls,
+             const AvoSettings& settings, double dt, const AgentTree<2>& tree)
       : agents_(agents),
         accelerations_(accelerations),
         walls_(walls),
@@ -215,7 +215,7 @@ std::vector<Vec<2>> avo_velocities(const Agents<2>& agents, const std::vector<do
   const AgentTree<2> tree(agents.positions);
   std::vector<Vec<2>> result(agents.positions.size());
   in_parts(agents.size(), threads, [&](int begin, int end) {
-    Chooser chooser(agents, accelerations, walls, settings, dt, tree);
+    AvoChooser chooser(agents, accelerations, walls, settings, dt, tree);
     for (int i = begin; i < end; ++i) result[i] = chooser.velocity(i);
   });
   return result;

@@ -25,8 +25,6 @@ namespace {
 using Triple = std::array<double, 3>;
 using Shape = std::tuple<std::vector<PointArray>, double, double>;
 
-Spot spot(const Triple& p) { return {p[0], p[1], p[2]}; }
-
 Rings rings_of(const std::vector<PointArray>& arrays) {
   std::vector<std::vector<Point>> rings;
   for (const PointArray& ring : arrays) rings.push_back(points_of(ring));
@@ -41,7 +39,7 @@ std::vector<Spot> spots_of(const PointArray& array) {
   return spots;
 }
 
-Table lengths(const AirWays& ways, const PointArray& places, int first, int last, int threads) {
+Table air_lengths(const AirWays& ways, const PointArray& places, int first, int last, int threads) {
   const std::vector<Spot> spots = spots_of(places);
   if (first < 0 || last < first || last > static_cast<int>(spots.size())) {
     throw std::invalid_argument("the rows do not fit the places");
@@ -95,7 +93,7 @@ void bind_air(nb::module_& m) {
             return table_of(found);
           },
           "start"_a, "goal"_a, "A way with its ends, (k, 3); empty if there is none.")
-      .def("lengths", &lengths, "places"_a, nb::kw_only(), "first"_a, "last"_a, "threads"_a,
+      .def("lengths", &air_lengths, "places"_a, nb::kw_only(), "first"_a, "last"_a, "threads"_a,
            "Rows `first` to before `last` of the lengths between places: what comes after column i, and 0 there; inf "
            "where there is no way.");
 }

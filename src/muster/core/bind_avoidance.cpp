@@ -24,13 +24,13 @@ namespace {
 
 using Unlocked = nb::call_guard<nb::gil_scoped_release>;
 using Plane = std::array<double, 2>;
-using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using NumberArray = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 template <int D>
-using Rows = nb::ndarray<const double, nb::shape<-1, D>, nb::c_contig, nb::device::cpu>;
+using RowArray = nb::ndarray<const double, nb::shape<-1, D>, nb::c_contig, nb::device::cpu>;
 template <int D>
-using Pairs = nb::ndarray<const double, nb::shape<-1, 2, D>, nb::c_contig, nb::device::cpu>;
+using PairArray = nb::ndarray<const double, nb::shape<-1, 2, D>, nb::c_contig, nb::device::cpu>;
 template <int D>
-using Ways = nb::ndarray<const double, nb::shape<-1, -1, D>, nb::c_contig, nb::device::cpu>;
+using Trajectories = nb::ndarray<const double, nb::shape<-1, -1, D>, nb::c_contig, nb::device::cpu>;
 template <int D>
 using Result = nb::ndarray<nb::numpy, double, nb::shape<-1, D>, nb::c_contig>;
 
@@ -43,7 +43,7 @@ std::vector<Vec<D>> vectors(const Array& array) {
   return result;
 }
 
-std::vector<double> numbers(const Numbers& array) { return {array.data(), array.data() + array.size()}; }
+std::vector<double> numbers(const NumberArray& array) { return {array.data(), array.data() + array.size()}; }
 
 template <int D>
 Result<D> as_array(std::vector<Vec<D>>&& rows) {
@@ -54,8 +54,8 @@ Result<D> as_array(std::vector<Vec<D>>&& rows) {
 }
 
 template <int D>
-Agents<D> agents_of(const Rows<D>& positions, const Rows<D>& velocities, const Rows<D>& preferred, const Numbers& radii,
-                    const Numbers& max_speeds, const Numbers& priorities) {
+Agents<D> agents_of(const RowArray<D>& positions, const RowArray<D>& velocities, const RowArray<D>& preferred,
+                    const NumberArray& radii, const NumberArray& max_speeds, const NumberArray& priorities) {
   Agents<D> agents{vectors<D>(positions), vectors<D>(velocities), vectors<D>(preferred),
                    numbers(radii),        numbers(max_speeds),    numbers(priorities)};
   const std::size_t n = agents.positions.size();
@@ -66,7 +66,7 @@ Agents<D> agents_of(const Rows<D>& positions, const Rows<D>& velocities, const R
 }
 
 template <int D>
-std::vector<Wall<D>> walls_of(const Pairs<D>& array) {
+std::vector<Wall<D>> walls_of(const PairArray<D>& array) {
   const std::vector<Vec<D>> ends = vectors<D>(array);
   std::vector<Wall<D>> walls;
   for (std::size_t k = 0; k + 1 < ends.size(); k += 2) walls.push_back({ends[k], ends[k + 1]});
@@ -89,8 +89,8 @@ void bind_agents(nb::module_& m, const char* name, const char* document) {
   nb::class_<Agents<D>>(m, name, document)
       .def(
           "__init__",
-          [](Agents<D>* self, const Rows<D>& positions, const Rows<D>& velocities, const Rows<D>& preferred,
-             const Numbers& radii, const Numbers& max_speeds, const Numbers& priorities) {
+          [](Agents<D>* self, const RowArray<D>& positions, const RowArray<D>& velocities, const RowArray<D>& preferred,
+             const NumberArray& radii, const NumberArray& max_speeds, const NumberArray& priorities) {
             new (self) Agents<D>(agents_of<D>(positions, velocities, preferred, radii, max_speeds, priorities));
           },
           "positions"_a, "velocities"_a, "preferred"_a, "radii"_a, "max_speeds"_a, "priorities"_a,
@@ -106,8 +106,8 @@ void bind_agents(nb::module_& m, const char* name, const char* document) {
           "most"_a, "distance"_a, Unlocked(), "For each agent the nearest others, as indices, the nearest first.")
       .def(
           "orca",
-          [](const Agents<D>& agents, const Pairs<D>& walls, double dt, double horizon, double wall_horizon, int most,
-             double distance, bool apart, int threads) {
+          [](const Agents<D>& agents, const PairArray<D>& walls, double dt, double horizon, double wall_horizon,
+             int most, double distance, bool apart, int threads) {
             const OrcaSettings settings{horizon, wall_horizon, {most, distance}, apart};
             const std::vector<Wall<D>> still = walls_of<D>(walls);
             return unlocked<D>([&] { return orca_velocities<D>(agents, still, settings, dt, threads); });
@@ -120,8 +120,8 @@ void bind_agents(nb::module_& m, const char* name, const char* document) {
 void bind_plane_methods(nb::module_& m) {
   m.def(
       "rvo",
-      [](const Agents<2>& agents, const Pairs<2>& walls, double dt, double v_min, int magnitudes, double n, double w,
-         bool ideal, double wall_horizon, int most, double distance, int threads) {
+      [](const Agents<2>& agents, const PairArray<2>& walls, double dt, double v_min, int magnitudes, double n,
+         double w, bool ideal, double wall_horizon, int most, double distance, int threads) {
         const RvoSettings settings{v_min, magnitudes, n, w, ideal, wall_horizon, {most, distance}};
         const std::vector<Segment> still = walls_of<2>(walls);
         return unlocked<2>([&] { return rvo_velocities(agents, still, settings, dt, threads); });
@@ -131,7 +131,7 @@ void bind_plane_methods(nb::module_& m) {
       "New velocities by reciprocal velocity obstacles ([tcf-thesis], appendix A3.2).");
   m.def(
       "hrvo",
-      [](const Agents<2>& agents, const Pairs<2>& walls, double dt, double wall_horizon, int most, double distance,
+      [](const Agents<2>& agents, const PairArray<2>& walls, double dt, double wall_horizon, int most, double distance,
          int threads) {
         const HrvoSettings settings{wall_horizon, {most, distance}};
         const std::vector<Segment> still = walls_of<2>(walls);
@@ -141,8 +141,8 @@ void bind_plane_methods(nb::module_& m) {
       "New velocities by hybrid reciprocal velocity obstacles ([snape2011]).");
   m.def(
       "avo",
-      [](const Agents<2>& agents, const Numbers& accelerations, const Pairs<2>& walls, double dt, double horizon,
-         double response, double wall_horizon, int most, double distance, int threads) {
+      [](const Agents<2>& agents, const NumberArray& accelerations, const PairArray<2>& walls, double dt,
+         double horizon, double response, double wall_horizon, int most, double distance, int threads) {
         const AvoSettings settings{horizon, wall_horizon, response, {most, distance}};
         const std::vector<Segment> still = walls_of<2>(walls);
         const std::vector<double> limits = numbers(accelerations);
@@ -195,7 +195,7 @@ template <int D>
 void bind_program(nb::module_& m, const char* name) {
   m.def(
       name,
-      [](const Rows<D>& normals, const Numbers& offsets, double radius, std::array<double, D> wanted,
+      [](const RowArray<D>& normals, const NumberArray& offsets, double radius, std::array<double, D> wanted,
          std::size_t hard) {
         const std::vector<Vec<D>> unit = vectors<D>(normals);
         if (offsets.size() != unit.size()) throw std::invalid_argument("the arrays are of different lengths");
@@ -216,7 +216,7 @@ template <int D>
 void bind_approach(nb::module_& m, const char* name) {
   m.def(
       name,
-      [](const Ways<D>& positions, const Numbers& radii, double tolerance) {
+      [](const Trajectories<D>& positions, const NumberArray& radii, double tolerance) {
         if (positions.shape(0) == 0 || positions.shape(1) != radii.size())
           throw std::invalid_argument("positions must be (steps + 1, n, d), radii (n,)");
         const std::vector<Vec<D>> places = vectors<D>(positions);

@@ -19,7 +19,7 @@ namespace muster {
 namespace {
 
 using Unlocked = nb::call_guard<nb::gil_scoped_release>;
-using Numbers = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
+using Offers = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
 
 Figure figure_of(const std::string& name) {
   if (name == "growth") return Figure::growth;
@@ -28,10 +28,10 @@ Figure figure_of(const std::string& name) {
   throw std::invalid_argument("no such figure: " + name);
 }
 
-Numbers numbers(std::vector<double> values) {
+Offers array_of(std::vector<double> values) {
   auto* kept = new std::vector<double>(std::move(values));
   const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-  return Numbers(kept->data(), {kept->size()}, owner);
+  return Offers(kept->data(), {kept->size()}, owner);
 }
 
 // Bidders with bounds checked where Python passes indices.
@@ -43,23 +43,23 @@ class Bidding : public Bidders {
   void announce_all(const std::vector<int>& tasks) {
     for (const int task : tasks) announce(checked_task(task));
   }
-  Numbers offers_of(int robot) { return numbers(offers(checked_robot(robot))); }
-  Numbers offers_on(int task) { return numbers(offers_for(checked_task(task))); }
-  std::pair<std::vector<int>, Numbers> lowest_of_all() {
+  Offers offers_of(int robot) { return array_of(offers(checked_robot(robot))); }
+  Offers offers_on(int task) { return array_of(offers_for(checked_task(task))); }
+  std::pair<std::vector<int>, Offers> lowest_of_all() {
     std::vector<int> tasks;
     std::vector<double> figures;
     for (int robot = 0; robot < problem_.robots(); ++robot) {
       tasks.push_back(lowest(robot).task);
       figures.push_back(lowest(robot).figure);
     }
-    return {std::move(tasks), numbers(std::move(figures))};
+    return {std::move(tasks), array_of(std::move(figures))};
   }
   void award_to(int robot, int task) { award(checked_robot(robot), checked_task(task)); }
   std::vector<int> take_back(int task) { return relinquish(checked_task(task)); }
-  Numbers usages() const {
+  Offers usages() const {
     std::vector<double> usages;
     for (int robot = 0; robot < problem_.robots(); ++robot) usages.push_back(usage(robot));
-    return numbers(std::move(usages));
+    return array_of(std::move(usages));
   }
   std::vector<int> lengths() const {
     std::vector<int> lengths;

@@ -20,9 +20,9 @@ namespace muster {
 
 namespace {
 
-using Place = std::array<double, 3>;
+using PlaceArray = std::array<double, 3>;
 using Faces = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
-using Stops = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
+using StopArray = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
 using Table = nb::ndarray<nb::numpy, double>;
 using Event = std::tuple<double, int, int, int, bool>;
 using Poses = nb::ndarray<const double, nb::shape<-1, 4>, nb::c_contig, nb::device::cpu>;
@@ -58,7 +58,7 @@ WallSet walls_of(const Faces& faces, const Slabs& slabs, double ground) {
   return walls;
 }
 
-std::vector<Waypoint> way_of(const Stops& stops, const std::vector<bool>& labelled) {
+std::vector<Waypoint> way_of(const StopArray& stops, const std::vector<bool>& labelled) {
   if (stops.shape(0) != labelled.size()) throw std::invalid_argument("the arrays are of different lengths");
   std::vector<Waypoint> way;
   for (std::size_t k = 0; k < labelled.size(); ++k) {
@@ -118,7 +118,7 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           "floor, ceiling; and the least height of a centre, or -inf. Returns the number of this set.")
       .def(
           "add",
-          [](CrowdWorld& w, Place position, double heading, double radius, double speed, double yaw_rate,
+          [](CrowdWorld& w, PlaceArray position, double heading, double radius, double speed, double yaw_rate,
              double acceleration, double priority, bool faces_its_way, bool flies, int walls, const std::string& law,
              double climb, double climb_rate) {
             return w.add({radius, speed, yaw_rate, acceleration, priority, faces_its_way, flies, walls, law_named(law),
@@ -136,7 +136,7 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           "From now on another set of walls stops a robot.")
       .def(
           "send",
-          [](CrowdWorld& w, int robot, const Stops& stops, const std::vector<bool>& labelled, int order) {
+          [](CrowdWorld& w, int robot, const StopArray& stops, const std::vector<bool>& labelled, int order) {
             w.send(robot, way_of(stops, labelled), order);
           },
           "robot"_a, "stops"_a, "labelled"_a, "order"_a,
@@ -165,7 +165,7 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
       .def("leave_to_traffic", &CrowdWorld::leave_to_traffic, "robot"_a)
       .def(
           "believe",
-          [](CrowdWorld& w, int robot, Place place, double heading, double spread) {
+          [](CrowdWorld& w, int robot, PlaceArray place, double heading, double spread) {
             w.believe(robot, {place}, heading, spread);
           },
           "robot"_a, "place"_a, "heading"_a, "spread"_a,

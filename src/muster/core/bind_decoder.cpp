@@ -19,8 +19,8 @@ namespace muster {
 
 namespace {
 
-using Indices = nb::ndarray<const std::int32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Trail = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using IndexTable = nb::ndarray<const std::int32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using TrailArray = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Figures = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
 
 constexpr std::size_t kFigures = 4;
@@ -75,7 +75,7 @@ class Decoding {
   explicit Decoding(const Problem& problem)
       : problem_(problem), decoder_(problem), generation_(problem), seen_(problem.tasks()) {}
 
-  Figures in_order(const Indices& tasks, const Indices& robots) {
+  Figures in_order(const IndexTable& tasks, const IndexTable& robots) {
     const std::size_t size = checked_robots(robots);
     if (tasks.shape(0) != size || tasks.shape(1) != robots.shape(1)) throw std::invalid_argument("a robot a task");
     generation_.resize(size);
@@ -84,7 +84,7 @@ class Decoding {
     return figures(generation_.evaluate());
   }
 
-  Figures nearest_next(const Indices& robots) {
+  Figures nearest_next(const IndexTable& robots) {
     const std::size_t size = checked_robots(robots);
     generation_.resize(size);
     for (std::size_t k = 0; k < size; ++k) decoder_.nearest_next(row(robots, k), generation_[k]);
@@ -94,11 +94,11 @@ class Decoding {
   Routes routes(int k) const { return generation_.routes(k); }
 
  private:
-  std::span<const int> row(const Indices& array, std::size_t k) const {
+  std::span<const int> row(const IndexTable& array, std::size_t k) const {
     return {array.data() + k * array.shape(1), array.shape(1)};
   }
 
-  std::size_t checked_robots(const Indices& robots) const {
+  std::size_t checked_robots(const IndexTable& robots) const {
     if (static_cast<int>(robots.shape(1)) != problem_.tasks()) throw std::invalid_argument("a robot for each task");
     const std::span<const int> all{robots.data(), robots.size()};
     if (std::ranges::any_of(all, [&](int robot) { return robot < 0 || robot >= problem_.robots(); })) {
@@ -126,7 +126,7 @@ class Building {
   Building(const Problem& problem, double beta, std::uint64_t seed)
       : problem_(problem), colony_(problem, beta, seed), generation_(problem) {}
 
-  Figures build(const Trail& trail, int plans) {
+  Figures build(const TrailArray& trail, int plans) {
     const auto n = static_cast<std::size_t>(problem_.tasks()), m = static_cast<std::size_t>(problem_.robots());
     if (trail.shape(0) != n + m || trail.shape(1) != n) throw std::invalid_argument("a trail from each place");
     if (plans < 0) throw std::invalid_argument("at least 0 plans");

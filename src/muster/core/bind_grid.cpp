@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "grid.hpp"
 #include "grid_search.hpp"
@@ -20,8 +21,6 @@ namespace {
 using Cells = nb::ndarray<const bool, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Unlocked = nb::call_guard<nb::gil_scoped_release>;
 using Pair = std::pair<double, double>;
-
-Point point(const Pair& p) { return {p.first, p.second}; }
 
 }  // namespace
 

@@ -20,7 +20,7 @@ namespace muster {
 
 namespace {
 
-using Search = Lacam<JointSteps>;
+using LacamSearch = Lacam<JointSteps>;
 using Unlocked = nb::call_guard<nb::gil_scoped_release>;
 
 const char* name_of(SearchState state) {
@@ -36,7 +36,7 @@ const char* name_of(SearchState state) {
   }
 }
 
-std::vector<Configuration> solution(const Search& search) {
+std::vector<Configuration> solution(const LacamSearch& search) {
   std::vector<Configuration> steps;
   for (const int k : search.way_to(search.goal())) steps.push_back(search.node(k).configuration);
   return steps;
@@ -53,24 +53,26 @@ void bind_lacam(nb::module_& m) {
       .def_prop_ro("edges", &DirectedGraph::edges)
       .def("costs_to", &DirectedGraph::costs_to, "goal"_a, Unlocked(),
            "What it costs to come to a vertex from each; infinite where there is no way.");
-  nb::class_<Search>(m, "Lacam", "Search over configurations of robots that take a step on a graph at once.")
+  nb::class_<LacamSearch>(m, "Lacam", "Search over configurations of robots that take a step on a graph at once.")
       .def(
           "__init__",
-          [](Search* self, std::shared_ptr<const DirectedGraph> graph, Configuration starts, std::vector<int> goals,
-             int samples, std::uint64_t seed, bool anytime) {
-            new (self) Search({std::move(graph), std::move(starts), std::move(goals), samples, seed}, seed, anytime);
+          [](LacamSearch* self, std::shared_ptr<const DirectedGraph> graph, Configuration starts,
+             std::vector<int> goals, int samples, std::uint64_t seed, bool anytime) {
+            new (self)
+                LacamSearch({std::move(graph), std::move(starts), std::move(goals), samples, seed}, seed, anytime);
           },
           "graph"_a, "starts"_a, "goals"_a, nb::kw_only(), "samples"_a = 1, "seed"_a = 0, "anytime"_a = false,
           "Raises ValueError where starts or goals are no vertices, or not of the same number.")
-      .def("advance", &Search::advance, "expansions"_a, Unlocked())
+      .def("advance", &LacamSearch::advance, "expansions"_a, Unlocked())
       .def_prop_ro(
-          "connected", [](const Search& s) { return s.generator().connected(); },
+          "connected", [](const LacamSearch& s) { return s.generator().connected(); },
           "Whether each robot alone comes to its goal.")
       .def_prop_ro(
-          "state", [](const Search& s) { return name_of(s.state()); },
+          "state", [](const LacamSearch& s) { return name_of(s.state()); },
           "searching, solved, optimal (solved, and nothing is better), or unsolvable: the space is exhausted.")
-      .def_prop_ro("nodes", &Search::size, "The number of configurations that it knows.")
-      .def_prop_ro("cost", &Search::cost, "Steps in which robots do not rest at their goals, of the best solution.")
+      .def_prop_ro("nodes", &LacamSearch::size, "The number of configurations that it knows.")
+      .def_prop_ro("cost", &LacamSearch::cost,
+                   "Steps in which robots do not rest at their goals, of the best solution.")
       .def("solution", &solution, "The vertex of each robot, step by step. Only after it is solved.");
   nb::class_<JointRefinement>(m, "JointRefinement", "Large neighbourhood search over the paths of robots.")
       .def(nb::init<std::shared_ptr<const DirectedGraph>, const std::vector<Configuration>&, std::uint64_t>(),

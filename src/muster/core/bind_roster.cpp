@@ -49,7 +49,7 @@ std::vector<std::tuple<int, int, int>> members_of(const UnitInsertion& insertion
   return members;
 }
 
-std::vector<std::vector<std::tuple<int, double, double, double>>> stops_of(const Roster& roster) {
+std::vector<std::vector<std::tuple<int, double, double, double>>> roster_stops(const Roster& roster) {
   std::vector<std::vector<std::tuple<int, double, double, double>>> stops;
   for (const auto& row : roster.stops()) {
     auto& own = stops.emplace_back();
@@ -105,7 +105,7 @@ void bind_roster(nb::module_& m) {
       .def("rollback", &Roster::rollback, "Undo everything since the last `commit`.")
       .def_prop_ro("objective", [](Roster& roster) { return roster.value().objective; })
       .def_prop_ro("routes", &Roster::routes)
-      .def_prop_ro("stops", &stops_of, "By robot: task, arrival, begin and end of each stop.");
+      .def_prop_ro("stops", &roster_stops, "By robot: task, arrival, begin and end of each stop.");
 }
 
 }  // namespace muster

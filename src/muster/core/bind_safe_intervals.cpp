@@ -23,9 +23,9 @@ namespace muster {
 
 namespace {
 
-using Stops = std::vector<std::pair<int, double>>;
+using TimedStops = std::vector<std::pair<int, double>>;
 
-Traveller traveller_of(int start, const Stops& stops, double radius, double speed, double heading, double yaw_rate,
+Traveller traveller_of(int start, const TimedStops& stops, double radius, double speed, double heading, double yaw_rate,
                        double acceleration, double ready, bool fixed, bool stays) {
   if (!(radius >= 0.0 && speed > 0.0 && yaw_rate > 0.0 && acceleration > 0.0 && ready >= 0.0))
     throw std::invalid_argument("traveller: expected positive numbers");
@@ -64,7 +64,7 @@ void bind_safe_intervals(nb::module_& m) {
   nb::class_<Traveller>(m, "Traveller", "A robot for which a path over a roadmap is sought.")
       .def(
           "__init__",
-          [](Traveller* self, int start, const Stops& stops, double radius, double speed, double heading,
+          [](Traveller* self, int start, const TimedStops& stops, double radius, double speed, double heading,
              double yaw_rate, double acceleration, double ready, bool fixed, bool stays) {
             new (self) Traveller(
                 traveller_of(start, stops, radius, speed, heading, yaw_rate, acceleration, ready, fixed, stays));

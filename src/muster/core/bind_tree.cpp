@@ -21,7 +21,6 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-Spot spot(const Triple& p) { return {p[0], p[1], p[2]}; }
 Point flat(Spot p) { return {p.x, p.y}; }
 
 Room room_of(const Ways& ways) {

@@ -25,10 +25,8 @@ namespace {
 
 using Pair = std::pair<double, double>;
 
-Point point(const Pair& p) { return {p.first, p.second}; }
-
-Table lengths(const Ways& ways, const PointArray& exits, const PointArray& entries, bool mutual, int first, int last,
-              int threads) {
+Table way_lengths(const Ways& ways, const PointArray& exits, const PointArray& entries, bool mutual, int first,
+                  int last, int threads) {
   const auto from = points_of(exits), to = points_of(entries);
   if (first < 0 || last < first || last > static_cast<int>(from.size()) || (mutual && from.size() != to.size())) {
     throw std::invalid_argument("the rows do not fit the places");
@@ -96,7 +94,7 @@ void bind_ways(nb::module_& m) {
       .def("lengths_alone", &lengths_alone, "exits"_a, "entries"_a, nb::kw_only(), "mutual"_a,
            "All `lengths`, way by way without the graph; None if it comes to pay before the end.")
       .def(
-          "lengths", &lengths, "exits"_a, "entries"_a, nb::kw_only(), "mutual"_a, "first"_a, "last"_a, "threads"_a,
+          "lengths", &way_lengths, "exits"_a, "entries"_a, nb::kw_only(), "mutual"_a, "first"_a, "last"_a, "threads"_a,
           "Rows `first` to before `last` of the lengths from exits to entries; inf where there is no way. If `mutual`, "
           "the entries are the exits, and row i holds what comes after column i alone, and 0 there.");
 }

@@ -3,19 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <utility>
 
 #include "heap.hpp"
+#include "infinity.hpp"
 
 namespace muster {
 
 namespace {
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-9;  // so that a way as short as the best one known is found again
+constexpr double kBoundRounding = 1e-9;  // so that a way as short as the best one known is found again
 
 class CornerSearch {
  public:
@@ -25,7 +24,7 @@ class CornerSearch {
   CornerWay run() {
     const std::optional<double> some = sights_.some_length(from_, to_);
     if (!some) return {{}, kFar, looks_};
-    bound_ = *some * (1.0 + kRounding);
+    bound_ = *some * (1.0 + kBoundRounding);
     for (const int corner : sights_.seen_from(at_to_, {to_, from_, bound_})) {
       rest_[corner] = distance(place(corner), to_);
     }

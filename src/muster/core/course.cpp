@@ -10,9 +10,9 @@ namespace muster {
 
 namespace {
 
-constexpr double kRounding = 1e-9;  // metres
-constexpr double kSure = 3.0;       // standard deviations within which a robot is of where it takes itself to be
-constexpr double kHeldUp = 1.0;     // seconds
+constexpr double kCourseRounding = 1e-9;  // metres
+constexpr double kSure = 3.0;             // standard deviations within which a robot is of where it takes itself to be
+constexpr double kHeldUp = 1.0;           // seconds
 constexpr double kAnySpeed = std::numeric_limits<double>::infinity();
 constexpr double kClimbs = 0.5;  // seconds: the constant interval of (4.12)
 
@@ -93,7 +93,7 @@ Vec<3> along_course(const CrowdRobot& robot, const Tolerances& tolerances, doubl
     const Vec<3>& at = robot.way[k].at;
     const Vec<3> way = leg(robot, from, at);
     const double length = norm(way);
-    if (left < length - kRounding) {
+    if (left < length - kCourseRounding) {
       from = from + (left / length) * way;
       break;
     }
@@ -150,7 +150,7 @@ bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances
   const double past = corner_speed(robot, before, robot.next, tolerances, dt);
   if (away <= robot.exact || (past == 0.0 && no_nearer && away <= tolerances.arrival)) return true;
   const double missed = norm(point.at - closest_on_piece(point.at, before, robot.position));
-  if (missed <= tolerances.corner + kRounding && past > 0.0) return true;
+  if (missed <= tolerances.corner + kCourseRounding && past > 0.0) return true;
   return robot.turned_aside && missed <= room;
 }
 

@@ -11,9 +11,9 @@ namespace muster {
 
 namespace {
 
-constexpr double kFar = 1e9;       // metres
-constexpr double kFirm = 1e18;     // the priority of those who do not give way
-constexpr double kResponse = 0.5;  // of AVO: delta, seconds
+constexpr double kBoundless = 1e9;  // metres
+constexpr double kFirm = 1e18;      // the priority of those who do not give way
+constexpr double kResponse = 0.5;   // of AVO: delta, seconds
 
 template <int D>
 Vec<D> in_dimensions(const Vec<3>& v) {
@@ -25,7 +25,7 @@ Vec<D> in_dimensions(const Vec<3>& v) {
 // So far below the ground that a ball over it may touch it with its centre.
 std::vector<Box> ground_below(const WallSet& walls, double radius) {
   if (std::isinf(walls.ground)) return {};
-  return {{Vec<3>{{-kFar, -kFar, -kFar}}, Vec<3>{{kFar, kFar, walls.ground - radius}}}};
+  return {{Vec<3>{{-kBoundless, -kBoundless, -kBoundless}}, Vec<3>{{kBoundless, kBoundless, walls.ground - radius}}}};
 }
 
 // Along the walls instead of into them: what each leaves of a velocity, where avoidance does not look at walls.

@@ -13,7 +13,7 @@
 
 namespace muster {
 
-constexpr double kNever = -1.0;  // a time before all others
+constexpr double kBeforeAll = -1.0;  // a time before all others
 constexpr double kNoWheels = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTrack = 0.287 / 0.3;  // between the wheels, in radii: the Wafflebot's at its inflated radius
 constexpr double kNominalRadius = 0.3;  // in place of one of 0
@@ -144,12 +144,12 @@ struct CrowdRobot {
   double approach = 0.0;      // m/s by which it comes nearer to its way point, over about the last half second
   Patience patience;
   Trail trail;
-  bool arrives = false;         // whether its way point is close by, and nobody on it
-  bool waits = false;           // whether another is at work on its way point
-  double asked_until = kNever;  // until then it makes room
-  double look_again = kNever;   // when it looks for a way again after it found none
-  std::vector<Vec<3>> aside;    // places by which it makes room or comes back; the last is where it stays
-  Vec<3> post;                  // where it stands without an order, and comes back to when it has made room
+  bool arrives = false;             // whether its way point is close by, and nobody on it
+  bool waits = false;               // whether another is at work on its way point
+  double asked_until = kBeforeAll;  // until then it makes room
+  double look_again = kBeforeAll;   // when it looks for a way again after it found none
+  std::vector<Vec<3>> aside;        // places by which it makes room or comes back; the last is where it stays
+  Vec<3> post;                      // where it stands without an order, and comes back to when it has made room
 
   Random noise{0}, whims{0}, wheels{0};  // what the world does to it, the tilts that it tries, what its wheels do
   std::vector<Upright> near_faces;

@@ -8,12 +8,12 @@ namespace muster {
 
 namespace {
 
-constexpr double kAside = 0.05;    // share of the top speed by which a velocity differs from one that is followed
-constexpr double kTurned = 0.01;   // radians: the laws of [tcf-thesis] never turn a robot exactly to a heading
-constexpr double kAlmost = 4.0;    // radii from its way point within which one goes there whoever stands behind it;
-                                   // ORCA looks no farther ahead than it has to
-constexpr double kApproach = 0.5;  // seconds over which an approach is a mean
-constexpr double kWallsFor = 1.0;  // metres for which the walls once collected are enough
+constexpr double kDeviation = 0.05;  // share of the top speed by which a velocity differs from one that is followed
+constexpr double kTurned = 0.01;     // radians: the laws of [tcf-thesis] never turn a robot exactly to a heading
+constexpr double kAlmost = 4.0;      // radii from its way point within which one goes there whoever stands behind it;
+                                     // ORCA looks no farther ahead than it has to
+constexpr double kApproach = 0.5;    // seconds over which an approach is a mean
+constexpr double kWallsFor = 1.0;    // metres for which the walls once collected are enough
 constexpr std::uint64_t kWheels = 0x5eed0fc0de0d0e7cULL;  // what wheels do by themselves is drawn apart from the rest
 
 double normal(Random& random) {
@@ -69,7 +69,7 @@ void CrowdWorld::send(int i, std::vector<Waypoint> way, int order) {
   robot.trail = {robot.position, {}, false};
   robot.waits = false;
   robot.approach = 0.0;
-  robot.asked_until = kNever;
+  robot.asked_until = kBeforeAll;
   robot.aside.clear();
 }
 
@@ -246,8 +246,8 @@ void CrowdWorld::yield(const AgentTree<3>& tree) {
       robot.ahead = steering.ahead_braked + share * (steering.ahead_wanted - steering.ahead_braked);
       robot.yaw_rate = steering.yaw_rate;
     }
-    robot.braked = share < 1.0 - kAside;
-    const bool left_course = robot.braked || norm(chosen_[i] - course_[i]) > kAside * robot.top_speed();
+    robot.braked = share < 1.0 - kDeviation;
+    const bool left_course = robot.braked || norm(chosen_[i] - course_[i]) > kDeviation * robot.top_speed();
     robot.turned_aside = left_course && !robot.in_traffic;
   }
 }

@@ -36,7 +36,7 @@ Greedy::Greedy(const Problem& problem, bool balanced)
 namespace {
 // A sum that subtraction has brought below this share of its first value is added up anew: what is left of it may be
 // rounding alone.
-constexpr double kRounding = 1e-6;
+constexpr double kSumRounding = 1e-6;
 constexpr std::size_t kNearby = 16;  // tasks with dependants that a robot keeps
 }  // namespace
 
@@ -87,7 +87,7 @@ void Greedy::assign(int robot, int task) {
       Surroundings& around = surroundings_[c][needed];
       around.sum_to_others -= distance;
       --around.others;
-      if (around.sum_to_others != 0.0 && around.sum_to_others < kRounding * around.sum_at_first) {
+      if (around.sum_to_others != 0.0 && around.sum_to_others < kSumRounding * around.sum_at_first) {
         around.sum_to_others = sum_to_others(c, needed);
       }
     }

@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cstdlib>
-#include <limits>
 #include <memory>
 #include <new>
 #include <numbers>
@@ -14,12 +13,11 @@
 #include "buckets.hpp"
 #include "clearance.hpp"
 #include "heap.hpp"
+#include "infinity.hpp"
 
 namespace muster {
 
 namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 // Each diagonal after the two straight steps beside it.
 struct Step {

@@ -13,7 +13,7 @@ namespace muster {
 
 namespace {
 
-constexpr int kNear = 10;            // tasks beside which a task is tried
+constexpr int kTriedBeside = 10;     // tasks beside which a task is tried
 constexpr double kLeastGain = 1e-9;  // in the usual way: less may be rounding
 
 constexpr double kForbidding = 1e6;  // of a weight left out, in what all routes cost: no gain makes up for it
@@ -34,7 +34,7 @@ Surroundings::Surroundings(const Problem& for_problem, const Neighbours& neighbo
 
 std::span<const int> Surroundings::near(int task) const {
   const auto all = neighbours_.of(task);
-  return all.first(std::min<std::size_t>(all.size(), kNear));
+  return all.first(std::min<std::size_t>(all.size(), kTriedBeside));
 }
 
 void Surroundings::wake(int place) {
@@ -73,7 +73,7 @@ void LocalSearch::improve() {
 }
 
 Routes improved(const Problem& problem, const Routes& routes) {
-  const Neighbours neighbours(problem, kNear, 1);
+  const Neighbours neighbours(problem, kTriedBeside, 1);
   Team team(problem, routes);
   TeamCost cost(problem, team);
   LocalSearch search(problem, neighbours, team, cost);

@@ -10,17 +10,17 @@ namespace muster {
 
 namespace {
 
-constexpr int kAhead = 2;       // pieces of way that a robot claims
-constexpr int kAllAhead = 16;   // that one claims who asks
-constexpr int kAround = 32;     // others that are looked at
-constexpr double kSpare = 0.1;  // share of both radii by which one stands farther away than it must
-constexpr double kTouch = 1e-4;
+constexpr int kClaimedPieces = 2;  // pieces of way that a robot claims
+constexpr int kAllAhead = 16;      // that one claims who asks
+constexpr int kAround = 32;        // others that are looked at
+constexpr double kSpare = 0.1;     // share of both radii by which one stands farther away than it must
+constexpr double kContact = 1e-4;
 constexpr double kLeastPitch = 0.02;  // metres
 
 // The places that a body can get to, on a lattice around where it is.
-class Lattice {
+class PlaceLattice {
  public:
-  Lattice(const CrowdRobot& robot, const WallSet& walls, bool in_space)
+  PlaceLattice(const CrowdRobot& robot, const WallSet& walls, bool in_space)
       : robot_(robot),
         walls_(walls),
         steps_(in_space ? 9 : 40),
@@ -28,7 +28,7 @@ class Lattice {
         pitch_(std::max(kLeastPitch, (in_space ? 1.0 : 0.5) * robot.body.radius)) {
     for (const Upright& face : walls.faces)
       if (norm(face.closest(robot.position) - robot.position) < extent() + robot.body.radius) faces_.push_back(&face);
-    clearance_ = std::min(robot.body.radius, clearance(robot.position)) - kTouch;
+    clearance_ = std::min(robot.body.radius, clearance(robot.position)) - kContact;
   }
 
   double extent() const { return 1.5 * steps_ * pitch_; }
@@ -36,7 +36,7 @@ class Lattice {
   // Nobody gets past this body, but for one that is there already.
   void block(const CrowdRobot& other) {
     const double least = robot_.body.radius + other.body.radius;
-    bodies_.push_back({other.position, std::min(least, norm(other.position - robot_.position)) - kTouch});
+    bodies_.push_back({other.position, std::min(least, norm(other.position - robot_.position)) - kContact});
   }
 
   // The corners of the way to the nearest place that is accepted.
@@ -141,7 +141,7 @@ bool moves_on(const CrowdRobot& robot) { return robot.phase == Phase::going && !
 std::vector<Vec<3>> MakingRoom::aside(int k, int asker) const {
   const CrowdRobot& robot = robots_[k];
   const WallSet& walls = walls_[robot.body.walls];
-  Lattice lattice(robot, walls, space_ && robot.body.flies), through = lattice;
+  PlaceLattice lattice(robot, walls, space_ && robot.body.flies), through = lattice;
   std::vector<int> around;
   tree_.near(k, {kAround, lattice.extent()}, around);
   for (const int j : around) {
@@ -151,8 +151,9 @@ std::vector<Vec<3>> MakingRoom::aside(int k, int asker) const {
     if (!other.has_time() || j == asker) through.block(other);
   }
   const auto way = lattice.nearest([&](const Vec<3>& place) {
-    return !claims(asker, k, place, kAllAhead, kSpare) &&
-           std::none_of(around.begin(), around.end(), [&](int j) { return claims(j, k, place, kAhead, kSpare); });
+    return !claims(asker, k, place, kAllAhead, kSpare) && std::none_of(around.begin(), around.end(), [&](int j) {
+      return claims(j, k, place, kClaimedPieces, kSpare);
+    });
   });
   if (!way.empty()) return way;
   return through.nearest([&](const Vec<3>& place) {
@@ -163,7 +164,7 @@ std::vector<Vec<3>> MakingRoom::aside(int k, int asker) const {
 
 std::vector<Vec<3>> MakingRoom::way_to(int k, const Vec<3>& place) const {
   const CrowdRobot& robot = robots_[k];
-  Lattice lattice(robot, walls_[robot.body.walls], space_ && robot.body.flies);
+  PlaceLattice lattice(robot, walls_[robot.body.walls], space_ && robot.body.flies);
   std::vector<int> around;
   tree_.near(k, {kAround, lattice.extent()}, around);
   for (const int j : around)
@@ -178,7 +179,7 @@ bool MakingRoom::is_free(int k, const Vec<3>& place) const {
   const double away = norm(place - robots_[k].position), radius = robots_[k].body.radius + largest_radius_;
   std::vector<int> around;
   tree_.near(k, {kAround, away + 4.0 * radius}, around);
-  return std::none_of(around.begin(), around.end(), [&](int j) { return claims(j, k, place, kAhead, 0.0); });
+  return std::none_of(around.begin(), around.end(), [&](int j) { return claims(j, k, place, kClaimedPieces, 0.0); });
 }
 
 bool MakingRoom::claims(int j, int k, const Vec<3>& place, int pieces, double spare) const {

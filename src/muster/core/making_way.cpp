@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMostWays = 6;  // out of the way, tried one after another
 constexpr int kMostPoints = 64;       // looked at for them
 constexpr double kAside = 4;          // paces that it is worth to get off the way of who pushes, not only ahead of it
-constexpr int kPatience = 8;          // rounds after which somebody is sent away who could make way
+constexpr int kPatientRounds = 8;     // rounds after which somebody is sent away who could make way
 
 }  // namespace
 
@@ -119,7 +119,7 @@ void SingleMoves::exchange(int robot, int edge) {
   for (const int other : others) {
     Errand& errand = memo_->errands[other];
     if (team_.pinned[other] || errand.whose >= 0 || memo_->errands[robot].whose == other) continue;
-    if (memo_->stalled[robot] < kPatience && gets_out(other, edge, robot)) continue;
+    if (memo_->stalled[robot] < kPatientRounds && gets_out(other, edge, robot)) continue;
     const auto side = this_side(robot, places_[other], team_.apart(robot, other));
     int place = MovingTeam::kNoGoal;
     std::size_t steps = 0;
@@ -198,7 +198,8 @@ bool SingleMoves::gets_out(int robot, int edge, int other) {
   return found;
 }
 
-std::vector<Move> without_detours(const AnnotatedRoadmap& roadmap, const MovingTeam& team, std::vector<Move> moves) {
+std::vector<SingleMove> without_detours(const AnnotatedRoadmap& roadmap, const MovingTeam& team,
+                                        std::vector<SingleMove> moves) {
   const auto needed = [&](int robot, int place, std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
       const auto [other, edge] = moves[k];
@@ -226,7 +227,7 @@ std::vector<Move> without_detours(const AnnotatedRoadmap& roadmap, const MovingT
       }
     }
     if (!any) continue;
-    std::vector<Move> kept;
+    std::vector<SingleMove> kept;
     for (std::size_t k = 0; k < moves.size(); ++k) {
       if (!dropped[k]) kept.push_back(moves[k]);
     }

@@ -9,13 +9,13 @@ namespace muster {
 
 namespace {
 
-constexpr double kRight = -0.1;    // radians
-constexpr double kPatience = 1.0;  // seconds
-constexpr double kOnPiece = 0.01;  // metres
-constexpr double kCrumbs = 0.05;   // metres
-constexpr double kAskedFor = 3.0;  // seconds
-constexpr double kLooks = 0.5;     // seconds between two looks for room
-constexpr double kYields = 5.0;    // seconds for which one waits for another to make room
+constexpr double kTiltToRight = -0.1;  // radians
+constexpr double kPatience = 1.0;      // seconds
+constexpr double kOnPiece = 0.01;      // metres
+constexpr double kCrumbs = 0.05;       // metres
+constexpr double kAskedFor = 3.0;      // seconds
+constexpr double kLooks = 0.5;         // seconds between two looks for room
+constexpr double kYields = 5.0;        // seconds for which one waits for another to make room
 constexpr double kPi = 3.14159265358979323846;
 
 // Turned to the left about the vertical; what goes straight up or down leans towards x.
@@ -132,7 +132,7 @@ Vec<3> Manners::wanted_under_way(int i, const Vec<3>& course, const std::vector<
   if (near.empty() && !robot.near_faces.empty() && (robot.trail.back || impatient)) return wanted_back(robot, course);
   robot.trail.back = false;
   if (impatient) return tilted(course, robot.patience.tilt_at(time_, robot.body, robot.whims));
-  return norm(goal - robot.position) > 2.0 * robot.body.radius ? tilted(course, kRight) : course;
+  return norm(goal - robot.position) > 2.0 * robot.body.radius ? tilted(course, kTiltToRight) : course;
 }
 
 Vec<3> Manners::wanted_aside(int i, const Vec<3>& course, const std::vector<int>& near) const {

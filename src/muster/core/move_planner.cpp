@@ -11,13 +11,13 @@ namespace muster {
 
 namespace {
 
-using Search = Lacam<SingleMoves>;
+using MoveSearch = Lacam<SingleMoves>;
 
 constexpr double kMostAhead = 10;  // rounds that a try puts a robot ahead
 constexpr double kChanged = 0.3;   // the share of robots whose priorities a try changes
 
 // Until it ends, or has come no nearer to the goals for so many expansions; the nearest node.
-int searched(Search& search, int expansions) {
+int searched(MoveSearch& search, int expansions) {
   double least = std::numeric_limits<double>::infinity();
   int best = 0;
   std::size_t looked_at = 0;
@@ -52,7 +52,7 @@ bool better(MovePlan::Outcome outcome, double time, MovePlan::Outcome than, doub
   return outcome != than ? outcome < than : time < than_time;
 }
 
-MovePlan::Outcome outcome(const Search& search, int last) {
+MovePlan::Outcome outcome(const MoveSearch& search, int last) {
   if (search.state() == SearchState::kUnsolvable) return MovePlan::Outcome::kImpossible;
   if (search.goal() < 0) return MovePlan::Outcome::kUnfinished;
   return search.generator().all_arrived(search.node(last).configuration) ? MovePlan::Outcome::kArrived
@@ -126,7 +126,7 @@ MovePlan MovePlanner::tried(MovingTeam team, const Limits& limits, std::uint64_t
 // As far as all come together.
 void MovePlanner::go_on(MovingTeam& team, const Limits& limits, std::uint64_t seed, MovePlan& plan) {
   const int left = limits.horizon - static_cast<int>(plan.moves.size());
-  Search search(SingleMoves(roadmap_, team, &tables_, left, limits.settle), seed, false);
+  MoveSearch search(SingleMoves(roadmap_, team, &tables_, left, limits.settle), seed, false);
   const bool cut_off = search.generator().cut_off();
   const int last = cut_off ? 0 : searched(search, limits.expansions);
   // What all cannot do from here may be what they could from the start.

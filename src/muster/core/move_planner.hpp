@@ -13,7 +13,7 @@ struct MovePlan {
   enum class Outcome { kArrived, kHorizon, kUnfinished, kImpossible };
 
   Outcome outcome;
-  std::vector<Move> moves;
+  std::vector<SingleMove> moves;
   Configuration places;       // where the robots stand in the end
   std::vector<char> arrived;  // who has been at its goal
 };

@@ -65,7 +65,7 @@ int RandomAllocation::pick_robot(Random& random, int task) const {
 namespace {
 
 // Steps 1 and 2: a random sequence that is not empty, and a random task in it; the last sequence is nobody's.
-struct Choice {
+struct OperatorChoice {
   int robot;
   int at;
   int task;
@@ -79,7 +79,7 @@ int random_task_left_out(const Problem& problem, Random& random, const Draft& dr
   return Draft::kNobody;
 }
 
-Choice choose_task(const Problem& problem, Random& random, const Draft& draft) {
+OperatorChoice choose_task(const Problem& problem, Random& random, const Draft& draft) {
   const int sequences = problem.robots() + (draft.done() < problem.tasks() ? 1 : 0);
   const int robot = random.below(sequences);
   if (robot == problem.robots()) return {Draft::kNobody, 0, random_task_left_out(problem, random, draft)};
@@ -100,7 +100,8 @@ int choose_robot(const Problem& problem, Random& random, int task, int present) 
 }
 
 // Step 5: the task leaves its sequence and stands at a random place within the bounds.
-Mutation moved(Random& random, const Draft& draft, const Choice& chosen, int robot, Window allowed, Draft& mutant) {
+Mutation moved(Random& random, const Draft& draft, const OperatorChoice& chosen, int robot, Window allowed,
+               Draft& mutant) {
   Mutation mutation;
   mutant = draft;
   if (chosen.robot != Draft::kNobody) {
@@ -115,7 +116,7 @@ Mutation moved(Random& random, const Draft& draft, const Choice& chosen, int rob
 }  // namespace
 
 Mutation reassign(const Problem& problem, Random& random, const Draft& draft, Draft& mutant) {
-  const Choice chosen = choose_task(problem, random, draft);
+  const OperatorChoice chosen = choose_task(problem, random, draft);
   if (chosen.task == Draft::kNobody) return {};
   const int robot = choose_robot(problem, random, chosen.task, chosen.robot);
   if (robot == Draft::kNobody) return {};
@@ -131,8 +132,8 @@ bool another_may(const Problem& problem, int task, int robot) {
 }
 
 // Steps 1 and 2 with tasks alone that another robot may do, from the place `first` on.
-Choice choose_movable(const Problem& problem, Random& random, const Draft& draft, int first) {
-  Choice choice = choose_task(problem, random, draft);
+OperatorChoice choose_movable(const Problem& problem, Random& random, const Draft& draft, int first) {
+  OperatorChoice choice = choose_task(problem, random, draft);
   if (choice.robot == Draft::kNobody || choice.task == Draft::kNobody) return choice;
   std::vector<int> places;
   const auto route = draft.route(choice.robot);
@@ -146,7 +147,8 @@ Choice choose_movable(const Problem& problem, Random& random, const Draft& draft
 }
 
 // Step 4 over a scope: the latest of all lower bounds, the earliest of all upper ones.
-Window window_over(const Problem& problem, const Draft& draft, const Choice& chosen, int receiver, Bounds bounds) {
+Window window_over(const Problem& problem, const Draft& draft, const OperatorChoice& chosen, int receiver,
+                   Bounds bounds) {
   Window result{0, draft.length(receiver)};
   for (int robot = 0; robot < problem.robots(); ++robot) {
     if (bounds.scope == Scope::kReceiver && robot != receiver) continue;
@@ -163,7 +165,7 @@ Window window_over(const Problem& problem, const Draft& draft, const Choice& cho
 }  // namespace
 
 Mutation reassign_within(const Problem& problem, Random& random, const Draft& draft, Bounds bounds, Draft& mutant) {
-  const Choice chosen = choose_movable(problem, random, draft, bounds.inner ? 1 : 0);
+  const OperatorChoice chosen = choose_movable(problem, random, draft, bounds.inner ? 1 : 0);
   if (chosen.task == Draft::kNobody) return {};
   const int robot = choose_robot(problem, random, chosen.task, chosen.robot);
   if (robot == Draft::kNobody) return {};

@@ -9,9 +9,9 @@ namespace muster {
 
 namespace {
 
-constexpr double kSample = 0.05;    // metres between the places of a move that are looked at
-constexpr double kCorner = 0.02;    // metres before the end of a move at which it is as good as passed
-constexpr double kRounding = 1e-6;  // metres
+constexpr double kSample = 0.05;            // metres between the places of a move that are looked at
+constexpr double kCorner = 0.02;            // metres before the end of a move at which it is as good as passed
+constexpr double kDistanceRounding = 1e-6;  // metres
 
 double side(Point a, Point b, Point p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
 
@@ -46,7 +46,7 @@ bool PassingOrder::in_the_way(int robot, Point from, Point to) const {
     if (other == robot) continue;
     const Point stands = bots_[other].end;
     const double gap = segment_gap(stands, from, to);
-    if (gap < apart(robot, other) - kRounding && gap < distance(stands, from) - kRounding) return true;
+    if (gap < apart(robot, other) - kDistanceRounding && gap < distance(stands, from) - kDistanceRounding) return true;
   }
   return false;
 }
@@ -168,7 +168,7 @@ std::pair<double, int> PassingOrder::limit(const Move& m) const {
     while (free < least) {
       const double next = std::min(least, free + kSample);
       const double there = segment_gap(place(m, next), from, before.to);
-      if (there < apart && there < gap - kRounding) {
+      if (there < apart && there < gap - kDistanceRounding) {
         least = free;
         waits_for = before.robot;
         break;

@@ -8,7 +8,8 @@ namespace muster {
 
 namespace {
 
-constexpr double kAhead = 0.7;  // how often an algorithm with random numbers looks at tasks that are not in the plan
+constexpr double kLooksAhead =
+    0.7;  // how often an algorithm with random numbers looks at tasks that are not in the plan
 
 }  // namespace
 
@@ -40,7 +41,7 @@ const UnitInsertion* Placement::best(int unit, const Trial& trial) {
   relations_.look_at(unit, trial.robots);
   ready_ = timeline_.ready(unit);
   peak_ = roster_.peak();
-  looks_ahead_ = relations_.awaits_any() && (!trial.random || trial.random->uniform() < kAhead);
+  looks_ahead_ = relations_.awaits_any() && (!trial.random || trial.random->uniform() < kLooksAhead);
   try_all(unit);
   if (best_.members.empty() && std::exchange(looks_ahead_, false)) try_all(unit);
   return best_.members.empty() ? nullptr : &best_;

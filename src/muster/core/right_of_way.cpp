@@ -9,9 +9,9 @@ namespace muster {
 
 namespace {
 
-constexpr double kRounding = 1e-10;  // metres
-constexpr double kCreep = 5e-10;     // metres: two that push each other would come nearer by rounding in every step
-constexpr double kTouch = 1e-4;      // metres by which a body may lie on a wall: paths of a map lead along it exactly
+constexpr double kLimitRounding = 1e-10;  // metres
+constexpr double kCreep = 5e-10;  // metres: two that push each other would come nearer by rounding in every step
+constexpr double kTouch = 1e-4;   // metres by which a body may lie on a wall: paths of a map lead along it exactly
 constexpr int kHalvings = 20;
 constexpr double kStraight = -1.0;
 
@@ -61,7 +61,7 @@ void RightOfWay::look_at_robots(int i) {
     if (left < -kCreep) {  // too near to brake: another direction must not come nearer at all, `straight` brakes
       limits_.push_back({towards, 0.0, 0.0});
     } else {
-      limits_.push_back({towards, braked + (other.stands ? 1.0 : 0.5) * std::max(0.0, left), kRounding});
+      limits_.push_back({towards, braked + (other.stands ? 1.0 : 0.5) * std::max(0.0, left), kLimitRounding});
     }
   }
 }
@@ -72,13 +72,14 @@ void RightOfWay::look_at_walls(int i) {
   const auto consider = [&](const Vec<3>& closest) {
     const double distance = norm(closest - p);
     if (distance > 0.0)
-      limits_.push_back({(1.0 / distance) * (closest - p), std::max(0.0, distance - own.radius + kTouch), kRounding});
+      limits_.push_back(
+          {(1.0 / distance) * (closest - p), std::max(0.0, distance - own.radius + kTouch), kLimitRounding});
   };
   for (const Upright& face : *own.faces) consider(face.closest(p));
   for (const Slab& slab : own.walls->slabs)
     if (slab.covers(p)) consider(slab.closest(p));
   if (std::isfinite(own.walls->ground))
-    limits_.push_back({Vec<3>{{0.0, 0.0, -1.0}}, std::max(0.0, p[2] - own.walls->ground), kRounding});
+    limits_.push_back({Vec<3>{{0.0, 0.0, -1.0}}, std::max(0.0, p[2] - own.walls->ground), kLimitRounding});
 }
 
 bool RightOfWay::allowed(int i, double share) const {

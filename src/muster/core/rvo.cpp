@@ -23,10 +23,10 @@ Directions directions(double n) {
   return found;
 }
 
-class Chooser {
+class RvoChooser {
  public:
-  Chooser(const Agents<2>& agents, const std::vector<Segment>& walls, const RvoSettings& settings, double dt,
-          const Directions& directions, const AgentTree<2>& tree)
+  RvoChooser(const Agents<2>& agents, const std::vector<Segment>& walls, const RvoSettings& settings, double dt,
+             const Directions& directions, const AgentTree<2>& tree)
       : agents_(agents), walls_(walls), settings_(settings), dt_(dt), directions_(directions), tree_(tree) {}
 
   Vec<2> optimal(int i) {
@@ -139,7 +139,7 @@ std::vector<Vec<2>> rvo_velocities(const Agents<2>& agents, const std::vector<Se
   const Directions all = directions(settings.n);
   std::vector<Vec<2>> result(agents.positions.size());
   in_parts(agents.size(), threads, [&](int begin, int end) {
-    Chooser chooser(agents, walls, settings, dt, all, tree);
+    RvoChooser chooser(agents, walls, settings, dt, all, tree);
     for (int i = begin; i < end; ++i) result[i] = chooser.optimal(i);
   });
   return result;

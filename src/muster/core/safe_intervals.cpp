@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "heap.hpp"
+#include "infinity.hpp"
 
 namespace muster {
 
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-9;
+constexpr double kIntervalRounding = 1e-9;
 constexpr double kNearly = 1e-6;                // metres by which two may be nearer
 constexpr double kRestingInTheWay = 10.0;       // seconds that a path may be longer to rest out of the way
 constexpr std::size_t kMostKnown = 20'000'000;  // edges from which it is known how long goals take
@@ -124,7 +123,7 @@ const std::vector<SafeIntervals::Span>& SafeIntervals::taken(const Traveller& wh
   std::ranges::sort(found, {}, &Span::from);
   std::size_t kept = 0;
   for (const Span& span : found) {
-    if (kept > 0 && span.from < found[kept - 1].until - kRounding)
+    if (kept > 0 && span.from < found[kept - 1].until - kIntervalRounding)
       found[kept - 1].until = std::max(found[kept - 1].until, span.until);
     else
       found[kept++] = span;
@@ -136,7 +135,7 @@ const std::vector<SafeIntervals::Span>& SafeIntervals::taken(const Traveller& wh
 double SafeIntervals::earliest(const Traveller& who, int edge, double from, double until) {
   for (const Span& span : taken(who, edge)) {
     if (from <= span.from) break;
-    if (from < span.until - kRounding) from = span.until;
+    if (from < span.until - kIntervalRounding) from = span.until;
   }
   return from <= until ? from : kNever;
 }
@@ -190,7 +189,7 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
     if (!(label.key < kNever)) return;
     const int state = (label.interval + 1) * (legs + 1) + label.leg;
     double &at_point = by_point_.at(point, state), &by_edge = by_edge_.at(label.edge + 1, state);
-    if (by_edge <= label.ready + kRounding || at_point + worst < label.ready) return;
+    if (by_edge <= label.ready + kIntervalRounding || at_point + worst < label.ready) return;
     by_edge = label.ready;
     at_point = std::min(at_point, label.ready);
     labels.push_back(label);

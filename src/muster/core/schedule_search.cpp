@@ -9,13 +9,13 @@ namespace muster {
 
 namespace {
 
-constexpr double kTie = 1e-2;   // weight of the robots' own routes where the objective does not see them
-constexpr int kAdjacent = 100;  // tasks that a ruin may spread to
-constexpr int kNearRobots = 4;
+constexpr double kTie = 1e-2;        // weight of the robots' own routes where the objective does not see them
+constexpr int kAdjacentUnits = 100;  // tasks that a ruin may spread to
+constexpr int kNearRobotsOfUnit = 4;
 // Of steps that exchange two tails of routes, where there are such: where ways are summed up, and else.
 constexpr double kTailShare = 0.2, kTailShareElse = 0.05;
-constexpr int kRetried = 20;     // units left out that a step tries again
-constexpr int kMostPlaces = 64;  // beyond twice as many a unit is tried beside near tasks alone
+constexpr int kRetriedUnits = 20;  // units left out that a step tries again
+constexpr int kMostPlaces = 64;    // beyond twice as many a unit is tried beside near tasks alone
 
 // More than leaving out a unit of weight 1 can ever save.
 double penalty_of(const Problem& problem) {
@@ -42,7 +42,7 @@ ScheduleSearch::ScheduleSearch(const Problem& problem, const Routes& start, std:
     : problem_(problem),
       settings_(settings),
       random_(seed),
-      neighbours_(problem, kAdjacent, kNearRobots),
+      neighbours_(problem, kAdjacentUnits, kNearRobotsOfUnit),
       roster_(problem),
       sees_end_(problem.objective() == Objective::makespan),
       sums_ways_(problem.objective() == Objective::total && !problem.usage_is_time()),
@@ -137,10 +137,10 @@ void ScheduleSearch::step(double temperature) {
 bool ScheduleSearch::recreate(double most) {
   pending_ = removed_;
   const auto& absent = roster_.absent();
-  if (static_cast<int>(absent.size()) - static_cast<int>(removed_.size()) <= kRetried) {
+  if (static_cast<int>(absent.size()) - static_cast<int>(removed_.size()) <= kRetriedUnits) {
     pending_ = absent;
   } else {
-    for (int k = 0; k < kRetried; ++k) pending_.push_back(absent[random_.below(static_cast<int>(absent.size()))]);
+    for (int k = 0; k < kRetriedUnits; ++k) pending_.push_back(absent[random_.below(static_cast<int>(absent.size()))]);
   }
   order_pending();
   for (bool more = true; more;) {

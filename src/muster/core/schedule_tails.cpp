@@ -8,7 +8,7 @@ namespace muster {
 
 namespace {
 
-constexpr int kNear = 30;  // tasks that may follow a task instead of the one that does
+constexpr int kNearTails = 30;  // tasks that may follow a task instead of the one that does
 
 }  // namespace
 
@@ -27,7 +27,7 @@ bool ScheduleSearch::find_tails(double most) {
   tail_at_ = visit->at;
   if (tail_at_ < problem_.fixed(tail_robot_)) return false;
   const auto near = neighbours_.of(task);
-  const int count = std::min<int>(kNear, static_cast<int>(near.size()));
+  const int count = std::min<int>(kNearTails, static_cast<int>(near.size()));
   for (int k = 0; k < count; ++k) {
     const Visit* next = only_visit(near[k]);
     if (!next) continue;

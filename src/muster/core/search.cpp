@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "infinity.hpp"
 #include "ruin_string.hpp"
 
 namespace muster {
 
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int kAdjacent = 100;   // tasks that a ruin may spread to
 constexpr int kNearRobots = 4;   // robots whose starts are tried for a task
 constexpr int kFew = 200;        // tasks, up to which each is tried at every place, which costs little

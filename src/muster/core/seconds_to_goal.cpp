@@ -1,15 +1,12 @@
 #include "seconds_to_goal.hpp"
 
 #include <algorithm>
-#include <limits>
+
+#include "infinity.hpp"
 
 namespace muster {
 
-namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 SecondsToGoal::SecondsToGoal(const AnnotatedRoadmap& roadmap, const Manner& manner, int goal)
     : roadmap_(roadmap),

@@ -5,11 +5,12 @@
 #include <optional>
 #include <utility>
 
+#include "infinity.hpp"
+
 namespace muster {
 
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kTailsToLeave[] = {4.0, 25.0};
 constexpr int kGroup = 4;          // travellers that are planned anew at a time
 constexpr int kMoreWhereLost = 4;  // times as many ways are sought where some find none

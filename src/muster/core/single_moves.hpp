@@ -15,7 +15,7 @@
 
 namespace muster {
 
-struct Move {
+struct SingleMove {
   int robot;
   int edge;
 };
@@ -54,9 +54,9 @@ class SingleMoves {
     std::vector<int> edges;      // the last one of each, -1 before
     std::vector<int> stalled;    // rounds without a move that a robot wanted
     std::vector<Errand> errands;
-    std::vector<Move> moves;  // from the configuration before
-    int made = 0;             // moves from the start
-    double now = 0;           // metres that a robot may have driven which never stood still
+    std::vector<SingleMove> moves;  // from the configuration before
+    int made = 0;                   // moves from the start
+    double now = 0;                 // metres that a robot may have driven which never stood still
   };
 
   // Ends when each robot has been at its goal, with `settle` when all are there at once, or after `horizon` moves.
@@ -166,6 +166,7 @@ class SingleMoves {
 };
 
 // The moves without those that take a robot away from a point and back to it while nobody needed that.
-std::vector<Move> without_detours(const AnnotatedRoadmap& roadmap, const MovingTeam& team, std::vector<Move> moves);
+std::vector<SingleMove> without_detours(const AnnotatedRoadmap& roadmap, const MovingTeam& team,
+                                        std::vector<SingleMove> moves);
 
 }  // namespace muster

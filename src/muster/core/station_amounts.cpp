@@ -9,7 +9,7 @@ namespace muster {
 
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kAmountRounding = 1e-12;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ void StationCalls::trace(int robot, Route& route, int best, std::span<const doub
     const double seconds = problem_.travel_time(robot, from, to);
     Frontier arrival = parent.frontier;
     arrival.shift(seconds, way);
-    if (drains) arrival.keep_from(-kRounding * problem_.battery(robot));
+    if (drains) arrival.keep_from(-kAmountRounding * problem_.battery(robot));
     if (label.station >= 0) {
       const Station& station = problem_.station(label.station);
       left.push_back({{position, label.station, 0.0, 0.0, 0.0}, target.energy});

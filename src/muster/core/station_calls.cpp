@@ -9,7 +9,7 @@ namespace muster {
 
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kCallRounding = 1e-12;
 constexpr std::size_t kMostRemembered = 1 << 20;
 constexpr int kFewStations = 3;  // of which all pairs are tried on the way to a stop
 
@@ -170,7 +170,7 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   }
   const int best = best_of(robot, labels);
   const Label& last = labels.all[best];
-  if (moves && last.frontier.first().time > problem_.available_until(robot) * (1.0 + kRounding))
+  if (moves && last.frontier.first().time > problem_.available_until(robot) * (1.0 + kCallRounding))
     return {kNever, kNever};
   const double end_s = ends_before_return(robot) && moves ? last.extra : last.frontier.first().time;
   return {last.usage, end_s, last.extra};
@@ -208,7 +208,8 @@ int StationCalls::best_of(int robot, const Labels& labels) const {
   const auto key = [&](int k) {
     const Label& label = labels.all[k];
     const double time = label.frontier.first().time;
-    const bool above = !problem_.fits(robot, label.usage) || time > problem_.available_until(robot) * (1.0 + kRounding);
+    const bool above =
+        !problem_.fits(robot, label.usage) || time > problem_.available_until(robot) * (1.0 + kCallRounding);
     return in_time_ ? std::tuple(above, label.extra, time, label.usage)
                     : std::tuple(above, label.extra, label.usage, time);
   };

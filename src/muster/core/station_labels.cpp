@@ -9,7 +9,7 @@ namespace muster {
 
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kLabelRounding = 1e-12;
 constexpr std::size_t kMostLabels = 32;  // at a stop
 
 }  // namespace
@@ -42,7 +42,7 @@ bool StationCalls::cross(int robot, Labels& labels, int from, int to, double res
   settle();
   for (int depth = has_few_ ? 2 : 1; depth <= problem_.stations(); ++depth) {
     const bool well = std::any_of(labels.all.begin() + layer_, labels.all.end(), [&](const Label& label) {
-      return label.frontier.last().energy >= needed * (1.0 - kRounding);
+      return label.frontier.last().energy >= needed * (1.0 - kLabelRounding);
     });
     if (well || current_.empty()) break;
     labels.all.resize(layer_);
@@ -83,7 +83,7 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
   const bool drains = problem_.battery(robot) < kNever;
   const double way = problem_.travel_usage(robot, from, to);
   if (!std::isfinite(way)) return false;
-  const double slack = drains ? -kRounding * problem_.battery(robot) : -kNever;
+  const double slack = drains ? -kLabelRounding * problem_.battery(robot) : -kNever;
   label.usage += way;
   label.parent = parent;
   label.station = -1;
@@ -91,7 +91,7 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
   if (drains) label.frontier.keep_from(slack);
   if (label.frontier.empty()) return false;
   if (to >= problem_.tasks()) {
-    label.frontier.keep_to(problem_.available_until(robot) * (1.0 + kRounding));
+    label.frontier.keep_to(problem_.available_until(robot) * (1.0 + kLabelRounding));
     if (label.frontier.empty()) return false;
     if (ends_before_return(robot)) {
       const Frontier& worked = after_work(labels, parent);
@@ -112,12 +112,12 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
   // In each of its windows; in a later one there is more time to charge before.
   for (double from_s = label.frontier.first().time;;) {
     const double opens = problem_.next_begin(to, from_s);
-    if (opens > latest * (1.0 + kRounding) || opens == kNever) return any;
+    if (opens > latest * (1.0 + kLabelRounding) || opens == kNever) return any;
     Label done = label;
     const double closes = problem_.last_begin_of_window(to, opens);
     // Who charges for as long as there is time is not late by rounding.
     done.frontier.wait_until(opens);
-    done.frontier.keep_to(std::max(std::min(closes, latest) * (1.0 - kRounding), opens));
+    done.frontier.keep_to(std::max(std::min(closes, latest) * (1.0 - kLabelRounding), opens));
     done.frontier.shift(takes, drains ? usage : 0.0);
     if (drains) done.frontier.keep_from(slack);
     if (!done.frontier.empty()) {
@@ -144,7 +144,7 @@ int StationCalls::call(int robot, Labels& labels, int parent, int from, int numb
   label.station = number;
   const bool drains = full < kNever;
   label.frontier.shift(problem_.travel_time(robot, from, place), drains ? way : 0.0);
-  if (drains) label.frontier.keep_from(-kRounding * full);
+  if (drains) label.frontier.keep_from(-kLabelRounding * full);
   if (label.frontier.empty() || !changes(robot, labels, label, station)) return -1;
   if (drains && station.swap_s >= 0.0) {
     label.frontier = Frontier(label.frontier.first().time + station.swap_s, full);
@@ -198,7 +198,7 @@ bool StationCalls::carry_alike(const Labels& labels, const Label& a, const Label
 void StationCalls::add(Labels& labels, Label&& label) {
   const auto begin = labels.all.begin() + layer_;
   const auto covers = [&](const Label& a, const Label& b) {
-    return a.usage <= b.usage * (1.0 + kRounding) && a.extra <= b.extra * (1.0 + kRounding) &&
+    return a.usage <= b.usage * (1.0 + kLabelRounding) && a.extra <= b.extra * (1.0 + kLabelRounding) &&
            carry_alike(labels, a, b) && a.frontier.covers(b.frontier);
   };
   if (std::any_of(begin, labels.all.end(), [&](const Label& other) { return covers(other, label); })) return;

@@ -15,8 +15,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Up to so many minimal covers of a task's needs each is tried; beyond it robots are added by cost until they do.
 constexpr int kMostCovers = 160;
-constexpr int kMostTried = 50'000;  // partial covers looked at while they are listed
-constexpr double kRounding = 1e-9;  // of sums of abilities
+constexpr int kMostTried = 50'000;         // partial covers looked at while they are listed
+constexpr double kAbilityRounding = 1e-9;  // of sums of abilities
 
 void append(Rows& rows, std::span<const int> row) {
   rows.values.insert(rows.values.end(), row.begin(), row.end());
@@ -194,7 +194,7 @@ void TeamChoice::by_greedy_cover(int task, std::span<const int> robots, Rows& fo
     if (covered(missing)) break;
     const auto abilities = problem_.ability(robots[index]);
     bool helps = false;
-    for (std::size_t a = 0; a < missing.size(); ++a) helps |= missing[a] > kRounding && abilities[a] > 0.0;
+    for (std::size_t a = 0; a < missing.size(); ++a) helps |= missing[a] > kAbilityRounding && abilities[a] > 0.0;
     if (!helps) continue;
     for (std::size_t a = 0; a < missing.size(); ++a) missing[a] -= abilities[a];
     taken_.push_back(index);
@@ -203,7 +203,7 @@ void TeamChoice::by_greedy_cover(int task, std::span<const int> robots, Rows& fo
   for (std::size_t k = taken_.size(); k-- > 0;) {
     const auto abilities = problem_.ability(robots[taken_[k]]);
     bool needed = false;
-    for (std::size_t a = 0; a < missing.size(); ++a) needed |= missing[a] + abilities[a] > kRounding;
+    for (std::size_t a = 0; a < missing.size(); ++a) needed |= missing[a] + abilities[a] > kAbilityRounding;
     if (needed) continue;
     for (std::size_t a = 0; a < missing.size(); ++a) missing[a] += abilities[a];
     taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(k));
@@ -212,7 +212,7 @@ void TeamChoice::by_greedy_cover(int task, std::span<const int> robots, Rows& fo
 }
 
 bool TeamChoice::covered(std::span<const double> missing) const {
-  return std::ranges::all_of(missing, [](double amount) { return amount <= kRounding; });
+  return std::ranges::all_of(missing, [](double amount) { return amount <= kAbilityRounding; });
 }
 
 const TeamChoice::Covers& TeamChoice::covers(int task) {
@@ -268,7 +268,7 @@ bool TeamChoice::needless(int task, const std::vector<int>& counts) const {
       for (std::size_t k = 0; k < counts.size(); ++k) {
         sum += (counts[k] - (k == kind)) * problem_.ability(class_robot_[k])[a];
       }
-      enough = sum >= needs[a] - kRounding;
+      enough = sum >= needs[a] - kAbilityRounding;
     }
     if (enough) return true;
   }

@@ -1,18 +1,16 @@
 // The schedule of routes while they change: when each unit of work begins at the earliest and at the latest.
 #pragma once
 
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "infinity.hpp"
 #include "problem.hpp"
 #include "routes.hpp"
 #include "unit_queue.hpp"
 
 namespace muster {
-
-inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // One robot at one task. Each route begins with a visit of the robot's start and closes with one of its end.
 struct alignas(64) Visit {  // a line of memory each, as propagation waits for little else

@@ -103,13 +103,13 @@ double Tree::radius() const {
 int Tree::nearest(Spot p) const {
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
-  struct Visit {
+  struct PendingNode {
     int node, axis;
     double off;  // how far the branch is away at least
   };
-  std::vector<Visit> open{{0, 0, 0.0}};
+  std::vector<PendingNode> open{{0, 0, 0.0}};
   while (!open.empty()) {
-    const Visit visit = open.back();
+    const PendingNode visit = open.back();
     open.pop_back();
     if (visit.node < 0 || visit.off >= least) continue;
     const Node& node = nodes_[visit.node];

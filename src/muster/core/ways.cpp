@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "buckets.hpp"
 #include "corner_search.hpp"
+#include "infinity.hpp"
 #include "parallel.hpp"
 
 namespace muster {
 
 namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 constexpr double kBuckets = 1024.0;  // across the extent
 
