@@ -85,7 +85,7 @@ def _names(listed, item):
 
 
 def _beyond_kept(cases):
-    """Return the cases of one function that are long; the kept ones are the first by a checksum of their ids."""
+    """Return the cases of one function that are long; the kept ones are the first by a checksum of their names."""
     keep = cases[0].get_closest_marker("long").kwargs.get("keep", 0)
     marked = sorted(cases, key=lambda item: crc32(item.name.partition("@")[0].encode()))
     return marked[keep:]

@@ -26,7 +26,7 @@ class Item:
     def __init__(self, name, *, long=None, group=False, file="tests/x/test_y.py"):
         markers = {"long": SimpleNamespace(kwargs=long)} if long is not None else {}
         markers |= {"xdist_group": SimpleNamespace(kwargs={})} if group else {}
-        self.nodeid, self.path, self.get_closest_marker = f"{file}::{name}", file, markers.get
+        self.nodeid, self.name, self.path, self.get_closest_marker = f"{file}::{name}", name, file, markers.get
 
 
 def names(items):

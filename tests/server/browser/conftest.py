@@ -63,9 +63,9 @@ def running_chromium():
         browser.close()
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="module")
 def chromium():
-    """One browser for all of these tests, which are one group of xdist. Its loop must end before other tests begin."""
+    """One browser for the tests of a module: Playwright's loop must end before other tests of this process begin."""
     with running_chromium() as browser:
         yield browser
 
