@@ -6,7 +6,6 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
-from scipy.stats import chi2
 
 import muster
 from muster import Event, Robot, Simulation, Task
@@ -80,6 +79,8 @@ def test_fused_poses_are_nearer_to_the_truth_by_more_than_half(name, world):
     assert (fused < 0.3 * said).all()
     for nis in hearing.innovations.values():
         freedom = mission.dimensions * len(nis)
+        from scipy.stats import chi2  # takes half a second to import
+
         low, high = chi2.ppf([0.0005, 0.9995], freedom)
         assert low < sum(nis) < high
 

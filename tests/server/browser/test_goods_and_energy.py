@@ -6,7 +6,7 @@ from playwright.sync_api import expect
 from muster.client import Client
 from muster.mission.plan_reader import plan_of
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.long, pytest.mark.xdist_group("goods and energy")]
 
 YARD = """\
 schema: muster/1

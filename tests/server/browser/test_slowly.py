@@ -17,7 +17,7 @@ from muster.server.services.missions import Missions
 from muster.server.services.plans import Plans
 from muster.server.store.database import Database
 
-pytestmark = pytest.mark.xdist_group("browser")
+pytestmark = pytest.mark.xdist_group("slowly")
 
 MISSION = "6T-2R"
 SCENE_MS = 90_000

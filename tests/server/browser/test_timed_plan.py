@@ -7,7 +7,7 @@ from tests.report.page.conftest import TIMED, TIMED_ROUTES
 from muster.client import Client
 from muster.mission.plan_reader import plan_of
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.long, pytest.mark.xdist_group("timed plan")]
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from tests.server.serving import served
 from muster.client import Client
 from muster.server.work.turns import Turns
 
-pytestmark = pytest.mark.xdist_group("browser")
+pytestmark = pytest.mark.xdist_group("watching")
 
 MISSION = "6T-2R"
 COMMANDS = re.compile(

@@ -1,7 +1,7 @@
 """One server and one page for all of these tests; each that edits has a mission of its own."""
 
 import pytest
-from tests.server.browser.conftest import Watched, serving
+from tests.server.browser.conftest import Watched, running_chromium, serving
 
 from muster.client import Client
 
@@ -21,6 +21,12 @@ tasks:
 def served(tmp_path_factory):
     with serving(tmp_path_factory.mktemp("served")) as origin:
         yield origin
+
+
+@pytest.fixture(scope="package")
+def chromium():
+    with running_chromium() as browser:
+        yield browser
 
 
 @pytest.fixture(scope="package")

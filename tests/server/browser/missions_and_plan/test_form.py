@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import expect
 from tests.server.browser.missions_and_plan.plan_view import plan_view, text_of
 
-pytestmark = pytest.mark.xdist_group("browser")
+pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
 
 def test_a_cell_of_the_form_changes_the_text_and_keeps_comments(watched, page):

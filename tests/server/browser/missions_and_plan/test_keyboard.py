@@ -5,7 +5,7 @@ import re
 import pytest
 from tests.server.browser.missions_and_plan.plan_view import SCENE, choose_task, plan_view, task_place
 
-pytestmark = pytest.mark.xdist_group("browser")
+pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
 
 def test_the_keyboard_alone_chooses_and_moves_a_task(watched, page, yard):

@@ -5,7 +5,7 @@ import re
 import pytest
 from tests.server.browser.missions_and_plan.plan_view import own_missions
 
-pytestmark = pytest.mark.xdist_group("browser")  # a test goes on where the one before it ended
+pytestmark = pytest.mark.xdist_group("missions and plan")  # a test goes on where the one before it ended
 
 
 def copied(watched):

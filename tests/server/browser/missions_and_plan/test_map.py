@@ -15,7 +15,7 @@ from tests.server.browser.missions_and_plan.plan_view import (
 
 from muster.client import Client
 
-pytestmark = pytest.mark.xdist_group("browser")
+pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
 
 def test_an_empty_mission_is_made_and_edited_on_the_map_and_undone(watched, page):

@@ -11,7 +11,7 @@ from tests.server.browser.missions_and_plan.plan_view import SLOW_MS, plan_view
 from muster.client import Client
 from muster.mission.plan_reader import plan_of
 
-pytestmark = pytest.mark.xdist_group("browser")
+pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
 
 def test_focus_is_seen_and_words_on_buttons_are_read_in_the_dark(watched, page):

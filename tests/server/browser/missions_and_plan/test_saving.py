@@ -7,7 +7,7 @@ from tests.server.browser.missions_and_plan.plan_view import SLOW_MS, choose_tas
 
 from muster.client import Client
 
-pytestmark = pytest.mark.xdist_group("browser")
+pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
 
 def test_who_saves_second_is_told_and_asked(watched, page, chromium, yard):

@@ -3,7 +3,7 @@
 import pytest
 from tests.server.browser.missions_and_plan.plan_view import plan_view, text_of
 
-pytestmark = pytest.mark.xdist_group("browser")
+pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
 
 HELD = """() => {
