@@ -160,7 +160,7 @@ bench: $(VENV)/developed
 # with what builds the documentation site besides.
 
 $(VENV)/installed: $(BUILT_FROM) | $(VENV)/made
-	@echo "Building Muster; this takes about a minute on two cores ..."
+	@echo "Building Muster; this takes one to two minutes on two cores ..."
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable '.[plot,record]'
 	@touch $@
 
