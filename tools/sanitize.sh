@@ -24,7 +24,7 @@ ASAN_OPTIONS=detect_leaks=0 \
 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
 HYPOTHESIS_PROFILE=few \
     "$environment/bin/python" -m pytest -p no:cacheprovider -n 2 --dist loadgroup --max-worker-restart 0 -rs \
-    --suite fast ${SANITIZED_TESTS:-tests/core tests/allocation tests/conformance tests/motion tests/simulation
+    --suite=fast ${SANITIZED_TESTS:-tests/core tests/allocation tests/conformance tests/motion tests/simulation
     tests/traffic} \
     --ignore tests/core/test_stub.py --ignore tests/conformance/test_planning_doors.py \
     --ignore tests/allocation/test_bounds.py --ignore tests/allocation/test_exact.py \

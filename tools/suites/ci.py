@@ -61,14 +61,14 @@ def steps(number: int, changed: list[str] | None) -> Iterator[Step]:
 def _long_tests(number: int, changed: list[str] | None) -> Step:
     flags = "--no-skips --durations 20 --durations-min 0"
     if changed is None:
-        return Step("long tests", "all", ["make", "test-all", f"PYTEST_FLAGS=--suite long {flags}"])
+        return Step("long tests", "all", ["make", "test-all", f"PYTEST_FLAGS=--suite=long {flags}"])
     tests = read_map()
     names = touched(changed, tests).tests
     _ALSO.parent.mkdir(exist_ok=True)
     _ALSO.write_text("\n".join(sorted(names)) + "\n", encoding="utf-8")
     why = f"the tenth of turn {number % SHARES}, and what the change touches"
     return Step(
-        "long tests", why, ["make", "test-all", f"PYTEST_FLAGS=--suite share --turn {number} --also {_ALSO} {flags}"]
+        "long tests", why, ["make", "test-all", f"PYTEST_FLAGS=--suite=share --turn={number} --also={_ALSO} {flags}"]
     )
 
 

@@ -85,7 +85,7 @@ def _run(chosen: Selection, options: list[str]) -> int:
     _LIST.write_text("\n".join(chosen.tests) + "\n", encoding="utf-8")
     files = sorted({name.partition("::")[0] for name in chosen.tests if Path(name.partition("::")[0]).exists()})
     workers = ["-n", "2", "--dist", "loadgroup"] if chosen.cpu_s > 5 else []
-    command = [sys.executable, "-m", "pytest", "-q", *workers, "--suite", "fast", "--only", str(_LIST)]
+    command = [sys.executable, "-m", "pytest", "-q", *workers, "--suite", "fast", f"--only={_LIST}"]
     return subprocess.run([*command, *options, *files], cwd=ROOT, check=False).returncode
 
 

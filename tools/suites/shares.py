@@ -12,7 +12,7 @@ from tools.suites.turn import collected
 def main() -> int:
     """Print for each turn its campaigns and its long test functions with their CPU seconds."""
     tests = read_map()
-    long = collected("--suite", "long")
+    long = collected("--suite=long")
     for turn in range(SHARES):
         of_turn = [name for name in long if share_of(name) == turn]
         seconds = sum(tests[name].cpu_s for name in of_turn if name in tests)

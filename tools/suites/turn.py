@@ -21,7 +21,8 @@ def collected(*options: str) -> list[str]:
     """Return the ids of all test functions, or of those that options of pytest choose."""
     listing = ROOT / "build" / "functions.txt"
     listing.parent.mkdir(exist_ok=True)
-    _pytest("--collect-only", "-qq", "--functions", str(listing), *options)
+    listing.unlink(missing_ok=True)
+    _pytest("--collect-only", "-qq", f"--functions={listing}", *options)
     return listing.read_text(encoding="utf-8").splitlines()
 
 
@@ -40,8 +41,12 @@ def main() -> int:
     names = [one for one in functions if asked.whole or one not in known or share_of(one) == number % SHARES]
     print(f"Turn {number}: recording {len(names)} of {len(functions)} test functions.", flush=True)
     _LIST.write_text("\n".join(names) + "\n", encoding="utf-8")
-    _pytest("-q", "-p", "tools.suites.record", "-n", "2", "--dist", "loadgroup", "--only", str(_LIST))
-    tests = merged(known, read_records(RECORDS))
+    _pytest("-q", "-p", "tools.suites.record", "-n", "2", "--dist", "loadgroup", f"--only={_LIST}")
+    new = read_records(RECORDS)
+    if missing := set(names) - set(new):
+        print(f"{len(missing)} test functions were not recorded, {min(missing)} among them.", file=sys.stderr)
+        return 1
+    tests = merged(known, new)
     write_map({name: tests[name] for name in functions if name in tests})
     if not asked.no_commit:
         git("add", TURN, MAP.relative_to(ROOT).as_posix())
