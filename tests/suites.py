@@ -43,9 +43,10 @@ def chosen(items, suite, turn=0, only=None, also=None):
     """
     long = long_items(items) if suite != "all" else set()
     only, also = _listed(only), _listed(also)
+    stories = {_story(item) for item in items if only is not None and _names(only, item)} - {None}
 
     def belongs(item):
-        if only is not None and not _names(only, item):
+        if only is not None and not _names(only, item) and _story(item) not in stories:
             return False
         if suite == "share":
             return item in long and (
@@ -82,6 +83,12 @@ def _names(listed, item):
     """Return whether a list names a test, by its function or its file."""
     name = function_id(item.nodeid)
     return name in listed or name.partition("::")[0] in listed
+
+
+def _story(item):
+    """Return the file and group of a test that belongs to a group, the tests of which may need those before them."""
+    group = item.get_closest_marker("xdist_group")
+    return (item.path, group.args) if group else None
 
 
 def _beyond_kept(cases):

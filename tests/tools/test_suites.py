@@ -25,7 +25,7 @@ class Item:
 
     def __init__(self, name, *, long=None, group=False, file="tests/x/test_y.py"):
         markers = {"long": SimpleNamespace(kwargs=long)} if long is not None else {}
-        markers |= {"xdist_group": SimpleNamespace(kwargs={})} if group else {}
+        markers |= {"xdist_group": SimpleNamespace(args=("story",))} if group else {}
         self.nodeid, self.name, self.path, self.get_closest_marker = f"{file}::{name}", name, file, markers.get
 
 
@@ -65,6 +65,13 @@ class TestSuites:
         turn = next(turn for turn in range(SHARES) if turn not in {share_of(one.nodeid) for one in items})
         chosen(items, "share", turn, also=tmp_path / "also")
         assert names(items) == {"test_1", "test_4"}
+
+    def test_a_listed_test_of_a_story_brings_the_story(self, tmp_path):
+        (tmp_path / "only").write_text("tests/x/test_y.py::test_2\ntests/x/test_z.py::test_5\n")
+        items = [Item(f"test_{i}", group=True) for i in range(3)]
+        items += [Item(f"test_{i}", file="tests/x/test_z.py") for i in (4, 5)]
+        chosen(items, "all", only=tmp_path / "only")
+        assert names(items) == {"test_0", "test_1", "test_2", "test_5"}
 
     def test_a_random_order_keeps_stories_together(self):
         items = [Item(f"test_{i}", file=f"f{i // 10}", group=i < 10) for i in range(50)]
