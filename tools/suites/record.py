@@ -8,7 +8,6 @@ executes counts for every test that uses the fixture. Of child processes that ar
 import ast
 import json
 import os
-import re
 import sysconfig
 from collections import defaultdict
 from functools import cache
@@ -119,9 +118,3 @@ def lines_in_functions(path):
     functions = (ast.FunctionDef, ast.AsyncFunctionDef)
     nodes = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, functions)]
     return {line for node in nodes for line in range(node.body[0].lineno, node.end_lineno + 1)}
-
-
-def current_test(text):
-    """Return the test function that PYTEST_CURRENT_TEST names, and whether it was being set up."""
-    match = re.fullmatch(r"(.*) \((\w+)\)", text)
-    return (function_id(match[1]), match[2] == "setup") if match else ("", False)
