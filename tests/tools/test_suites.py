@@ -2,6 +2,7 @@
 
 import re
 import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -205,6 +206,33 @@ class TestCI:
         commands = [step.command for step in ci.steps(1, None)]
         assert ["make", "docs-check"] in commands
         assert sum(command[1] in {campaign.target for campaign in CAMPAIGNS} for command in commands) == len(CAMPAIGNS)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["import pytest\n\npytest.importorskip('no_such_module')\n", "import pytest\n\ndef test_a():\n    pytest.skip()\n"],
+)
+def test_neither_a_test_nor_a_whole_module_may_be_skipped_where_nothing_may(tmp_path, text):
+    (tmp_path / "test_one.py").write_text(text, encoding="utf-8")
+
+    def run(*options):
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-p",
+            "tests.conftest",
+            "-p",
+            "no:cacheprovider",
+            "--rootdir",
+            tmp_path,
+        ]
+        return subprocess.run([*command, tmp_path, *options], cwd=ROOT, check=False, capture_output=True, text=True)
+
+    assert "1 skipped" in run().stdout
+    refused = run("--no-skips")
+    assert refused.returncode != 0
+    assert "where nothing may be skipped" in refused.stdout
 
 
 class TestTurn:

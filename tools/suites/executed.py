@@ -15,7 +15,8 @@ from pathlib import Path
 
 from tests.suites import function_id
 
-ROOT = Path(__file__).resolve().parents[2]
+from tools.suites.change import ROOT
+
 MAP = ROOT / "tests" / "executed.json"
 
 

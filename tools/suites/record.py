@@ -17,7 +17,8 @@ import coverage
 import pytest
 from tests.suites import function_id
 
-ROOT = Path(__file__).resolve().parents[2]
+from tools.suites.change import ROOT
+
 RECORDS = ROOT / "build" / "executed"
 PACKAGES = sorted(str(path.parent) for path in ROOT.glob("src/*/__init__.py"))
 _HOOK = Path(sysconfig.get_path("purelib")) / "muster_executed.pth"
