@@ -23,7 +23,7 @@ def test_routes_and_bounds_agree_with_every_plan(first):
     assert sum(report.counts["routes that keep the rules"] for report in reports) > 100
 
 
-@pytest.mark.long(keep=5)
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", DECIDED)
 def test_routes_that_were_wrong_once_agree_with_every_plan(seed):
     assert trial(seed, planned=False).failures == []
