@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager, closing
 from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import pairwise
+from threading import Event
 from types import SimpleNamespace
 
 import pytest
@@ -202,6 +203,32 @@ def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_lat
     assert action.id < 0 or refuses is FULL  # which may have room for a few bytes
     asked = {action.verb: (action.outcome, action.who) for action in store.actions.list(run=run)}
     assert asked == dict.fromkeys(("run.start", "run.pause", "run.speed", "run.resume"), ("done", "ada"))
+
+
+def test_commands_take_effect_in_the_order_in_which_they_were_given(store, monkeypatch):
+    """The database writes the first one after it was asked for the second; robots that were paused last stay paused."""
+    plan = planned(store, muster.load("31T-6R50"))
+    add, second = store.actions.add, Event()
+
+    def slowly(who, verb, *rest):
+        if verb == "run.resume":
+            second.wait(0.3)
+        else:
+            second.set()
+        return add(who, verb, *rest)
+
+    async def story():
+        async with opened(store) as runs:
+            run = (await runs.start(ADA, plan, speed=10.0)).id
+            monkeypatch.setattr(store.actions, "add", slowly)
+            actions = await asyncio.gather(runs.act(ADA, run, "resume"), runs.act(ADA, run, "pause"))
+            told = await watched(runs, run, lambda m: m.get("id") == actions[-1].id)
+            await runs.act(ADA, run, "cancel")
+            await gone(runs, run)
+            return [action.id for action in actions], [one["id"] for one in told if one["type"] == "action"]
+
+    asked, done = asyncio.run(story())
+    assert done == asked
 
 
 @pytest.mark.long

@@ -53,6 +53,7 @@ class RunSession:
         self._store, self.run, self._runner_input = store, run, RunnerInput(store, run, lock)
         self._memory_mb = memory_mb
         self._pending: dict[int, Action] = {}
+        self.in_order = asyncio.Lock()  # held from the request of an action until the runner has it
         self._runner: RunnerProcess | None = None
         self._mission: Mapping[str, Any] | None = None
         self._noted_at = -NOTED_S

@@ -146,6 +146,7 @@ class Runs:
 
         Subscribers receive the outcome, and the action has it later. The action is written before the command takes
         effect. If the database fails or is slow, the command takes effect anyway: robots may have to be stopped.
+        Commands of one run take effect in the order in which they were given.
 
         Raises
         ------
@@ -157,8 +158,11 @@ class Runs:
             said = require_action(verb, data or {})
             await self.require_under_way(run)
             session = self._sessions[run]
-        action = await self._added(unsaved_action(who, f"run.{verb}", said, run, self._moment()), who, session)
-        if not session.ask(action):
+        unsaved = unsaved_action(who, f"run.{verb}", said, run, self._moment())
+        async with session.in_order:  # a lock is acquired in the order of the calls
+            action = await self._added(unsaved, who, session)
+            asked = session.ask(action)
+        if not asked:
             await self._patiently(self._store.actions.keep, replace(action, outcome=TOO_LATE))
             raise ConflictError(f"run {run} is over: {session.run.state}; expected one that is under way")
         return action
