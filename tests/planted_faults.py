@@ -33,7 +33,7 @@ FAULTS = {
     "traffic": Fault(
         "src/muster/traffic/reservations.py", "self._last.get(cell, -1) + 1", "self._last.get(cell, -1) - 1"
     ),
-    "core (C++)": Fault("src/muster/core/team.cpp", "if (k < size_[robot] / 2) {", "if (k <= size_[robot]) {"),
+    "core (C++)": Fault("src/muster/core/team.cpp", "for (k = size_[robot] - 1 - k;", "for (k = size_[robot] - k;"),
     "allocation": Fault("src/muster/allocation/fixed.py", "if k < least[i] or", "if k <= least[i] or"),
     "verification": Fault(
         "src/muster/verification/energy.py", "if stated > room + slack:", "if stated < room - slack:"
