@@ -44,7 +44,9 @@ FAULTS = {
     ),
     "simulation": Fault("src/muster/simulation/batteries.py", "self.level + amount)", "self.level - amount)"),
     "exchange": Fault("src/muster/exchange/separation.py", "b.robot.radius_m + clearance_m", "b.robot.radius_m"),
-    "report (JavaScript)": Fault("src/muster/report/page/player.js", "if (now >= duration) setPlaying(false);", ""),
+    "report (JavaScript)": Fault(
+        "src/muster/report/page/player.js", "if (now >= duration) set", "if (now > duration) set"
+    ),
 }
 
 

@@ -100,9 +100,11 @@ class Browser:
         return answer["result"].get("value")
 
     def wait_for(self, expression):
-        """Return once an expression is true in the page."""
+        """Return once an expression is true in the page; a page that has thrown an exception may never come to it."""
         end = time.monotonic() + _SECONDS
         while not self.evaluate(expression):
+            thrown = [event for event in self.events if event.get("method") == "Runtime.exceptionThrown"]
+            assert not thrown, thrown
             assert time.monotonic() < end, f"never true: {expression}"
             time.sleep(0.02)
 
