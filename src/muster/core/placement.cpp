@@ -213,13 +213,7 @@ void Placement::try_place(int robot, int task, int at) {
 // the earlier as the lag between them says.
 bool Placement::in_reach(int robot, int task, int at) const {
   if (!problem_.has_within()) return true;
-  const auto place_of = [&](int other) {
-    for (const int number : timeline_.visits_of(problem_.unit(other))) {
-      const Visit& visit = timeline_.visit(number);
-      if (visit.robot == robot && visit.place == other) return visit.at;
-    }
-    return -1;
-  };
+  const auto place_of = [&](int other) { return timeline_.place_of(other, robot); };
   const auto before = problem_.prerequisites(task);
   for (std::size_t k = 0; k < before.size(); ++k) {
     const double within = problem_.within(task, static_cast<int>(k));

@@ -195,10 +195,10 @@ bool Roster::keeps_rules() const {
   return true;
 }
 
-// Whether one task comes after another in the same route.
+// Whether one task comes after another in every route that has both.
 bool Roster::comes_after(int task, int other) const {
-  const auto at = [&](int each) { return timeline_.visit(timeline_.visits_of(problem_.unit(each)).front()).at; };
-  return at(task) > at(other);
+  const auto later = [&](int robot) { return timeline_.place_of(task, robot) > timeline_.place_of(other, robot); };
+  return std::ranges::all_of(team_of(task), later);
 }
 
 void Roster::drop_orphans() {

@@ -69,8 +69,8 @@ bool ScheduleSearch::is_tail(int robot, int at, int other) const {
     if (!problem_.allowed(other, visit.place) || !problem_.same_robot(visit.place).empty() ||
         !problem_.other_robot(visit.place).empty() || !does_alone(other, visit.place))
       return false;
-    const int partner = roster_.partner(visit.unit);
-    if (partner >= 0 && timeline.visit(timeline.visits_of(partner).front()).at <= at) return false;
+    const int partner = problem_.partner(visit.place);
+    if (partner >= 0 && timeline.place_of(partner, robot) <= at) return false;
   }
   return true;
 }

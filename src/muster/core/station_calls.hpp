@@ -68,6 +68,7 @@ class StationCalls {
   struct Labels {
     std::vector<Label> all;
     std::vector<std::pair<int, int>> at_stop;
+    std::vector<double> spare;           // by stop: by how much the rest of the route may grow and its labels stay all
     std::vector<double> loads, pending;  // (stops, commodities) after each
     void clear();
   };
@@ -81,6 +82,8 @@ class StationCalls {
   };
 
   Called run(int robot, Labels& labels, std::span<const int> rest, std::span<const double> works);
+  Called try_from(int robot, int at, std::span<const double> works);
+  double rest_usage(int robot, int from, std::span<const int> rest, std::span<const double> works) const;
   void begin(int robot, Labels& labels);
   void copy_labels(const Labels& labels, int stop);
   void label(int robot);
@@ -94,7 +97,7 @@ class StationCalls {
   double put_down(const Labels& labels, const Label& label, int commodity) const;
   bool carry_alike(const Labels& labels, const Label& a, const Label& b) const;
   bool overloaded(int robot, const Labels& labels, const Label& label, int stop) const;
-  bool runs_short(int robot, const Labels& labels, const Label& label, double rest) const;
+  bool runs_short(int robot, const Labels& labels, const Label& label, double rest);
   void carry(int robot, Labels& labels, int task) const;
   double work_usage(int robot, int task, std::span<const double> works) const;
   double least_onward(int robot, int from) const;
@@ -114,6 +117,7 @@ class StationCalls {
   std::vector<double> rest_;  // by stop of the rest, usage from there to the end without calls
   std::vector<int> current_, deeper_, places_;
   int layer_ = 0, last_task_ = -1;
+  double spare_ = kNever;  // of the labels up to the current stop
   Labels tried_;
   std::vector<int> sequence_;
   std::unordered_map<std::uint64_t, std::vector<int>> between_;
