@@ -107,7 +107,8 @@ bool Placement::seek_near(int unit) {
       const auto visits = timeline_.visits_of(problem_.unit(near));
       if (visits.empty()) continue;
       mark(timeline_.visit(visits.front()));
-      for (const int number : visits) mark(timeline_.stop(timeline_.visit(number).robot, timeline_.visit(number).at - 1));
+      for (const int number : visits)
+        mark(timeline_.stop(timeline_.visit(number).robot, timeline_.visit(number).at - 1));
       if (++tried >= trial_->most_places / 2) break;
     }
   }
