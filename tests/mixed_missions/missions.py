@@ -130,22 +130,25 @@ class _Maker:
             task["due_s"] = random.randint(0, 40)
         if self._in("priority", 0.5):
             task["priority"] = random.choice((0.5, 3))
-        if self._in("skill", 0.4):
-            task["requires"] = [random.choice(("a", "b"))]
-        if self._in("skill", 0.1):
-            task["only_robots"] = [f"r{random.randrange(self.robots)}"]
         if self._in("ends", 0.15):
             task["exit"] = self._place()
         before = [f"t{j}" for j in range(k) if self._in("prerequisite", 0.45)]
         if before:
             task["prerequisites"] = [self._lag(name) for name in before]
-        if self._in("needs", 0.5):
-            task["needs"] = {"lift": random.randint(1, 6)}
-        elif self._in("team", 0.5):
-            task.update(self._team())
         if self._in("goods", 0.5):
             task["load"] = random.choice((-2, 1, 2, 3))
-        return task
+        return {**task, **self._members()}
+
+    def _members(self):
+        """Who may do a task, and how many together."""
+        random, keys = self.random, {}
+        if self._in("skill", 0.4):
+            keys["requires"] = [random.choice(("a", "b"))]
+        if self._in("skill", 0.1):
+            keys["only_robots"] = [f"r{random.randrange(self.robots)}"]
+        if self._in("needs", 0.5):
+            return {**keys, "needs": {"lift": random.randint(1, 6)}}
+        return {**keys, **self._team()} if self._in("team", 0.5) else keys
 
     def _windows(self):
         random = self.random

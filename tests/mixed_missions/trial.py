@@ -12,7 +12,8 @@ from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.clock import VirtualClock
-from muster.planning.explaining.explanations import admits, left_out, one_task
+from muster.planning.explaining.explanations import left_out, one_task
+from muster.planning.judging import admits
 from muster.verification import verify
 from tests import trials
 from tests.judged_plans import JudgedPlans
@@ -36,7 +37,7 @@ def trial(seed):
     report = Report(seed)
     mission, text = mixed_mission(seed)
     report.story.append(text)
-    for part in (Trial.plans, Trial.impossible, Trial.explained):
+    for part in (Trial.plans, Trial.exactly, Trial.impossible, Trial.explained):
         with report.trying():
             part(Trial.of(report, mission))
     return report

@@ -26,7 +26,7 @@ from muster.allocation.waiting import NO_WAITING, Waiting
 from muster.allocation.work_times import work_times
 from muster.mission.errors import ParameterError
 from muster.mission.garbage import collector_paused
-from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
+from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Station, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
@@ -445,13 +445,11 @@ class Problem:
         return self.mission.stations
 
     @cached_property
-    def usage_with_calls(self) -> Floats:
-        """(m, n) what a route with one task, or one transport, uses with its calls at stations; inf: it runs short.
+    def energy_reaches(self) -> Bools:
+        """(m, n) whether a robot's energy may last for a task, as far as these two alone tell."""
+        from muster.allocation.energy_reach import energy_reaches
 
-        Nothing else is looked at: no capacities, times, loads.
-        """
-        others = tuple(rule for rule in IGNORABLE if rule != "battery")
-        return core.usage_with_calls(replace(self, ignored=others, fixed=()).core, pickups(self))
+        return energy_reaches(self)
 
     def value(self, routes: Sequence[Sequence[int]]) -> tuple[float, float]:
         """Weight completed and objective of routes, which need not be admissible.

@@ -123,8 +123,4 @@ class StationCalls {
   std::unordered_map<std::uint64_t, std::vector<int>> between_;
 };
 
-// By robot and task: what a route with that task alone uses with its calls, or with the one whose load it delivers, or
-// that delivers its own; infinite where the robot runs short.
-std::vector<double> usage_with_calls(const Problem& problem, std::span<const int> pickups);
-
 }  // namespace muster

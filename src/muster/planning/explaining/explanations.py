@@ -17,6 +17,7 @@ from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, Unassigned
+from muster.planning.judging import admits
 from muster.verification import RouteFigures, Verdict, verify
 
 EXPLAIN_TIME_LIMIT_S = 10.0
@@ -168,11 +169,6 @@ def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str], s
         award=None if plan.book is None else plan.book.award_of(task),
         cut_short=cut_short,
     )
-
-
-def admits(mission: Mission, plan: Plan, ignored: tuple[str, ...]) -> bool:
-    """Whether nothing is wrong with a plan: the `Judge` of searches."""
-    return verify(mission, plan, ignored).valid
 
 
 def _plain(remedy: Remedy | None) -> dict[str, Any] | None:

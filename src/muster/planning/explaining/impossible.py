@@ -14,9 +14,9 @@ from muster.mission.model import Mission
 from muster.mission.plan import Reason, Unassigned
 from muster.motion.actions.unseen_places import Unseen
 from muster.planning.explaining.crossings import BlockedWay, blocked_ways
-from muster.planning.explaining.explanations import admits
 from muster.planning.explaining.stations import CutOff, cut_off_stations
 from muster.planning.explaining.unseen_searches import unseen_searches
+from muster.planning.judging import admits
 
 
 @dataclass(frozen=True)
