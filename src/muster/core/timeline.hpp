@@ -101,8 +101,8 @@ class Timeline {
   void restore_way(int robot, int at, double seconds) { visits_[routes_[robot][at]].in = seconds; }
 
   // Both leave times as they were until `settle`. A unit goes in at a label between those of its neighbours in every
-  // route, and within `labels_for`.
-  void insert(int unit, std::span<const Member> members);
+  // route, within `labels_for`, and below that of the unit `before`, if there is any.
+  void insert(int unit, std::span<const Member> members, int before = -1);
   void remove(int unit);
   // Propagates what was changed. False: no schedule exists; then only `rollback` helps.
   bool settle();

@@ -86,7 +86,7 @@ class Battery(Rule):
     def possible(self, limits: Limits) -> Bools | None:
         if not any(robot.battery for robot in limits.problem.robots):
             return None
-        return np.asarray(limits.problem.energy_reaches | ~limits.usable)
+        return limits.problem.energy_reaches
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         battery = problem.robots[i].battery
