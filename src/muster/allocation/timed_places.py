@@ -29,6 +29,7 @@ _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
 _MOST_TEAMS = 60
 _MOST_OF_WHOLE = 2_000  # ways to place inseparable tasks
 _BY_ONE_ROBOT = ("capacity", "load", "battery")  # rules of single robots, of which another member may break one
+_NAMES_OTHERS = ("min-tasks",)  # such a rule whose words name the robot, where this is a member of the same team
 
 Member = tuple[int, int]
 """A robot, and the task that it does."""
@@ -137,7 +138,7 @@ class TimedPlaces(InPlan):
             return self._no_order(i, j, places)
         for at, word in enumerate(words):
             before, left = left, self._admissible(self.without(words[at + 1 :]), [place for place, _ in left])
-            if not left and (tie := self._tie_to_others(j)) and not self._is_by_itself(word, i, before):
+            if not left and (tie := self._tie_to_others(j)) and not self._is_by_itself(word, i, j, before):
                 detail = f"at every place in its route another robot that it needs would break the rule {word}"
                 return Outcome(word=tie, detail=detail)
             if not left:
@@ -153,9 +154,10 @@ class TimedPlaces(InPlan):
             return "team"
         return "relation" if len(self.problem.with_partner(j)) > 2 else ""
 
-    def _is_by_itself(self, word: str, i: int, left: list[tuple[Place, core.Inspection]]) -> bool:
+    def _is_by_itself(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> bool:
         """Whether a rule is broken at all places by the route of robot i, whatever the others do."""
-        if word not in _BY_ONE_ROBOT:
+        apart = len(self.problem.with_partner(j)) > 2
+        if word not in _BY_ONE_ROBOT and not (apart and word in _NAMES_OTHERS):
             return True
         alone = replace(
             self.problem, ignored=tuple(one for one in IGNORABLE if one != word), fixed=(), known=self.problem.measured
