@@ -7,18 +7,38 @@ are the least, by way of any other places. What no such way allows no plan allow
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
-from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.battery import energy_at_start, energy_room
 from muster.allocation.rules.load import pickups
+from muster.allocation.rules.rule import Bools, Floats, Question
+from muster.mission.model import Station
 
 _ROUNDING = 1e-9
 _MOST_THROUGH = 300  # places through which a way may be shorter than the direct one, up to which all ways are known
 
 
-def energy_reaches(problem: Problem) -> Bools:
+class Travelled(Question, Protocol):
+    """What is looked at: a `Problem`."""
+
+    @property
+    def stations(self) -> tuple[Station, ...]: ...
+
+    def shortcuts(self) -> npt.NDArray[np.int64]: ...
+
+    def start(self, i: int) -> int: ...
+
+    def end(self, i: int) -> int: ...
+
+    def legs(self, i: int, places: npt.NDArray[np.int64], to: npt.NDArray[np.int64]) -> Floats: ...
+
+    def work_usage(self, i: int) -> Floats: ...
+
+
+def energy_reaches(problem: Travelled) -> Bools:
     """Return (m, n) whether the energy of a robot may last for a task, with the other task of its transport."""
     reaches = np.ones((len(problem.robots), len(problem.tasks)), dtype=np.bool_)
     through = [*problem.shortcuts().tolist(), *_stations(problem)]
@@ -36,7 +56,7 @@ def energy_reaches(problem: Problem) -> Bools:
     return reaches
 
 
-def _stations(problem: Problem) -> range:
+def _stations(problem: Travelled) -> range:
     first = len(problem.tasks) + 2 * len(problem.robots)
     return range(first, first + len(problem.stations))
 
@@ -44,7 +64,7 @@ def _stations(problem: Problem) -> range:
 class _Reach:
     """The ways of one robot, and the stations that it can get to and from."""
 
-    def __init__(self, problem: Problem, i: int, through: list[int]) -> None:
+    def __init__(self, problem: Travelled, i: int, through: list[int]) -> None:
         self._full, self._slack = energy_room(problem.robots[i]), _ROUNDING * (1 + energy_room(problem.robots[i]))
         self._ways = _least_ways(problem, i, through)
         self._work = problem.work_usage(i)
@@ -90,11 +110,11 @@ class _Reach:
         return any(float(self._ways[last, place]) <= level + self._slack for place in self._homeward)
 
 
-def _must_end(problem: Problem, i: int) -> bool:
+def _must_end(problem: Travelled, i: int) -> bool:
     return problem.robots[i].place_at_end(problem.mission.rules) is not None
 
 
-def _least_ways(problem: Problem, i: int, through: list[int]) -> Floats:
+def _least_ways(problem: Travelled, i: int, through: list[int]) -> Floats:
     """The least travel usage between all places, by way of some; work on the way counts nothing."""
     places = np.arange(len(problem.tasks) + 2 * len(problem.robots) + len(problem.stations))
     ways = problem.legs(i, places, places)
