@@ -14,6 +14,7 @@ import numpy as np
 from muster import core
 from muster.allocation.bottleneck import fills
 from muster.allocation.problem import Problem
+from muster.allocation.route_bounds import RouteBounds
 from muster.allocation.rules import RULES
 from muster.allocation.rules.deadline import too_late
 from muster.allocation.rules.rule import ROUNDING, InPlan
@@ -29,6 +30,7 @@ _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
 _MOST_TEAMS = 60
 _MOST_OF_WHOLE = 2_000  # ways to place inseparable tasks
 _BY_ONE_ROBOT = ("capacity", "load", "battery")  # rules of single robots, of which another member may break one
+_BY_CALLS = ("load", "battery")  # rules that calls at stations may keep, of which the core looks at some
 _NAMES_OTHERS = ("min-tasks",)  # such a rule whose words name the robot, where this is a member of the same team
 
 Member = tuple[int, int]
@@ -72,6 +74,7 @@ class TimedPlaces(InPlan):
         self._looked_at_some = set[tuple[int, int]]()  # pairs of which not all places are looked at
         self.outcome = cache(self._outcome)
         self.without = cache(self._without)
+        self.bounds_without = cache(lambda words: RouteBounds(self.without(words)))
 
     def members(self, j: int) -> Sequence[int]:
         return [i for i, route in enumerate(self.routes) if j in route]
@@ -141,9 +144,18 @@ class TimedPlaces(InPlan):
             if not left and (tie := self._tie_to_others(j)) and not self._is_by_itself(word, i, j, before):
                 detail = f"at every place in its route another robot that it needs would break the rule {word}"
                 return Outcome(word=tie, detail=detail)
+            if not left and word in _BY_CALLS and not self._is_proven(words[at + 1 :], i, before):
+                return Outcome()
             if not left:
                 return Outcome(word=word, detail=self._detail(word, i, j, before))
         raise AssertionError("a place that keeps all rules is admissible")
+
+    def _is_proven(self, later: Sequence[str], i: int, left: list[tuple[Place, core.Inspection]]) -> bool:
+        """Whether robot i cannot do its route with the task at any place, wherever it calls at stations."""
+        if not self.problem.stations:
+            return True
+        bounds = self.bounds_without(tuple(later))
+        return all(bounds.excludes(i, place.routes[i]) for place, _ in left)
 
     def _tie_to_others(self, j: int) -> str:
         """The rule by which other robots must do something beside one that does a task; empty: none."""

@@ -130,6 +130,7 @@ class _Resource:
     possible: Bools
     work: Floats
     has: Floats
+    by_deadline: Bools | None = None  # (m,) whether deadlines, and not its shift, say how much time a robot has
 
     def shortfall(self, group: frozenset[int], tasks: Sequence[int]) -> Shortfall | None:
         problem, robots = self.problem, sorted(group)
@@ -146,7 +147,7 @@ class _Resource:
         most = float(self.has[robots].max())
         lacking = needed - available
         return Shortfall(
-            resource=self.name,
+            resource="time" if self.by_deadline is not None and self.by_deadline[robots].any() else self.name,
             robots=tuple(robot.id for robot in problem.mission.robots if problem.robot_index[robot.id] in group),
             tasks=tuple(task.id for task in problem.mission.tasks if problem.task_index[task.id] in set(own)),
             everyone=len(robots) == len(problem.robots),
@@ -177,8 +178,8 @@ def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Itera
     until = rules.available_until
     longest = seconds.max(axis=0, initial=0.0)  # a team takes as long as its slowest member
     last = np.array([_last_end(problem, [j for j in tasks if possible[i, j]], longest) for i in robots])
-    name = "shift" if (until <= last).all() else "time"
-    yield _Resource(name, _SECONDS, problem, possible, seconds, np.maximum(0.0, np.minimum(until, last) - start))
+    has = np.maximum(0.0, np.minimum(until, last) - start)
+    yield _Resource("shift", _SECONDS, problem, possible, seconds, has, last < until)
     usage = seconds if problem.in_time else np.array([problem.work_usage(i) for i in robots])
     unit = _SECONDS if problem.in_time else problem.usage_unit
     yield _Resource("capacity", unit, problem, possible, usage, problem.capacity)

@@ -177,13 +177,16 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   int from = problem_.start(robot);
   if (stop > 0) from = &labels == &tried_ ? routes_[robot].tasks[stop - 1] : from;
   measure_rest(robot, from, rest, works);
+  if (problem_.has_within()) measure_lags(robot, stop, rest, works);
   spare_ = labels.spare.back();
   for (std::size_t k = 0; k < rest.size(); ++k) {
     if (unloads_) carry(robot, labels, rest[k]);
+    gap_limit_s_ = problem_.has_within() ? most_gap_s_[k] : kNever;
     if (!cross(robot, labels, from, rest[k], rest_[k], rest_[k + 1])) return {kNever, kNever};
     from = rest[k];
   }
   last_task_ = from;
+  gap_limit_s_ = kNever;
   const bool moves = !rest.empty() || stop > 0;
   if (moves && problem_.must_end(robot) && !cross(robot, labels, from, problem_.end(robot), rest_[rest.size()], 0.0)) {
     return {kNever, kNever};
@@ -194,6 +197,31 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
     return {kNever, kNever};
   const double end_s = ends_before_return(robot) && moves ? last.extra : last.frontier.first().time;
   return {last.usage, end_s, last.extra};
+}
+
+// How long the way to each task of the rest may take: a task that must begin shortly after an earlier one of the route
+// leaves little time for calls between the two.
+void StationCalls::measure_lags(int robot, int stop, std::span<const int> rest, std::span<const double> works) {
+  std::vector<int> tasks(routes_[robot].tasks.begin(), routes_[robot].tasks.begin() + stop);
+  tasks.insert(tasks.end(), rest.begin(), rest.end());
+  offsets_.assign(tasks.size(), 0.0);  // when each would begin if the robot never waited or called
+  const auto way = [&](std::size_t k) { return problem_.travel_time(robot, tasks[k - 1], tasks[k]); };
+  for (std::size_t k = 1; k < tasks.size(); ++k) offsets_[k] = offsets_[k - 1] + works[tasks[k - 1]] + way(k);
+  most_gap_s_.assign(rest.size(), kNever);
+  for (std::size_t k = 1; k < tasks.size(); ++k) {
+    const auto before = problem_.prerequisites(tasks[k]);
+    for (std::size_t b = 0; b < before.size(); ++b) {
+      const double within = problem_.within(tasks[k], static_cast<int>(b));
+      const auto from = static_cast<std::size_t>(
+          std::find(tasks.begin(), tasks.begin() + static_cast<std::ptrdiff_t>(k), before[b]) - tasks.begin());
+      if (within == kNever || from == k) continue;
+      const double slack = within - (offsets_[k] - offsets_[from] - works[tasks[from]]);
+      for (std::size_t gap = std::max(from + 1, static_cast<std::size_t>(stop)); gap <= k; ++gap) {
+        double& most = most_gap_s_[gap - stop];
+        most = std::min(most, way(gap) + slack);
+      }
+    }
+  }
 }
 
 void StationCalls::measure_rest(int robot, int from, std::span<const int> rest, std::span<const double> works) {

@@ -63,6 +63,7 @@ class StationCalls {
     int station;   // where it is; -1: at a stop
     int unloaded;  // the stop after which the robot last unloaded; -1: never
     double extra = 0.0;
+    double gap_s = 0.0;  // at a station: how long it is at least since the robot left the last stop
   };
   // Labels of each stop, the start included; those of stations stand between.
   struct Labels {
@@ -87,6 +88,7 @@ class StationCalls {
   void begin(int robot, Labels& labels);
   void copy_labels(const Labels& labels, int stop);
   void label(int robot);
+  void measure_lags(int robot, int stop, std::span<const int> rest, std::span<const double> works);
   void measure_rest(int robot, int from, std::span<const int> rest, std::span<const double> works);
   bool cross(int robot, Labels& labels, int from, int to, double rest_before, double rest_after);
   bool arrive(int robot, Labels& labels, int parent, int from, int to, double rest_after);
@@ -117,7 +119,10 @@ class StationCalls {
   std::vector<double> rest_;  // by stop of the rest, usage from there to the end without calls
   std::vector<int> current_, deeper_, places_;
   int layer_ = 0, last_task_ = -1;
-  double spare_ = kNever;  // of the labels up to the current stop
+  double spare_ = kNever;           // of the labels up to the current stop
+  std::vector<double> most_gap_s_;  // by task of the rest, how long the way to it may take for lags between its tasks
+  double gap_limit_s_ = kNever;     // of the way that is labelled
+  std::vector<double> offsets_;
   Labels tried_;
   std::vector<int> sequence_;
   std::unordered_map<std::uint64_t, std::vector<int>> between_;

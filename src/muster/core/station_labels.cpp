@@ -93,6 +93,8 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
   const double way = problem_.travel_usage(robot, from, to);
   if (!std::isfinite(way)) return false;
   const double slack = drains ? -kLabelRounding * problem_.battery(robot) : -kNever;
+  if (label.station >= 0 && label.gap_s + problem_.travel_time(robot, from, to) > gap_limit_s_) return false;
+  label.gap_s = 0.0;
   label.usage += way;
   label.parent = parent;
   label.station = -1;
@@ -151,6 +153,7 @@ int StationCalls::call(int robot, Labels& labels, int parent, int from, int numb
   label.usage += way;
   label.parent = parent;
   label.station = number;
+  label.gap_s += problem_.travel_time(robot, from, place) + std::max(0.0, station.swap_s);
   const bool drains = full < kNever;
   label.frontier.shift(problem_.travel_time(robot, from, place), drains ? way : 0.0);
   if (drains) label.frontier.keep_from(-kLabelRounding * full);

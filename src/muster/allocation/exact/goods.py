@@ -16,8 +16,8 @@ import numpy as np
 
 from muster.allocation.exact.circuits import Circuits
 from muster.allocation.exact.costs import real_costs, real_usage
-from muster.allocation.exact.route_bounds import RouteBounds
 from muster.allocation.problem import Problem
+from muster.allocation.route_bounds import RouteBounds
 from muster.allocation.rules.battery import Battery
 from muster.allocation.rules.load import Load, pickups
 

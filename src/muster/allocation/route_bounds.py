@@ -15,15 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from muster.allocation.exact import energy_curve
-from muster.allocation.exact.energy_curve import Curve
-from muster.allocation.problem import Floats, Problem
+from muster.allocation import energy_curve
+from muster.allocation.energy_curve import Curve
+from muster.allocation.problem import Problem
 from muster.allocation.rules.battery import energy_at_start, energy_room
 from muster.allocation.rules.load import Load
 from muster.mission.stations import Station
 
 _ROUNDING = 1e-9
-_MOST_LABELS = 4_000  # of one route
+_MOST_LABELS = 4_000  # of the way from one stop to the next
 
 
 class TooManyLabelsError(Exception):
@@ -68,21 +68,31 @@ class _Label:
 
 
 class RouteBounds:
-    """The bounds of the routes of a problem."""
+    """The bounds of the routes of a problem. Labels of beginnings of routes are kept."""
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
-        self._ways: dict[int, tuple[Floats, Floats]] = {}
+        self._robots: dict[int, _Robot] = {}
 
     def of(self, i: int, route: Sequence[int], *, whole: bool) -> RouteBound | None:
         """Return the bound of all routes of robot i that begin with these tasks, or of the whole one; None: unknown."""
         try:
-            labels = _Run(self, i, route).labels(whole=whole)
+            labels = self._robot(i).labels(tuple(route), whole=whole)
         except TooManyLabelsError:
             return None
         if not labels:
             return RouteBound(math.inf, math.inf)
         return RouteBound(min(label.usage for label in labels), min(map(self._value, labels)))
+
+    def excludes(self, i: int, route: Sequence[int]) -> bool:
+        """Return whether robot i cannot do a route, wherever it calls at stations."""
+        bound = self.of(i, route, whole=True)
+        return bound is not None and math.isinf(bound.usage)
+
+    def _robot(self, i: int) -> _Robot:
+        if i not in self._robots:
+            self._robots[i] = _Robot(self.problem, i, self._loads)
+        return self._robots[i]
 
     def _value(self, label: _Label) -> float:
         if self.problem.objective == "makespan":
@@ -90,73 +100,88 @@ class RouteBounds:
             return max(label.ended, label.curve[0][0]) if with_return else label.ended
         return label.extra if self.problem.objective in ("average", "lateness") else 0.0
 
-    def ways(self, i: int) -> tuple[Floats, Floats]:
-        """(places, places) travel usage of a robot, and seconds."""
-        if i not in self._ways:
-            problem = self.problem
-            places = np.arange(len(problem.tasks) + 2 * len(problem.robots) + len(problem.stations))
-            self._ways[i] = problem.legs(i, places, places), problem.travel_seconds(i, places, places)
-        return self._ways[i]
-
     @cached_property
-    def loads(self) -> Any:
+    def _loads(self) -> Any:
         """The arrays of loads, as the core has them."""
         return Load().core_arrays(self.problem)
 
 
-class _Run:
-    """The labels of one route, stop after stop."""
+class _Robot:
+    """The labels of one robot's routes, stop after stop."""
 
-    def __init__(self, bounds: RouteBounds, i: int, route: Sequence[int]) -> None:
-        self._problem, self._robot, self._i, self._route = bounds.problem, bounds.problem.robots[i], i, route
-        self._usage, self._seconds = bounds.ways(i)
-        self._work, self._takes = self._problem.work_usage(i), self._problem.work_seconds(i)
-        self._full = energy_room(self._robot) if self._problem.holds("battery") else math.inf
+    def __init__(self, problem: Problem, i: int, loads: Any) -> None:
+        self._problem, self._robot, self._i, self._arrays = problem, problem.robots[i], i, loads
+        places = np.arange(len(problem.tasks) + 2 * len(problem.robots) + len(problem.stations))
+        self._usage, self._seconds = problem.legs(i, places, places), problem.travel_seconds(i, places, places)
+        self._work, self._takes = problem.work_usage(i), problem.work_seconds(i)
+        self._full = energy_room(self._robot) if problem.holds("battery") else math.inf
         self._drains = math.isfinite(self._full)
-        self._until = float(self._problem.timed_rules.available_until[i]) * (1 + _ROUNDING)
-        self._most = float(self._problem.capacity[i]) * (1 + _ROUNDING) + _ROUNDING
-        arrays, self._goods = bounds.loads, range(bounds.loads["commodities"])
-        self._room = [float(arrays["load_capacity"][i, c]) for c in self._goods]
-        self._loads = [tuple(float(arrays["load_at_start"][i, c]) for c in self._goods)]
-        self._pending = [tuple(float(arrays["pending_at_start"][i, c]) for c in self._goods)]
-        for j in route:
-            self._loads.append(tuple(self._loads[-1][c] + float(arrays["load"][j, c]) for c in self._goods))
-            self._pending.append(tuple(self._pending[-1][c] + float(arrays["pending"][j, c]) for c in self._goods))
-        self._left = _MOST_LABELS
+        self._until = float(problem.timed_rules.available_until[i]) * (1 + _ROUNDING)
+        self._most = float(problem.capacity[i]) * (1 + _ROUNDING) + _ROUNDING
+        self._goods = range(loads["commodities"])
+        self._room = [float(loads["load_capacity"][i, c]) for c in self._goods]
+        self._known: dict[tuple[int, ...], list[_Label]] = {(): [self._first()]}
+        self._left = 0
 
-    def labels(self, *, whole: bool) -> list[_Label]:
-        problem, start = self._problem, self._robot.available_from_s
-        at_start = energy_at_start(problem, self._i) if self._drains else energy_curve.NEVER_EMPTY
-        labels = [_Label(0.0, 0.0, 0.0, 0.0, [(start, at_start)], (0.0,) * len(self._goods))]
-        place = problem.start(self._i)
-        for stop, j in enumerate(self._route):
-            labels = self._undominated(
-                done for there in self._arrivals(labels, place, j, stop) for done in self._worked(there, j, stop + 1)
-            )
-            place = j
-        if whole and self._robot.place_at_end(problem.mission.rules) is not None and self._route:
-            return list(self._home(labels, place))
+    def _first(self) -> _Label:
+        at_start = energy_at_start(self._problem, self._i) if self._drains else energy_curve.NEVER_EMPTY
+        nothing = (0.0,) * len(self._goods)
+        return _Label(0.0, 0.0, 0.0, 0.0, [(self._robot.available_from_s, at_start)], nothing)
+
+    def labels(self, route: tuple[int, ...], *, whole: bool) -> list[_Label]:
+        """The labels after the last task of a route; `whole`: at its end."""
+        labels = self._after(route)
+        if whole and self._robot.place_at_end(self._problem.mission.rules) is not None and route:
+            return list(self._home(labels, route))
         return [label for label in labels if label.curve[0][0] <= self._until] if whole else labels
 
-    def _home(self, labels: list[_Label], place: int) -> Iterator[_Label]:
-        for label in self._arrivals(labels, place, self._problem.end(self._i), len(self._route)):
+    def _after(self, route: tuple[int, ...]) -> list[_Label]:
+        if route not in self._known:
+            before = self._after(route[:-1])
+            self._start_step(route[:-1])
+            loads = self._on_board(route)
+            self._known[route] = self._undominated(
+                done
+                for there in self._arrivals(before, self._place(route[:-1]), route[-1])
+                for done in self._worked(there, route[-1], loads)
+            )
+        return self._known[route]
+
+    def _start_step(self, route: tuple[int, ...]) -> None:
+        self._left = _MOST_LABELS
+        self._loads = self._on_board(route)
+        self._kept = self._sums("pending", "pending_at_start", route)
+
+    def _place(self, route: tuple[int, ...]) -> int:
+        return route[-1] if route else self._problem.start(self._i)
+
+    def _on_board(self, route: tuple[int, ...]) -> tuple[float, ...]:
+        """The loads after a route as if the robot never unloaded."""
+        return self._sums("load", "load_at_start", route)
+
+    def _sums(self, name: str, first: str, route: tuple[int, ...]) -> tuple[float, ...]:
+        arrays = self._arrays
+        return tuple(
+            float(arrays[first][self._i, c]) + sum(float(arrays[name][j, c]) for j in route) for c in self._goods
+        )
+
+    def _home(self, labels: list[_Label], route: tuple[int, ...]) -> Iterator[_Label]:
+        self._start_step(route)
+        for label in self._arrivals(labels, route[-1], self._problem.end(self._i)):
             if label.curve[0][0] <= self._until:
                 yield label
 
-    def _arrivals(self, labels: list[_Label], place: int, to: int, stop: int) -> Iterator[_Label]:
+    def _arrivals(self, labels: list[_Label], place: int, to: int) -> Iterator[_Label]:
         """Labels at the next place, directly and by way of stations."""
         at: dict[int, list[_Label]] = {}
         waiting = [(place, label) for label in labels]
+        first = len(self._problem.tasks) + 2 * len(self._problem.robots)
         while waiting:
             here, label = waiting.pop()
             yield from self._moved(label, here, to)
-            for number, station in enumerate(self._problem.stations):
-                there = len(self._problem.tasks) + 2 * len(self._problem.robots) + number
-                if there == here:
-                    continue
-                for arrived in self._moved(label, here, there):
-                    served = self._served(arrived, station, stop)
-                    known = at.setdefault(there, [])
+            for there, station in enumerate(self._problem.stations, first):
+                for arrived in self._moved(label, here, there) if there != here else ():
+                    served, known = self._served(arrived, station), at.setdefault(there, [])
                     if served is not None and not any(other.covers(served) for other in known):
                         known[:] = [other for other in known if not served.covers(other)]
                         known.append(served)
@@ -178,8 +203,8 @@ class _Run:
             ended = max(label.ended, curve[0][0] - since)
             yield replace(label, usage=label.usage + usage, curve=curve, since=since, ended=ended)
 
-    def _served(self, label: _Label, station: Station, stop: int) -> _Label | None:
-        """A label at a station once the robot is served; None: nothing is put down that may be."""
+    def _served(self, label: _Label, station: Station) -> _Label | None:
+        """A label at a station once the robot is served; None: it would put down more than it has."""
         curve, since = label.curve, math.inf if self._drains and station.gives_energy else label.since
         if self._drains and station.swaps:
             curve = [(curve[0][0] + station.swap_s, self._full)]
@@ -188,19 +213,19 @@ class _Run:
             curve = serve(curve, station.charge_per_s, self._full)
         put_down = label.put_down
         if station.unloads and self._goods:
-            put_down = tuple(self._loads[stop][c] - self._pending[stop][c] for c in self._goods)
+            put_down = tuple(self._loads[c] - self._kept[c] for c in self._goods)
         label = replace(label, curve=curve, put_down=put_down, since=since)
-        return label if self._is_carried(label, stop) else None
+        return label if self._is_carried(label, self._loads) else None
 
-    def _is_carried(self, label: _Label, stop: int) -> bool:
-        loads = [self._loads[stop][c] - label.put_down[c] for c in self._goods]
+    def _is_carried(self, label: _Label, on_board: Sequence[float]) -> bool:
+        loads = [on_board[c] - label.put_down[c] for c in self._goods]
         slack = [_ROUNDING * (1 + abs(room)) if math.isfinite(room) else _ROUNDING for room in self._room]
         return all(-slack[c] <= loads[c] <= self._room[c] + slack[c] for c in self._goods)
 
-    def _worked(self, label: _Label, j: int, stop: int) -> Iterator[_Label]:
+    def _worked(self, label: _Label, j: int, on_board: Sequence[float]) -> Iterator[_Label]:
         """Labels at a task once the work is done, one for each of its windows."""
         rules, usage, takes = self._problem.timed_rules, float(self._work[j]), float(self._takes[j])
-        if label.usage + usage > self._most or not self._is_carried(label, stop):
+        if label.usage + usage > self._most or not self._is_carried(label, on_board):
             return
         latest = (float(rules.deadline[j]) - takes) * (1 + _ROUNDING) + _ROUNDING
         for opens, closes in rules.windows[j] or ((-math.inf, math.inf),):
