@@ -29,9 +29,6 @@ _RELAXED = {rule.word: rule for rule in RULES if rule.lifted_late}
 _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
 _MOST_TEAMS = 60
 _MOST_OF_WHOLE = 2_000  # ways to place inseparable tasks
-_BY_ONE_ROBOT = ("capacity", "load", "battery")  # rules of single robots, of which another member may break one
-_BY_CALLS = ("load", "battery")  # rules that calls at stations may keep, of which the core looks at some
-_NAMES_OTHERS = ("min-tasks",)  # such a rule whose words name the robot, where this is a member of the same team
 
 Member = tuple[int, int]
 """A robot, and the task that it does."""
@@ -144,7 +141,7 @@ class TimedPlaces(InPlan):
             if not left and (tie := self._tie_to_others(j)) and not self._is_by_itself(word, i, j, before):
                 detail = f"at every place in its route another robot that it needs would break the rule {word}"
                 return Outcome(word=tie, detail=detail)
-            if not left and word in _BY_CALLS and not self._is_proven(words[at + 1 :], i, before):
+            if not left and _RELAXED[word].kept_by_calls and not self._is_proven(words[at + 1 :], i, before):
                 return Outcome()
             if not left:
                 return Outcome(word=word, detail=self._detail(word, i, j, before))
@@ -168,8 +165,8 @@ class TimedPlaces(InPlan):
 
     def _is_by_itself(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> bool:
         """Whether a rule is broken at all places by the route of robot i, whatever the others do."""
-        apart = len(self.problem.with_partner(j)) > 2
-        if word not in _BY_ONE_ROBOT and not (apart and word in _NAMES_OTHERS):
+        rule = _RELAXED[word]
+        if not rule.of_a_route or (rule.names_robots and len(self.problem.with_partner(j)) <= 2):
             return True
         alone = replace(
             self.problem, ignored=tuple(one for one in IGNORABLE if one != word), fixed=(), known=self.problem.measured

@@ -59,6 +59,8 @@ class Battery(Rule):
     word: ClassVar[str] = "battery"
     asked = ("battery",)
     lifted_late = True
+    of_a_route = True
+    kept_by_calls = True
     key = "battery"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
