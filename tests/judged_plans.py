@@ -20,8 +20,10 @@ from muster.mission.plan import Plan, Route, RouteStop
 from muster.verification import Verdict, verify
 
 TINY = 1e-9
-LASTING = {"skill", "suitability", "lock", "unreachable", "capacity", "window", "deadline", "shift"}
-"""Kinds of violation by one route that no more stops take away, where the triangle inequality holds."""
+LASTING = {"skill", "suitability", "lock", "unreachable", "window", "deadline"}
+"""Kinds of violation by one route that no more stops take away."""
+LASTING_WAYS = {"capacity", "shift"}
+"""The same where the triangle inequality holds: no task is left elsewhere than entered, and shortens the way home."""
 MOST_TOGETHER = 40_000  # sets of routes of one weight that are sorted
 
 
@@ -65,6 +67,8 @@ class JudgedPlans:
         self.stations = {station.id: station for station in mission.stations}
         self.left, self.complete = most, True
         self._full = {}
+        is_left_elsewhere = any(task.entry or task.exit for task in mission.tasks)
+        self._lasting = LASTING if is_left_elsewhere else LASTING | LASTING_WAYS
 
     @cached_property
     def times_count(self):
@@ -116,7 +120,7 @@ class JudgedPlans:
     def _may_go_on(self, robot, names):
         """Whether the last stop of a route keeps its rules, and changes something if it is a station."""
         verdict = self._alone(robot, names)
-        if any(fault.kind in LASTING for fault in verdict.violations):
+        if any(fault.kind in self._lasting for fault in verdict.violations):
             return False
         stops = _route_in(verdict, robot).stops
         if not stops:
