@@ -90,7 +90,7 @@ class TimedPlaces(InPlan):
         if missing := self._left_out_with(j):
             return Outcome(word="relation", detail=missing)
         if missing := self._transport_lacks(i, j):
-            return Outcome(word="load", detail=missing)
+            return Outcome(word=self._word_of_whole(j), detail=missing)
         places = self.places(i, j)
         best = min(self._admissible(self.problem, places), key=lambda one: one[1].usages[i], default=None)
         if best is not None:
@@ -103,14 +103,20 @@ class TimedPlaces(InPlan):
 
     def _left_out_with(self, j: int) -> str:
         """What the tasks that begin together with a task lack; empty: nothing."""
-        problem = self.problem
+        problem, whole = self.problem, self.problem.with_partner(j)
         for k in problem.timed_rules.beginning_with(j):
             if k in self.done:
                 continue
-            before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done]
+            before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done and b not in whole]
             if before:
                 return f"begins together with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
         return ""
+
+    def _word_of_whole(self, j: int) -> str:
+        """The rule by which a task can only be done together with the tasks of a transport."""
+        if self.problem.partners[j] is not None:
+            return "load"
+        return "relation" if self.problem.timed_rules.beginning_with(j) else "prerequisite"
 
     def _transport_lacks(self, i: int, j: int) -> str:
         """What keeps robot i from the other task of a transport; empty: nothing."""
