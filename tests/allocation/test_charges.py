@@ -78,5 +78,5 @@ def test_the_rest_of_a_mission_is_sold_by_measured_charges():
 def test_robots_with_batteries_and_no_task():
     robots = tuple(Robot(id=f"r{k}", position=(k, 0), battery=Battery(capacity=5)) for k in range(3))
     mission = Mission(robots=robots, tasks=())
-    assert Problem.compile(mission).usage_with_calls.shape == (3, 0)
+    assert Problem.compile(mission).energy_reaches.shape == (3, 0)
     assert muster.check(mission).impossible == ()

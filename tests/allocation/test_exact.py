@@ -18,6 +18,7 @@ from muster.allocation.exact.scale import Scale, whole_weights
 from muster.allocation.problem import Problem
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.model import OBJECTIVES
+from muster.planning.judging import admits
 
 pytest.importorskip("ortools", reason="needs the extra exact")
 SHARP = pytest.approx
@@ -26,7 +27,7 @@ CLOSE = {"rel": 1e-7, "abs": 1e-7}
 
 def assert_exact(problem, **more):
     weight, value, _ = best_plan(problem)
-    result = solve_exactly(problem, 30.0, **more)
+    result = solve_exactly(problem, 30.0, **more, judge=admits)
     assert core.Inspection(problem.core, result.routes).admissible
     assert all(problem.allowed[i, j] for i, route in enumerate(result.routes) for j in route)
     assert result.weight_proven
@@ -95,7 +96,7 @@ def test_bound_exact_search(objective):
         mission = replace(random_mission(seed, tasks=8, robots=3, min_suitability=0), suitability=None)
         problem = Problem.compile(mission, objective)
         plan = muster.solve(mission, "search", iterations=500, objective=objective)
-        result = solve_exactly(problem, 30.0, start=routes_of(problem, plan))
+        result = solve_exactly(problem, 30.0, start=routes_of(problem, plan), judge=admits)
         assert result.optimal
         weight, value = problem.value(result.routes)
         assert weight >= plan.weight_completed
@@ -110,18 +111,18 @@ def test_16t_3r_is_proven():
     """The best plan known of a shipped mission with prerequisites across robots is the best there is."""
     problem = Problem.compile(muster.load("16T-3R"))
     plan = muster.solve(muster.load("16T-3R"), "search", iterations=500)
-    result = solve_exactly(problem, 60.0, start=routes_of(problem, plan))
+    result = solve_exactly(problem, 60.0, start=routes_of(problem, plan), judge=admits)
     assert result.optimal
     assert result.lower_bound == pytest.approx(342.9001, abs=1e-4)
 
 
 def test_without_time_only_what_is_known_is_claimed():
     problem = Problem.compile(muster.load("16T-3R"))
-    nothing = solve_exactly(problem, 0.0)
+    nothing = solve_exactly(problem, 0.0, judge=admits)
     assert (nothing.weight, nothing.weight_proven, nothing.lower_bound, nothing.optimal) == (0, False, None, False)
     plan = muster.solve(muster.load("16T-3R"), "greedy")
     start = routes_of(problem, plan)
-    result = solve_exactly(problem, 0.0, start=start)
+    result = solve_exactly(problem, 0.0, start=start, judge=admits)
     assert result.routes == start
     assert result.weight_proven  # all tasks are done
     assert not result.optimal
@@ -131,24 +132,26 @@ def test_without_time_only_what_is_known_is_claimed():
 def test_a_start_that_is_not_admissible_is_refused():
     problem = Problem.compile(muster.load("16T-3R"))
     with pytest.raises(ParameterError, match="not admissible"):
-        solve_exactly(problem, 1.0, start=[[1], [], []])  # without its prerequisite
+        solve_exactly(problem, 1.0, start=[[1], [], []], judge=admits)  # without its prerequisite
 
 
 def test_no_tasks():
     mission = Mission(robots=(Robot(id="r", position=(0, 0)),), tasks=())
-    result = solve_exactly(Problem.compile(mission), 1.0)
+    result = solve_exactly(Problem.compile(mission), 1.0, judge=admits)
     assert (result.routes, result.lower_bound, result.optimal) == ([[]], 0, True)
 
 
-def test_capacities_hold_in_real_numbers():
-    """The cheapest route is above the capacity by less than the program's rounding, and is not taken."""
+@pytest.mark.parametrize(("above", "routes"), [(1e-11, [[0]]), (1e-8, [[]])])
+def test_a_capacity_holds_as_far_as_the_judge_says(above, routes):
+    """A usage above a capacity by less than the judge's rounding keeps it; by more it does not."""
     mission = Mission(
         rules=Rules(objective="total"),
-        robots=(Robot(id="r", position=(0, 0), work_capacity=5 * (1 - 1e-11)),),
+        robots=(Robot(id="r", position=(0, 0), work_capacity=5 * (1 - above)),),
         tasks=(Task(id="1", position=(3, 4)),),
     )
-    result = solve_exactly(Problem.compile(mission), 5.0)
-    assert result.routes == [[]]
+    result = solve_exactly(Problem.compile(mission), 5.0, judge=admits)
+    assert result.routes == routes
+    assert result.optimal
 
 
 def test_scale_rounds_costs_down():
@@ -167,7 +170,7 @@ def test_priorities_too_fine_are_refused():
     tasks = tuple(Task(id=str(k), position=(k, 0), priority=p) for k, p in enumerate((1e-30, 1)))
     mission = Mission(robots=(Robot(id="r", position=(0, 0)),), tasks=tasks)
     with pytest.raises(ParameterError, match="too many digits"):
-        solve_exactly(Problem.compile(mission), 1.0)
+        solve_exactly(Problem.compile(mission), 1.0, judge=admits)
 
 
 def test_without_ortools_one_line_says_what_to_install(monkeypatch):
@@ -180,18 +183,18 @@ def test_without_ortools_one_line_says_what_to_install(monkeypatch):
 
     monkeypatch.setattr(builtins, "__import__", absent)
     with pytest.raises(MissingExtraError, match=r"pip install 'muster-robotics\[exact\]'"):
-        solve_exactly(Problem.compile(muster.load("6T-2R")), 1.0)
+        solve_exactly(Problem.compile(muster.load("6T-2R")), 1.0, judge=admits)
 
 
 def test_an_interrupted_proof_ends_with_what_is_proven():
     """Interrupted at once nothing but the quick bounds is known; interrupted under way, soon after it."""
     problem = Problem.compile(muster.load("24T-5R"))
     start = routes_of(problem, muster.solve(problem.mission, iterations=300))
-    at_once = solve_exactly(problem, 1000.0, start, interrupted=lambda: True)
+    at_once = solve_exactly(problem, 1000.0, start, interrupted=lambda: True, judge=admits)
     assert at_once.routes == start
     assert not at_once.optimal
     assert at_once.lower_bound == SHARP(lower_bound(problem))
     looks = iter(range(10))
-    under_way = solve_exactly(problem, 1000.0, start, interrupted=lambda: next(looks, None) is None)
+    under_way = solve_exactly(problem, 1000.0, start, interrupted=lambda: next(looks, None) is None, judge=admits)
     assert under_way.weight == at_once.weight
     assert under_way.lower_bound >= at_once.lower_bound

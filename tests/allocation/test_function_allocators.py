@@ -7,6 +7,7 @@ from muster.allocation.allocator import Allocator
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS, allocator_of
 from muster.allocation.stop import Stop
+from muster.mission.model import Robot, Rules, Task
 
 
 def nearest(problem, stop, seed, most=2):
@@ -142,3 +143,47 @@ def test_routes_that_deadlock_are_refused_in_one_line():
 
     with pytest.raises(muster.ParameterError, match=r"^routes: tasks wait for each other for ever; expected"):
         solved(waiting_for_each_other)
+
+
+MISSIONS = {
+    "euclidean": {},
+    "in time": {"usage": "time", "return_to_start": True},
+    "profile": {"usage": "time", "timing": "profile"},
+}
+
+
+def tour(problem):
+    """Give the first robot all tasks that it may do, in order."""
+    return [[j for j in range(len(problem.tasks)) if problem.may(0, j)], *([] for _ in problem.robots[1:])]
+
+
+@pytest.mark.parametrize("rules", MISSIONS.values(), ids=MISSIONS)
+def test_the_legs_of_a_problem_sum_to_what_the_judge_measures(rules):
+    """docs/extending.md, Distances: usage is the sum of legs, work and the way to the end of the route."""
+    first, second = (Robot(id=name, position=(k, 1), speed_mps=2, acceleration_mps2=1) for k, name in enumerate("ab"))
+    tasks = tuple(
+        Task(id=str(k), position=(3 * k, k * k), exit=(3 * k, 9), duration_s=2, actuation_cost=k) for k in range(4)
+    )
+    mission = muster.Mission(rules=Rules(**rules), robots=(first, second), tasks=tasks)
+    problem = Problem.compile(mission)
+    assert_legs_are_those_of_the_judge(mission, problem)
+
+
+@pytest.mark.parametrize("name", ["depot", "31T-6R50", "field-survey"])
+def test_the_legs_of_shipped_missions_sum_to_what_the_judge_measures(name):
+    mission = muster.load(name)
+    assert_legs_are_those_of_the_judge(mission, Problem.compile(mission))
+
+
+def assert_legs_are_those_of_the_judge(mission, problem):
+    (route, *_) = routes = tour(problem)
+    robot = problem.robots[0]
+    places = [problem.start(0), *route]
+    legs = problem.legs(0, places, [*route, problem.end(0)])
+    usage = sum(float(legs[k, k]) for k in range(len(route))) + float(problem.work_usage(0)[route].sum())
+    if robot.place_at_end(mission.rules) is not None:
+        usage += float(legs[len(route), len(route)])
+    by_robot = {r.id: [problem.tasks[j].id for j in own] for r, own in zip(problem.robots, routes, strict=True)}
+    verdict = muster.verify(mission, by_robot)
+    judged = next(figures.usage for figures in verdict.routes if figures.robot == robot.id)
+    assert usage == pytest.approx(judged, rel=1e-6)

@@ -14,7 +14,7 @@ from muster.allocation.remedies import remedies
 from muster.mission.events import Event
 from muster.mission.model import Lag
 from muster.mission.plan import Reason, Unassigned
-from muster.planning.explaining.explanations import admits
+from muster.planning.judging import admits
 from muster.verification import verify
 
 ABLE = ("greedy", "hill-climbing", "genetic", "greedy+genetic", "search")
@@ -91,7 +91,7 @@ def test_search_and_proof_find_the_best_of_all_plans(least):
     from muster.allocation.exact import solve_exactly
 
     problem = Problem.compile(mission)
-    exact = solve_exactly(problem, 20.0)
+    exact = solve_exactly(problem, 20.0, judge=admits)
     assert exact.optimal
     assert problem.value(exact.routes) == pytest.approx(expected)
 

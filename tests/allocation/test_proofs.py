@@ -9,6 +9,7 @@ from muster.allocation.exact import solving
 from muster.allocation.problem import Problem
 from muster.allocation.proofs import prove
 from muster.allocation.stop import Stop
+from muster.planning.judging import admits
 
 
 def test_a_complete_plan_has_a_bound_below_its_objective():
@@ -44,7 +45,7 @@ def test_a_bound_above_the_value_is_an_internal_error(proof, monkeypatch):
     monkeypatch.setattr(proofs, "best_bound", lambda problem: unsound)
     monkeypatch.setattr(solving, "best_bound", lambda problem: unsound)
     with pytest.raises(muster.MusterError, match=r"^internal error: a lower bound of .*: the farthest task"):
-        prove(Problem.compile(mission), plan, proof, Stop())
+        prove(Problem.compile(mission), plan, proof, Stop(), judge=admits)
 
 
 @pytest.mark.parametrize("above", [0.0, 1e-10])
@@ -64,12 +65,12 @@ def test_why_a_bound_holds_or_is_missing():
     pytest.importorskip("ortools")
     problem = Problem.compile(muster.load("11T-2R"))
     plan = muster.solve(problem.mission, "greedy")
-    assert prove(problem, plan, "quick", Stop()).why == best_bound(problem).why
-    exact = prove(problem, plan, "exact", Stop(), 20.0)
+    assert prove(problem, plan, "quick", Stop(), judge=admits).why == best_bound(problem).why
+    exact = prove(problem, plan, "exact", Stop(), 20.0, judge=admits)
     assert exact.plan.lower_bound == pytest.approx(exact.plan.objective_value)
     assert "leave no room for a better plan" in exact.why
     crowded = Problem.compile(muster.load("31T-3R44-3R26"))
-    unknown = prove(crowded, muster.solve(crowded.mission, "greedy"), "exact", Stop(), 1e-9)
+    unknown = prove(crowded, muster.solve(crowded.mission, "greedy"), "exact", Stop(), 1e-9, judge=admits)
     assert unknown.plan.lower_bound is None
     assert unknown.why.startswith("whether more tasks can be done is not known")
 

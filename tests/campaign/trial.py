@@ -10,6 +10,7 @@ from muster.allocation.exact import solve_exactly
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
+from muster.planning.judging import admits
 from muster.verification import verify
 from tests import trials
 from tests.all_plans import best_plan
@@ -135,7 +136,7 @@ def _reached(report, problem, best, found):
 
 def _exactly(report, problem, best):
     """The exact solver finds the best of all plans, and its bound is below it."""
-    exact = solve_exactly(problem, 20.0)
+    exact = solve_exactly(problem, 20.0, judge=admits)
     said, value = problem.value(exact.routes), best[1]
     report.counts["exact"] += 1
     report.check(exact.optimal, f"exact: {said} is not proven optimal; the best of all plans is {best}")

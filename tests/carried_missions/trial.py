@@ -7,6 +7,7 @@ from muster import core
 from muster.allocation.bounds import lower_bound
 from muster.allocation.exact import solve_exactly
 from muster.allocation.problem import Problem
+from muster.planning.judging import admits
 from muster.verification import verify
 from tests import trials
 from tests.carried_missions.every_plan import EveryPlan
@@ -98,7 +99,7 @@ class Trial:
 
     def exactly(self):
         """The exact solver finds the best of all plans; its proofs and bounds are true."""
-        exact = solve_exactly(self.problem, EXACT_S)
+        exact = solve_exactly(self.problem, EXACT_S, judge=admits)
         weight, value = self.problem.value(exact.routes)
         self.report.counts["exact"] += 1
         self.report.counts["exact: proven"] += exact.optimal

@@ -16,7 +16,7 @@ from muster.allocation.remedies import remedies
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan, Route
-from muster.planning.explaining.explanations import admits
+from muster.planning.judging import admits
 from muster.verification import verify
 from tests import trials
 from tests.timed_missions.every_plan import EveryPlan
@@ -185,7 +185,7 @@ class Trial:
 
     def exactly(self, problem):
         """The exact solver finds the best of all plans and proves it."""
-        exact = solve_exactly(problem, EXACT_S)
+        exact = solve_exactly(problem, EXACT_S, judge=admits)
         number = [self.meaning.number[task.id] for task in problem.tasks]
         by_robot = {r.id: [number[j] for j in one] for r, one in zip(problem.robots, exact.routes, strict=True)}
         routes = tuple(tuple(by_robot[robot.id]) for robot in self.mission.robots)

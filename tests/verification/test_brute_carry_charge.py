@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import pytest
-from tests.brute_carry_charge import best_plan
 from tests.carry_charge import battery, charger, depot, mission, robot, swapper, task
+from tests.judged_plans import best_plan
 from tests.random_carry_charge import random_mission, random_plan
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning

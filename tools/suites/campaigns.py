@@ -35,6 +35,7 @@ CAMPAIGNS = [
     Campaign(1, "campaign-times", 600, 5_000),
     Campaign(2, "campaign-carry", 300, 3_000),
     Campaign(3, "campaign-auction", 1_000, 10_000),
+    Campaign(6, "campaign-mixed", 500, 10_000),
     Campaign(4, "campaign-auction", 200, 2_000, "--timed {seeds} --first {first}"),
     Campaign(5, "disturbances", 1_000, 10_000),
     Campaign(6, "disturbances-timed", 200, 2_000),

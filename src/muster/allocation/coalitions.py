@@ -197,9 +197,11 @@ class CoalitionAuction:
             self._rosters.insert(0, WorkingRoster(self._latest_ends.binding(self.routes), self.routes))
 
     def is_alone(self, unit: int) -> bool:
-        """Whether a unit is one task for one robot."""
+        """Whether a unit is one task for one robot, and so is what can only be done together with it."""
         rules = self._problem.timed_rules
-        return len(rules.units[unit]) == 1 and not rules.is_for_team(rules.units[unit][0])
+        whole = [k for j in rules.units[unit] for k in self._problem.with_partner(j)]
+        alone = all(len(rules.units[rules.unit[k]]) == 1 and not rules.is_for_team(k) for k in whole)
+        return alone and len(whole) <= 2
 
     def _of_robots(self, unit: int, robots: Sequence[int]) -> Iterator[CoalitionBid]:
         (task,) = self._problem.timed_rules.units[unit]

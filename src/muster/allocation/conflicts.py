@@ -18,6 +18,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.subset_times import tied_pairs
 from muster.allocation.usage_bounds import UsageBounds
 from muster.allocation.witness_plans import Judge, attempt, can_do, closed, does_all, least_seconds
+from muster.allocation.work_shortfall import Shortfall, shortfalls
 from muster.mission.clock import Clock, SystemClock
 
 _LEFT_OUT_TRIED = 5
@@ -46,11 +47,18 @@ class Conflict:
 class Together:
     """Whether one plan can do all tasks that are possible by themselves: it can if there is neither conflict nor doubt.
 
-    `unknown` tells that no plan of them all was found, and none was proven impossible.
+    `unknown` tells that no plan of them all was found, and none was proven impossible. `shortfalls` are the proofs that
+    their work is too much for the robots before any travel.
     """
 
     conflict: Conflict | None = None
     unknown: bool = False
+    shortfalls: tuple[Shortfall, ...] = ()
+
+    @property
+    def proven(self) -> bool:
+        """Whether no plan can do them all."""
+        return self.conflict is not None or bool(self.shortfalls)
 
 
 def together(problem: Problem, judge: Judge, *, time_limit: float = 2.0, clock: Clock | None = None) -> Together:
@@ -68,13 +76,16 @@ def together(problem: Problem, judge: Judge, *, time_limit: float = 2.0, clock: 
         return Together(unknown=True)
     lost = {item.task for item in impossible(problem)}
     tasks = [j for j, task in enumerate(problem.tasks) if task.id not in lost]
+    bounds = UsageBounds(problem)
+    if short := shortfalls(problem, tasks, bounds):
+        proven = _proven(bounds, tasks, (), left)
+        return Together(None if proven is None else _minimal(bounds, proven, judge, left, clock), shortfalls=short)
     for seed in itertools.count():
         share = left() if seed > _BEFORE_PROOFS else left() / 3
         routes = attempt(problem, tasks, seed=seed, time_limit=share, clock=clock)
         if does_all(problem, routes, tasks, judge):
             return Together()
         if seed == _BEFORE_PROOFS:
-            bounds = UsageBounds(problem)
             proven = _proven(bounds, tasks, set(tasks).difference(*routes), left)
             if proven is not None:
                 return Together(_minimal(bounds, proven, judge, left, clock))

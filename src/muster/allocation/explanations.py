@@ -70,17 +70,24 @@ def _reason(problem: Problem, plan: InPlan, i: int, j: int) -> Reason:
         detail = rule.left_out(plan, i, j)
         if detail is not None:
             return Reason(problem.robots[i].id, rule.word, detail)
-    at, usage = _fitting(plan, i, j)
+    fitting = _fitting(plan, i, j)
+    if fitting is None:
+        return Reason(
+            problem.robots[i].id, "not-chosen", "fits at none of the places that were tried, which were not all"
+        )
+    at, usage = fitting
     detail = f"fits as number {at + 1}, for {usage:.2f} {problem.usage_unit} in all"
     return Reason(problem.robots[i].id, "not-chosen", detail)
 
 
-def _fitting(plan: InPlan, i: int, j: int) -> tuple[int, float]:
-    """Where a task fits into the route of a robot that no rule keeps from it, and the usage of the route with it."""
+def _fitting(plan: InPlan, i: int, j: int) -> tuple[int, float] | None:
+    """Where a task fits into the route of a robot that no rule keeps from it, and the usage of the route with it.
+
+    None where no place was found, and not all were looked at.
+    """
     if isinstance(plan, TimedPlaces):
         found = plan.outcome(i, j)
-        assert found.place is not None  # or a rule would have said why
-        return found.place.at, found.usage
+        return None if found.place is None else (found.place.at, found.usage)
     insertion = plan.insertion(i, j)
     assert insertion is not None  # or a rule would have said why
     return insertion.at, insertion.usage
@@ -131,7 +138,10 @@ def _alternative(problem: Problem, plan: InPlan, i: int, j: int) -> Alternative:
     why = _reason(problem, plan, i, j)
     if why.reason != "not-chosen":
         return Alternative(why.robot, None, None, why)
-    at, _ = _fitting(plan, i, j)
+    fitting = _fitting(plan, i, j)
+    if fitting is None:
+        return Alternative(why.robot, None, None, why)
+    at, _ = fitting
     objective = core.Inspection(problem.core, plan.with_task(i, j, at)).objective
     finite = objective if objective is not None and math.isfinite(objective) else None
     return Alternative(why.robot, at + 1, finite, None)

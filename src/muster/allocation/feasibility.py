@@ -39,7 +39,7 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
 
     def reasons(j: int) -> tuple[Reason, ...]:
         befores = (lost[j], lost_before(j))  # a bound may have held only until what comes before it was lost
-        return tuple(_reason(problem, i, j, _outlooks(limits, i, j, befores)) for i in robots)
+        return tuple(_reason(problem, limits, i, j, _outlooks(limits, i, j, befores)) for i in robots)
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in order if j in lost)
 
@@ -103,11 +103,20 @@ def _least_usage_with(problem: Problem, i: int, tasks: Sequence[int] | Indices) 
     return np.asarray(there + problem.legs(i, tasks, [problem.end(i)])[:, 0])
 
 
-def _reason(problem: Problem, i: int, j: int, outlooks: Iterable[Outlook]) -> Reason:
-    """Why robot i can never do task j, which nobody can; the first outlook counts in which there is a reason."""
+def _reason(problem: Problem, limits: Limits, i: int, j: int, outlooks: Iterable[Outlook]) -> Reason:
+    """Why robot i can never do task j, which nobody can; the first outlook counts in which there is a reason.
+
+    Where no rule has words for it the rule that excluded the pair is named; where none did, no rule is.
+    """
+    robot = problem.robots[i].id
     found = ((rule.word, rule.never(problem, i, j, outlook)) for outlook in outlooks for rule in problem.rules)
-    word, detail = next((word, detail) for word, detail in found if detail is not None)
-    return Reason(problem.robots[i].id, word, detail)
+    said = next(((word, detail) for word, detail in found if detail is not None), None)
+    if said is not None:
+        return Reason(robot, *said)
+    excluded = limits.rule_that_excluded(i, j) if limits.is_timed else None
+    if excluded is None:
+        return Reason(robot, "not-chosen", "no plan does the task, whoever might")
+    return Reason(robot, excluded[0], "no plan in which it does the task keeps the rule")
 
 
 def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:

@@ -116,6 +116,21 @@ class Limits:
         """These bounds with the times by which a pair was excluded; later ones may hold for the pairs left alone."""
         return self._at_steps[int(self._survived[i, j])]
 
+    def rule_that_excluded(self, i: int, j: int) -> tuple[str, Limits] | None:
+        """The rule that excluded a pair, with the bounds and the pairs left at that time; None: none, as far as known.
+
+        Rules that look at one robot come first, as they did then.
+        """
+        survived = int(self._survived[i, j]) if self.steps else 0
+        if survived >= len(self.steps) or not self.problem.allowed[i, j]:
+            return None
+        step = self.steps[survived]
+        for rule in sorted(self.problem.rules, key=lambda rule: not rule.about_one):
+            possible = rule.possible(step)
+            if possible is not None and not possible[i, j]:
+                return rule.word, step
+        return None
+
     @cached_property
     def _at_steps(self) -> tuple[Limits, ...]:
         steps = (replace(one, usable=self.usable, steps=self.steps[:k]) for k, one in enumerate(self.steps))

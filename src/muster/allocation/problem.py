@@ -26,7 +26,7 @@ from muster.allocation.waiting import NO_WAITING, Waiting
 from muster.allocation.work_times import work_times
 from muster.mission.errors import ParameterError
 from muster.mission.garbage import collector_paused
-from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
+from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Station, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
@@ -190,11 +190,34 @@ class Problem:
         return found
 
     def with_partner(self, j: int) -> tuple[int, ...]:
-        """A task, with the other one of its transport in the order in which they are done."""
-        other = self.partners[j]
-        if other is None:
+        """A task, with all that can only be done together with it where transports are among them, in order.
+
+        Those are the other task of its transport, what begins with either, and what waits for one of them while
+        another waits for it.
+        """
+        whole = (
+            [k for k in self.closed([j]) if j in self.closed([k])] if any(k is not None for k in self.partners) else []
+        )
+        if all(self.partners[k] is None for k in whole):
             return (j,)
-        return (other, j) if self.tasks[j].delivers is not None else (j, other)
+        ordered: list[int] = []
+        while len(ordered) < len(whole):
+            left = [k for k in whole if k not in ordered]
+            free = [k for k in left if not set(self.awaited[k]).intersection(left)]
+            ordered.append(min(free or left))
+        return tuple(ordered)
+
+    def closed(self, tasks: Iterable[int]) -> list[int]:
+        """Tasks with all that must come before them, begin with them or deliver their goods, in order."""
+        needed, rules = set(tasks), self.timed_rules
+        waiting = list(needed)
+        while waiting:
+            j = waiting.pop()
+            partner = self.partners[j]
+            new = {*self.prerequisites[j], *rules.beginning_with(j), *([] if partner is None else [partner])} - needed
+            needed |= new
+            waiting += new
+        return sorted(needed)
 
     @cached_property
     def awaited(self) -> list[list[int]]:
@@ -445,13 +468,11 @@ class Problem:
         return self.mission.stations
 
     @cached_property
-    def usage_with_calls(self) -> Floats:
-        """(m, n) what a route with one task, or one transport, uses with its calls at stations; inf: it runs short.
+    def energy_reaches(self) -> Bools:
+        """(m, n) whether a robot's energy may last for a task, as far as these two alone tell."""
+        from muster.allocation.energy_reach import energy_reaches
 
-        Nothing else is looked at: no capacities, times, loads.
-        """
-        others = tuple(rule for rule in IGNORABLE if rule != "battery")
-        return core.usage_with_calls(replace(self, ignored=others, fixed=()).core, pickups(self))
+        return energy_reaches(self)
 
     def value(self, routes: Sequence[Sequence[int]]) -> tuple[float, float]:
         """Weight completed and objective of routes, which need not be admissible.

@@ -10,6 +10,7 @@ from muster.allocation.bounds import Bound, best_bound, sound_bound
 from muster.allocation.exact import require_ortools, solve_exactly
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
+from muster.allocation.witness_plans import Judge
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
 
@@ -58,6 +59,8 @@ def prove(
     stop: Stop,
     time_limit: float | None = None,
     quick: Bound | None = None,
+    *,
+    judge: Judge,
 ) -> Proof:
     """Bound the objective of a plan; an exact solver may find a better plan on the way.
 
@@ -70,6 +73,8 @@ def prove(
         of the run that made the plan.
     quick
         the quick bound, where it is known already.
+    judge
+        whether a plan is admissible, some rules ignored.
 
     Raises
     ------
@@ -79,7 +84,7 @@ def prove(
         if a bound is above the value of a plan: an internal error.
     """
     require_provable(problem, proof)
-    return _quick(problem, plan, quick) if proof == "quick" else _exact(problem, plan, stop, time_limit)
+    return _quick(problem, plan, quick) if proof == "quick" else _exact(problem, plan, stop, time_limit, judge)
 
 
 def _quick(problem: Problem, plan: Plan, known: Bound | None) -> Proof:
@@ -94,10 +99,10 @@ def _quick(problem: Problem, plan: Plan, known: Bound | None) -> Proof:
     return Proof(replace(plan, lower_bound=sound_bound(bound.value, value, bound.why)), bound.why)
 
 
-def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -> Proof:
+def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None, judge: Judge) -> Proof:
     seconds = EXACT_TIME_LIMIT_S if time_limit is None else time_limit
     start = routes_of(problem, plan)
-    result = solve_exactly(problem, seconds, start, plan.seed or 0, interrupted=lambda: stop.interrupted)
+    result = solve_exactly(problem, seconds, start, plan.seed or 0, interrupted=lambda: stop.interrupted, judge=judge)
     weight, objective = problem.value(result.routes)
     found, known = (-weight, objective), (-(plan.weight_completed or 0.0), plan.objective_value or 0.0)
     if found < known or (found == known and _is_cheaper(problem, result.routes, plan)):

@@ -14,11 +14,13 @@ import numpy as np
 from muster import core
 from muster.allocation.bottleneck import fills
 from muster.allocation.problem import Problem
+from muster.allocation.route_bounds import RouteBounds
 from muster.allocation.rules import RULES
 from muster.allocation.rules.deadline import too_late
 from muster.allocation.rules.rule import ROUNDING, InPlan
 from muster.allocation.rules.shift import beyond
 from muster.allocation.rules.window import closed
+from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.model import Task
 
 _RELAXED = {rule.word: rule for rule in RULES if rule.lifted_late}
@@ -26,6 +28,7 @@ _RELAXED = {rule.word: rule for rule in RULES if rule.lifted_late}
 
 _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
 _MOST_TEAMS = 60
+_MOST_OF_WHOLE = 2_000  # ways to place inseparable tasks
 
 Member = tuple[int, int]
 """A robot, and the task that it does."""
@@ -44,7 +47,10 @@ class Place:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The best admissible place, with the usage of the robot; or the rule that leaves none, and how."""
+    """The best admissible place, with the usage of the robot; or the rule that leaves none, and how.
+
+    Without a place and a rule not all places were looked at, and none of those that were is admissible.
+    """
 
     place: Place | None = None
     usage: float = math.inf
@@ -62,8 +68,10 @@ class TimedPlaces(InPlan):
         self.routes = [list(route) for route in routes]
         self.inspection = core.Inspection(problem.core, self.routes)
         self.done = {j for route in routes for j in route}
+        self._looked_at_some = set[tuple[int, int]]()  # pairs of which not all places are looked at
         self.outcome = cache(self._outcome)
         self.without = cache(self._without)
+        self.bounds_without = cache(lambda words: RouteBounds(self.without(words)))
 
     def members(self, j: int) -> Sequence[int]:
         return [i for i, route in enumerate(self.routes) if j in route]
@@ -82,36 +90,44 @@ class TimedPlaces(InPlan):
         if missing := self._left_out_with(j):
             return Outcome(word="relation", detail=missing)
         if missing := self._transport_lacks(i, j):
-            return Outcome(word="load", detail=missing)
+            return Outcome(word=self._word_of_whole(j), detail=missing)
         places = self.places(i, j)
         best = min(self._admissible(self.problem, places), key=lambda one: one[1].usages[i], default=None)
         if best is not None:
             return Outcome(best[0], best[1].usages[i])
+        if (i, j) in self._looked_at_some:
+            return Outcome()
         if not places:
             return Outcome(word="relation", detail="no team for it keeps its relations to the tasks of the plan")
         return self._refused(i, j, places)
 
     def _left_out_with(self, j: int) -> str:
         """What the tasks that begin together with a task lack; empty: nothing."""
-        problem = self.problem
+        problem, whole = self.problem, self.problem.with_partner(j)
         for k in problem.timed_rules.beginning_with(j):
             if k in self.done:
                 continue
-            before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done]
+            before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done and b not in whole]
             if before:
                 return f"begins together with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
         return ""
 
+    def _word_of_whole(self, j: int) -> str:
+        """The rule by which a task can only be done together with the tasks of a transport."""
+        if self.problem.partners[j] is not None:
+            return "load"
+        return "relation" if self.problem.timed_rules.beginning_with(j) else "prerequisite"
+
     def _transport_lacks(self, i: int, j: int) -> str:
         """What keeps robot i from the other task of a transport; empty: nothing."""
-        problem, other = self.problem, self.problem.partners[j]
-        if other is None:
-            return ""
-        with_it = f"comes with {problem.tasks[other].id}"
-        if not problem.may(i, other) or not self._keeps_relations(i, other):
-            return f"{with_it}, which it cannot do"
-        before = [problem.tasks[k].id for k in problem.prerequisites[other] if k not in self.done and k != j]
-        return f"{with_it}; left out before that: {', '.join(before)}" if before else ""
+        problem, other, whole = self.problem, self.problem.partners[j], self.problem.with_partner(j)
+        if other is not None and (not problem.may(i, other) or not self._keeps_relations(i, other)):
+            return f"comes with {problem.tasks[other].id}, which it cannot do"
+        for one in whole if len(whole) > 1 else ():
+            before = [problem.tasks[k].id for k in problem.prerequisites[one] if k not in self.done and k not in whole]
+            if before and one != j:
+                return f"comes with {problem.tasks[one].id}; left out before that: {', '.join(before)}"
+        return ""
 
     @staticmethod
     def _admissible(problem: Problem, places: Iterable[Place]) -> list[tuple[Place, core.Inspection]]:
@@ -128,9 +144,41 @@ class TimedPlaces(InPlan):
             return self._no_order(i, j, places)
         for at, word in enumerate(words):
             before, left = left, self._admissible(self.without(words[at + 1 :]), [place for place, _ in left])
+            if not left and (tie := self._tie_to_others(j)) and not self._is_by_itself(word, i, j, before):
+                detail = f"at every place in its route another robot that it needs would break the rule {word}"
+                return Outcome(word=tie, detail=detail)
+            if not left and _RELAXED[word].kept_by_calls and not self._is_proven(words[at + 1 :], i, before):
+                return Outcome()
             if not left:
                 return Outcome(word=word, detail=self._detail(word, i, j, before))
         raise AssertionError("a place that keeps all rules is admissible")
+
+    def _is_proven(self, later: Sequence[str], i: int, left: list[tuple[Place, core.Inspection]]) -> bool:
+        """Whether robot i cannot do its route with the task at any place, wherever it calls at stations."""
+        if not self.problem.stations:
+            return True
+        bounds = self.bounds_without(tuple(later))
+        return all(bounds.excludes(i, place.routes[i]) for place, _ in left)
+
+    def _tie_to_others(self, j: int) -> str:
+        """The rule by which other robots must do something beside one that does a task; empty: none."""
+        rules = self.problem.timed_rules
+        if rules.beginning_with(j):
+            return "relation"
+        if rules.is_for_team(j):
+            return "team"
+        return "relation" if len(self.problem.with_partner(j)) > 2 else ""
+
+    def _is_by_itself(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> bool:
+        """Whether a rule is broken at all places by the route of robot i, whatever the others do."""
+        rule = _RELAXED[word]
+        if not rule.of_a_route or (rule.names_robots and len(self.problem.with_partner(j)) <= 2):
+            return True
+        alone = replace(
+            self.problem, ignored=tuple(one for one in IGNORABLE if one != word), fixed=(), known=self.problem.measured
+        )
+        own = ([place.routes[i] if k == i else [] for k in range(len(self.routes))] for place, _ in left)
+        return not any(core.Inspection(alone.core, routes).admissible for routes in own)
 
     def _without(self, words: Sequence[str]) -> Problem:
         """The problem in which some rules do not hold; windows still open, and the last ones do not close."""
@@ -204,23 +252,67 @@ class TimedPlaces(InPlan):
 
     def places(self, i: int, j: int) -> list[Place]:
         """Ways to put task j into the route of robot i; of teams those that can begin first."""
-        if self.problem.partners[j] is not None:
-            return list(self._of_transport(i, j))
+        whole = self.problem.with_partner(j)
+        if len(whole) > 1:
+            return self._of_whole(i, j, whole)
         found: list[Place] = []
-        for team in itertools.islice(self._teams(i, j), _MOST_TEAMS):
+        for number, team in enumerate(self._teams(i, j)):
+            if number == _MOST_TEAMS:
+                self._looked_at_some.add((i, j))
+                break
             gaps = [self._gaps(robot) for robot, _ in team]
             if len(team) == 1:
                 combinations: Iterable[tuple[int, ...]] = itertools.product(*gaps)
             else:
                 combinations = self._earliest(team, gaps)
+                if len(combinations) < math.prod(map(len, gaps)):
+                    self._looked_at_some.add((i, j))
             found += [self._put(i, team, at) for at in combinations]
             if len(team) > 1 and len(found) >= _MOST_PLACES:
+                self._looked_at_some.add((i, j))
                 break
         return found
 
-    def _of_transport(self, i: int, j: int) -> Iterator[Place]:
+    def _of_whole(self, i: int, j: int, whole: Sequence[int]) -> list[Place]:
+        """The places of tasks that can only be done together."""
+        rules = self.problem.timed_rules
+        if len(whole) == 2 and not any(rules.is_for_team(k) or rules.beginning_with(k) for k in whole):
+            return list(self._of_transport(i, j, whole))
+        units = [[k for k in whole if rules.unit[k] == unit] for unit in dict.fromkeys(rules.unit[k] for k in whole)]
+        ways = self._grown(units, self.routes, {}, i, j)
+        found = [Place(routes[i].index(j), routes) for routes in itertools.islice(ways, _MOST_OF_WHOLE)]
+        if next(ways, None) is not None:
+            self._looked_at_some.add((i, j))
+        return found
+
+    def _grown(
+        self, units: Sequence[list[int]], routes: list[list[int]], teams: dict[int, tuple[int, ...]], i: int, j: int
+    ) -> Iterator[list[list[int]]]:
+        """Routes with units of inseparable tasks, one after the other, each with the teams that it can have."""
+        if not units:
+            if i in teams[j]:
+                yield routes
+            return
+        for chosen in itertools.product(*(list(self._teams_in_whole(k, teams)) for k in units[0])):
+            members = [(robot, k) for k, team in zip(units[0], chosen, strict=True) for robot in team]
+            if len({robot for robot, _ in members}) < len(members):
+                continue
+            gaps = [range(len(self.problem.beginning(robot)), len(routes[robot]) + 1) for robot, _ in members]
+            for at in itertools.product(*gaps):
+                longer = self._with_members(routes, members, at)
+                yield from self._grown(units[1:], longer, {**teams, **dict(zip(units[0], chosen, strict=True))}, i, j)
+
+    def _teams_in_whole(self, k: int, teams: dict[int, tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
+        """The teams of a task: that of the one whose load it delivers, or all that it can have."""
+        pickup = self.problem.partners[k]
+        if pickup in teams and self.problem.tasks[k].delivers is not None:
+            yield teams[pickup]
+        else:
+            yield from self._teams_of(k, None)
+
+    def _of_transport(self, i: int, j: int, whole: Sequence[int]) -> Iterator[Place]:
         """All places of both tasks of a transport."""
-        first, second = self.problem.with_partner(j)
+        first, second = whole
         if not self._keeps_relations(i, j):
             return
         route = self.routes[i]
@@ -230,10 +322,15 @@ class TimedPlaces(InPlan):
             yield Place(with_both.index(j), routes)
 
     def _put(self, i: int, team: Sequence[Member], at: Sequence[int]) -> Place:
-        routes = list(self.routes)
-        for (robot, task), gap in zip(team, at, strict=True):
-            routes[robot] = [*routes[robot][:gap], task, *routes[robot][gap:]]
+        routes = self._with_members(self.routes, team, at)
         return Place(next(gap for (robot, _), gap in zip(team, at, strict=True) if robot == i), routes)
+
+    @staticmethod
+    def _with_members(routes: list[list[int]], team: Sequence[Member], at: Sequence[int]) -> list[list[int]]:
+        longer = list(routes)
+        for (robot, task), gap in zip(team, at, strict=True):
+            longer[robot] = [*longer[robot][:gap], task, *longer[robot][gap:]]
+        return longer
 
     def _gaps(self, i: int) -> range:
         return range(len(self.problem.beginning(i)), len(self.routes[i]) + 1)

@@ -23,14 +23,7 @@ _OTHERS_WEIGHT = 1e-6  # of a task that only shortens ways
 
 def closed(problem: Problem, tasks: Iterable[int]) -> list[int]:
     """Tasks with all that must come before them, begin with them or deliver their goods, in order."""
-    needed, rules = set(tasks), problem.timed_rules
-    waiting = list(needed)
-    while waiting:
-        j = waiting.pop()
-        new = {*problem.prerequisites[j], *rules.beginning_with(j), *problem.with_partner(j)} - needed
-        needed |= new
-        waiting += new
-    return sorted(needed)
+    return problem.closed(tasks)
 
 
 def least_seconds(problem: Problem) -> float:

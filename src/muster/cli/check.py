@@ -22,7 +22,7 @@ from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError, NotSupportedError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission, Robot
-from muster.mission.plan import Unassigned, json_text
+from muster.mission.plan import json_text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -94,7 +94,7 @@ def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[st
     if form == "json":
         click.echo(json_text({"errors": [error.as_dict() for error in errors], **found.as_dict()}), nl=False)
     else:
-        _print_checked(mission, lost, len(errors))
+        _print_checked(mission, found, len(errors))
         _print_never_used(mission, ignored_rules(ignore))
         _print_touching(mission)
         for one in found.cut_off:
@@ -105,16 +105,21 @@ def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[st
             _print_together(all_others, "all other tasks" if lost else "all tasks")
     if errors:
         return BAD_INPUT
-    incomplete = lost or all_others.conflict or found.blocked
+    incomplete = lost or all_others.proven or found.blocked
     return INCOMPLETE if incomplete and require_complete else DONE
 
 
-def _print_checked(mission: Mission, lost: tuple[Unassigned, ...], errors: int) -> None:
+def _print_checked(mission: Mission, found: Possible, errors: int) -> None:
     from muster.cli.tables import print_table
+    from muster.planning.explaining.phrases import shortfall_lines
 
+    lost = found.impossible
     robots, tasks = counted(len(mission.robots), "robot"), counted(len(mission.tasks), "task")
     stations = f", {counted(len(mission.stations), 'station')}" if mission.stations else ""
     click.echo(f"{mission.name}: {robots}, {tasks}{stations}; {counted(errors, 'error') if errors else 'no errors'}")
+    for short in found.together.shortfalls:
+        for line in shortfall_lines(short):
+            click.echo(line)
     if lost:
         rows = [(item.task, r.robot, r.reason, r.detail) for item in lost for r in item.reasons]
         title = f"{counted(len(lost), 'task')} that can never be done"
@@ -179,6 +184,9 @@ def _touching(robots: Sequence[Robot]) -> list[tuple[Robot, Robot]]:
 def _print_together(found: Together, tasks: str) -> None:
     if found.unknown:
         click.echo(f"no plan for {tasks} was found; none was proven impossible")
+        return
+    if found.conflict is None and found.shortfalls:
+        click.echo(f"no plan can do {tasks} (proven): there is too much work")
         return
     if found.conflict is None:
         click.echo(f"a plan for {tasks} was found")

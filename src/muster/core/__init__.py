@@ -50,7 +50,6 @@ from muster.core._core import (
     rvo,
     spanning_tree,
     squared_distances,
-    usage_with_calls,
 )
 
 __all__ = [
@@ -100,5 +99,4 @@ __all__ = [
     "rvo",
     "spanning_tree",
     "squared_distances",
-    "usage_with_calls",
 ]

@@ -449,11 +449,6 @@ class ScheduleSearch:
     def mean_way(self) -> float:
         """The usual way from one task to the next, in the unit of the objective."""
 
-def usage_with_calls(problem: Problem, pickups: Sequence[int]) -> NDArray[numpy.float64]:
-    """
-    (m, n) what a route with one task uses with its calls at stations, and with the task whose load it delivers (`pickups`, (n,), -1: none), or that delivers its load; inf where the robot runs short.
-    """
-
 class Team:
     """
     Routes while a search changes them, with undo. One thread at a time may use one.

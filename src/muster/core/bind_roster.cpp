@@ -42,10 +42,11 @@ std::optional<UnitInsertion> best_insertion(Roster& roster, int unit, bool appen
 
 std::vector<std::tuple<int, int, int>> members_of(const UnitInsertion& insertion) {
   std::vector<std::tuple<int, int, int>> members;
-  for (const Member& member : insertion.members) members.emplace_back(member.task, member.robot, member.at);
-  if (insertion.second_unit >= 0) {
-    members.emplace_back(insertion.second.task, insertion.second.robot, insertion.second.at);
-  }
+  const auto add = [&](const PlacedUnit& placed) {
+    for (const Member& member : placed.members) members.emplace_back(member.task, member.robot, member.at);
+  };
+  add(insertion);
+  for (const PlacedUnit& other : insertion.others) add(other);
   return members;
 }
 
@@ -64,7 +65,7 @@ std::vector<std::vector<std::tuple<int, double, double, double>>> roster_stops(c
 
 void bind_roster(nb::module_& m) {
   nb::class_<UnitInsertion>(m, "UnitInsertion", "A unit of work with the robots that do it, and what it costs.")
-      .def_ro("unit", &UnitInsertion::unit)
+      .def_prop_ro("unit", [](const UnitInsertion& insertion) { return insertion.unit; })
       .def_ro("score", &UnitInsertion::score, "What the objective grows by, ties broken by the routes' growth.")
       .def_ro("growth", &UnitInsertion::growth, "Of usage, all members together.")
       .def_prop_ro("members", &members_of, "Task, robot and place in its route, of each.");

@@ -14,7 +14,6 @@ void bind_bidders(nanobind::module_& m);
 void bind_annealing(nanobind::module_& m);
 void bind_search(nanobind::module_& m);
 void bind_roster(nanobind::module_& m);
-void bind_station_calls(nanobind::module_& m);
 void bind_schedule_search(nanobind::module_& m);
 void bind_team(nanobind::module_& m);
 void bind_distances(nanobind::module_& m);

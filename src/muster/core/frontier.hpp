@@ -79,11 +79,12 @@ class Frontier {
     push({time, energy});
   }
 
-  // The corner at which a slower charge begins: after it waiting here pays more than what is behind it.
+  // The corner at which a slower charge begins: after it waiting here pays more than what is behind it. Of two charges
+  // at one rate the later one does, whatever rounding says: tasks between them begin earlier then.
   Point corner(double rate) const {
     int k = 0;
-    while (k + 1 < size_ &&
-           points_[k + 1].energy - points_[k].energy > rate * (points_[k + 1].time - points_[k].time)) {
+    while (k + 1 < size_ && points_[k + 1].energy - points_[k].energy >
+                                rate * (1.0 + kSameRate) * (points_[k + 1].time - points_[k].time)) {
       ++k;
     }
     return points_[k];
@@ -111,6 +112,7 @@ class Frontier {
 
  private:
   static constexpr int kMost = 5;
+  static constexpr double kSameRate = 1e-9;
 
   template <class Behind>
   void drop_until(Behind&& behind, Point first) {

@@ -19,7 +19,6 @@ NB_MODULE(_core, m) {
   muster::bind_search(m);
   muster::bind_roster(m);
   muster::bind_schedule_search(m);
-  muster::bind_station_calls(m);
   muster::bind_team(m);
   muster::bind_distances(m);
   muster::bind_grid(m);

@@ -25,17 +25,17 @@ Placement::Placement(Roster& roster)
       busy_(problem_.robots(), 0) {}
 
 const UnitInsertion* Placement::best(int unit, const Trial& trial) {
-  if (const int other = roster_.partner(unit); other >= 0) {
-    const int task = problem_.tasks_of_unit(unit).front(), partner = problem_.tasks_of_unit(other).front();
-    const bool found =
-        problem_.delivers(task) ? best_transport(partner, task, trial) : best_transport(task, partner, trial);
+  if (const auto whole = problem_.inseparable(unit); !whole.empty()) {
+    const bool is_pair = whole.size() == 2 && alone(whole[0]) && alone(whole[1]);
+    const auto task = [&](int each) { return problem_.tasks_of_unit(each).front(); };
+    const bool found = is_pair ? best_transport(task(whole[0]), task(whole[1]), trial) : best_whole(whole, trial);
     return found ? &best_ : nullptr;
   }
   trial_ = &trial;
   best_.unit = unit;
   best_.score = kNever;
   best_.members.clear();
-  best_.second_unit = -1;
+  best_.others.clear();
   labels_ = roster_.timeline_.labels_for(unit);
   if (labels_.empty()) return nullptr;
   relations_.look_at(unit, trial.robots);
@@ -213,13 +213,7 @@ void Placement::try_place(int robot, int task, int at) {
 // the earlier as the lag between them says.
 bool Placement::in_reach(int robot, int task, int at) const {
   if (!problem_.has_within()) return true;
-  const auto place_of = [&](int other) {
-    for (const int number : timeline_.visits_of(problem_.unit(other))) {
-      const Visit& visit = timeline_.visit(number);
-      if (visit.robot == robot && visit.place == other) return visit.at;
-    }
-    return -1;
-  };
+  const auto place_of = [&](int other) { return timeline_.place_of(other, robot); };
   const auto before = problem_.prerequisites(task);
   for (std::size_t k = 0; k < before.size(); ++k) {
     const double within = problem_.within(task, static_cast<int>(k));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -71,6 +72,23 @@ class Placement {
   void try_delivery_at(const Walk& walk, int at);
   bool has_room(int robot, int task, int at) const;
 
+  // Units that are inseparable, where they are not two tasks for one robot each.
+  struct Whole {
+    std::span<const int> units;
+    std::vector<std::vector<int>> cuts;  // by unit: behind how many of the present ones it may go
+    std::vector<int> order;              // the present units by label
+    std::vector<PlacedUnit> placed;      // units before the one that is placed, and this one
+    std::vector<int> cut_of;             // of them
+    int left;                            // how many ways are still judged
+  };
+  bool best_whole(std::span<const int> units, const Trial& trial);
+  std::vector<int> cuts_for(int unit, const std::vector<int>& order, std::size_t most);
+  void place_next(Whole& whole);
+  void place_team(Whole& whole, std::size_t k);
+  std::vector<std::vector<int>> teams_for(const Whole& whole, int task, int k);
+  int place_in_whole(const Whole& whole, int robot) const;
+  void judge_whole(Whole& whole);
+
   // Energy and stations: what a place costs with the calls that the route needs then.
   bool may_call(int robot) const { return calls_ && problem_.may_run_short(robot); }
   double leave(int robot, int at) const;
@@ -132,6 +150,7 @@ class Placement {
   const Trial* trial_ = nullptr;
   StationCalls* calls_;
   UnitInsertion best_;
+  std::unique_ptr<Roster> scratch_;  // in which ways to place inseparable units are judged
   std::vector<Candidate> places_to_judge_;
   // Of a transport.
   Labels second_labels_{0.0, 1.0};

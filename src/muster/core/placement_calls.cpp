@@ -109,8 +109,7 @@ void Placement::take(const Candidate& candidate, double score, double growth) {
   best_.members.assign(1, {task, candidate.robot, candidate.at});
   if (candidate.second_at < 0) return;
   const int partner = problem_.partner(task);
-  best_.second_unit = problem_.unit(partner);
-  best_.second = {partner, candidate.robot, candidate.second_at + 1};
+  best_.others.assign(1, {problem_.unit(partner), {{partner, candidate.robot, candidate.second_at + 1}}});
 }
 
 }  // namespace muster

@@ -192,6 +192,68 @@ void Problem::find_transports() {
       partner_[pickup] = task;
     }
   }
+  find_inseparable();
+}
+
+// The strongly connected components of the graph in which a unit leads to those that must be in the plan with it.
+void Problem::find_inseparable() {
+  std::vector<std::vector<int>> needs(units()), needed(units()), whole(units());
+  const auto arc = [&](int from, int to) {
+    if (from == to) return;
+    needs[from].push_back(to);
+    needed[to].push_back(from);
+  };
+  for (int task = 0; task < tasks_; ++task) {
+    for (const int earlier : prerequisites(task)) arc(unit(task), unit(earlier));
+    if (partner_[task] >= 0) arc(unit(task), unit(partner_[task]));
+  }
+  const auto reached = [&](int from, const std::vector<std::vector<int>>& next) {
+    std::vector<char> seen(units(), 0);
+    std::vector<int> found{from};
+    seen[from] = 1;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      for (const int other : next[found[k]]) {
+        if (!std::exchange(seen[other], 1)) found.push_back(other);
+      }
+    }
+    return std::pair{found, seen};
+  };
+  for (int task = 0; task < tasks_; ++task) {
+    if (partner_[task] < 0 || !whole[unit(task)].empty()) continue;
+    const auto ahead = reached(unit(task), needs);
+    const auto behind = reached(unit(task), needed);
+    std::vector<int> group;
+    for (const int other : ahead.first) {
+      if (behind.second[other]) group.push_back(other);
+    }
+    for (const int other : group) whole[other] = in_order(group);
+  }
+  for (const auto& group : whole) {
+    inseparable_.values.insert(inseparable_.values.end(), group.begin(), group.end());
+    inseparable_.first.push_back(static_cast<int>(inseparable_.values.size()));
+  }
+}
+
+// Units each behind those of them that it waits for.
+std::vector<int> Problem::in_order(std::vector<int> units) const {
+  std::vector<int> ordered;
+  const auto waits = [&](int each) {
+    const auto is_among_them = [&](int task) {
+      return unit(task) != each && std::ranges::find(units, unit(task)) != units.end();
+    };
+    return std::ranges::any_of(tasks_of_unit(each), [&](int task) {
+      return (delivers(task) && is_among_them(partner_[task])) ||
+             std::ranges::any_of(prerequisites(task), is_among_them);
+    });
+  };
+  while (!units.empty()) {
+    const auto next = std::ranges::find_if_not(units, waits);
+    if (next == units.end()) break;  // a circle, which no mission has
+    ordered.push_back(*next);
+    units.erase(next);
+  }
+  ordered.insert(ordered.end(), units.begin(), units.end());
+  return ordered;
 }
 
 void Problem::find_who_may_run_short() {

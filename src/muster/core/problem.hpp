@@ -222,6 +222,11 @@ class Problem {
   // The task with which a task is one transport: that which takes on board what it delivers, or the one that delivers;
   // -1: there is none.
   int partner(int task) const { return data_.pickup.empty() ? -1 : partner_[task]; }
+  // The units that can only be in a plan together with a unit, itself among them, in an order in which they can be
+  // done: those of transports, and what waits for one of them while another waits for it. None: it stands alone.
+  std::span<const int> inseparable(int unit) const {
+    return inseparable_.size() == 0 ? std::span<const int>() : inseparable_[unit];
+  }
   bool delivers(int task) const { return !data_.pickup.empty() && data_.pickup[task] >= 0; }
   int stations() const { return static_cast<int>(data_.stations.size()); }
   const Station& station(int number) const { return data_.stations[number]; }
@@ -310,6 +315,8 @@ class Problem {
   void find_robots_allowed();
   void find_units();
   void find_transports();
+  void find_inseparable();
+  std::vector<int> in_order(std::vector<int> units) const;
   void find_twins();
   bool same_ends(int robot, int other) const;
   void find_who_may_run_short();
@@ -343,6 +350,7 @@ class Problem {
   bool timed_;
   bool symmetric_;
   Rows tasks_of_unit_;
+  Rows inseparable_;
   std::vector<int> partner_, twins_;
   std::vector<char> may_run_short_;
   bool unloads_at_stations_ = false, any_may_run_short_ = false, has_queues_ = false;

@@ -47,23 +47,15 @@ bool Roster::begin(const Routes& routes) {
   return possible;
 }
 
-int Roster::partner(int unit) const {
-  if (!problem_.has_deliveries()) return -1;
-  for (const int task : problem_.tasks_of_unit(unit)) {
-    if (const int other = problem_.partner(task); other >= 0) return problem_.unit(other);
-  }
-  return -1;
-}
-
 bool Roster::ready(int unit) const {
-  const int other = partner(unit);
+  const auto whole = problem_.inseparable(unit);
   const auto there = [&](int before) {
     const int awaited = problem_.unit(before);
-    return present(awaited) || awaited == other || (other >= 0 && awaited == unit);
+    return present(awaited) || std::ranges::find(whole, awaited) != whole.end();
   };
   const auto all_there = [&](int task) { return std::ranges::all_of(problem_.prerequisites(task), there); };
-  return std::ranges::all_of(problem_.tasks_of_unit(unit), all_there) &&
-         (other < 0 || std::ranges::all_of(problem_.tasks_of_unit(other), all_there));
+  const auto is_ready = [&](int each) { return std::ranges::all_of(problem_.tasks_of_unit(each), all_there); };
+  return is_ready(unit) && std::ranges::all_of(whole, is_ready);
 }
 
 bool Roster::fixed(int unit) const {
@@ -79,8 +71,8 @@ const UnitInsertion* Roster::best_insertion(int unit, const Trial& trial) {
 }
 
 bool Roster::insert(const UnitInsertion& insertion) {
-  put_in(insertion.unit, insertion.members);
-  if (insertion.second_unit >= 0) put_in(insertion.second_unit, {&insertion.second, 1});
+  put_in(insertion);
+  for (const PlacedUnit& other : insertion.others) put_in(other);
   return settle_begins();
 }
 
@@ -89,21 +81,22 @@ bool Roster::append(int unit, int robot) {
   const Labels allowed = timeline_.labels_for(unit);
   const double low = std::max(allowed.low, timeline_.stop(robot, last).label);
   if (low >= std::min(allowed.high, timeline_.stop(robot, last + 1).label)) return false;
-  const Member member{problem_.tasks_of_unit(unit).front(), robot, last};
-  put_in(unit, {&member, 1});
+  put_in({unit, {{problem_.tasks_of_unit(unit).front(), robot, last}}});
   return true;
 }
 
-void Roster::put_in(int unit, std::span<const Member> members) {
-  for (const Member& member : members) touch(member.robot);
-  timeline_.insert(unit, members);
-  appear(unit);
-  moves_.emplace_back(unit, true);
+void Roster::put_in(const PlacedUnit& placed) {
+  for (const Member& member : placed.members) touch(member.robot);
+  timeline_.insert(placed.unit, placed.members, placed.before);
+  appear(placed.unit);
+  moves_.emplace_back(placed.unit, true);
 }
 
 void Roster::remove(int unit) {
   take_out(unit);
-  if (const int other = partner(unit); other >= 0 && present(other)) take_out(other);
+  for (const int other : problem_.inseparable(unit)) {
+    if (present(other)) take_out(other);
+  }
 }
 
 void Roster::take_out(int unit) {

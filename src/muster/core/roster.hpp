@@ -13,16 +13,20 @@
 
 namespace muster {
 
-// A unit of work with the robots that do it. `score` is what the objective grows by, ties broken by the routes' growth.
-// With a transport both of its units are placed: `members` says where the first goes, `second` where the other goes
-// then.
-struct UnitInsertion {
+// A unit of work and the robots that do it, at places of their routes.
+struct PlacedUnit {
   int unit = -1;
+  std::vector<Member> members;
+  int before = -1;  // a unit that it comes before, beside those in its routes; -1: none
+};
+
+// A unit of work with the robots that do it. `score` is what the objective grows by, ties broken by the routes' growth.
+// With a transport all units are placed that are inseparable: after the first the others, at places in the routes that
+// have those before.
+struct UnitInsertion : PlacedUnit {
   double score = kNever;
   double growth = 0.0;  // of usage, all members together
-  std::vector<Member> members;
-  int second_unit = -1;
-  Member second;
+  std::vector<PlacedUnit> others;
 };
 
 // Where `best_insertion` looks.
@@ -55,9 +59,7 @@ class Roster {
   const Problem& problem() const { return problem_; }
   const Timeline& timeline() const { return timeline_; }
   bool present(int unit) const { return timeline_.present(unit); }
-  // The unit with which a unit is one transport; -1: none.
-  int partner(int unit) const;
-  // Whether all that a unit waits for is present, its partner aside.
+  // Whether all that a unit waits for is present, what is inseparable from it aside.
   bool ready(int unit) const;
   // Whether a unit stays where it is.
   bool fixed(int unit) const;
@@ -80,7 +82,7 @@ class Roster {
   // Puts a unit that is one task of one robot behind all others of its route, of a transport that alone. False: it must
   // come before what is there. Begins are propagated later.
   bool append(int unit, int robot);
-  // Takes out a unit, and its partner.
+  // Takes out a unit, and all that is inseparable from it.
   void remove(int unit);
   // Takes out what a plan cannot hold when nothing more comes to it: what stands without its prerequisites, with
   // everything that waits for it. `trial` says where what is taken out may be tried again. False: no schedule exists
@@ -97,6 +99,8 @@ class Roster {
   // Whether every present unit has all of its tasks, prerequisites and robots, and relations hold: of routes that
   // others made.
   bool keeps_rules() const;
+  // Whether the robots of a present task may do it together, as far as rules about robots tell.
+  bool has_rightful_team(int task, class TeamChoice& choice) const;
 
   // Of the present units.
   double objective();
@@ -133,7 +137,7 @@ class Roster {
   bool serve();
   bool crowded() const;
   double arrival(int robot, std::size_t number) const;
-  void put_in(int unit, std::span<const Member> members);
+  void put_in(const PlacedUnit& placed);
   void take_out(int unit);
   bool comes_after(int task, int other) const;
   const std::vector<int>& tasks_of(int robot);

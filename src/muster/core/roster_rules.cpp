@@ -175,37 +175,42 @@ bool Roster::keeps_rules() const {
   TeamChoice choice(problem_);
   for (int task = 0; task < problem_.tasks(); ++task) {
     const int unit = problem_.unit(task);
-    if (!present(unit)) continue;
-    const std::vector<int> team = team_of(task);
-    if (!ready(unit) || !choice.does(task, team)) return false;
-    if (const int other = problem_.partner(task); other >= 0) {
-      if (!present(problem_.unit(other)) || team_of(other) != team) return false;
-      if (problem_.delivers(task) && !comes_after(task, other)) return false;
-    }
-    if (!std::ranges::all_of(team, [&](int robot) { return problem_.allowed(robot, task); })) return false;
-    for (const int other : problem_.same_robot(task)) {
-      if (present(problem_.unit(other)) && team_of(other) != team) return false;
-    }
-    for (const int other : problem_.other_robot(task)) {
-      std::vector<int> common;
-      std::ranges::set_intersection(team, team_of(other), std::back_inserter(common));
-      if (!common.empty()) return false;
-    }
+    if (present(unit) && !(ready(unit) && has_rightful_team(task, choice))) return false;
   }
   return true;
 }
 
-// Whether one task comes after another in the same route.
+// Whether robots do a task that may, as many as it needs, and those that its relations to other tasks allow.
+bool Roster::has_rightful_team(int task, TeamChoice& choice) const {
+  const std::vector<int> team = team_of(task);
+  if (!choice.does(task, team)) return false;
+  if (const int other = problem_.partner(task); other >= 0) {
+    if (!present(problem_.unit(other)) || team_of(other) != team) return false;
+    if (problem_.delivers(task) && !comes_after(task, other)) return false;
+  }
+  if (!std::ranges::all_of(team, [&](int robot) { return problem_.allowed(robot, task); })) return false;
+  for (const int other : problem_.same_robot(task)) {
+    if (present(problem_.unit(other)) && team_of(other) != team) return false;
+  }
+  return std::ranges::none_of(problem_.other_robot(task), [&](int other) {
+    std::vector<int> common;
+    std::ranges::set_intersection(team, team_of(other), std::back_inserter(common));
+    return !common.empty();
+  });
+}
+
+// Whether one task comes after another in every route that has both.
 bool Roster::comes_after(int task, int other) const {
-  const auto at = [&](int each) { return timeline_.visit(timeline_.visits_of(problem_.unit(each)).front()).at; };
-  return at(task) > at(other);
+  const auto later = [&](int robot) { return timeline_.place_of(task, robot) > timeline_.place_of(other, robot); };
+  return std::ranges::all_of(team_of(task), later);
 }
 
 void Roster::drop_orphans() {
   if ((!problem_.has_prerequisites() && !problem_.has_deliveries()) || absent_.empty()) return;
   std::vector<int> gone = absent_;
   for (std::size_t k = 0; k < gone.size(); ++k) {
-    if (const int other = partner(gone[k]); other >= 0 && present(other)) {
+    for (const int other : problem_.inseparable(gone[k])) {
+      if (!present(other)) continue;
       take_out(other);
       gone.push_back(other);
     }

@@ -84,11 +84,14 @@ void ScheduleSearch::take_string(int robot, int at, int length) {
 }
 
 void ScheduleSearch::take(int unit) {
-  const int other = roster_.partner(unit);
-  if (!roster_.present(unit) || roster_.fixed(unit) || (other >= 0 && roster_.fixed(other))) return;
+  const auto whole = problem_.inseparable(unit);
+  if (!roster_.present(unit) || roster_.fixed(unit)) return;
+  if (std::ranges::any_of(whole, [&](int other) { return roster_.fixed(other); })) return;
   roster_.remove(unit);
   removed_.push_back(unit);
-  if (other >= 0) removed_.push_back(other);
+  for (const int other : whole) {
+    if (other != unit) removed_.push_back(other);
+  }
 }
 
 // Tasks that must have the same robots can change them only together.

@@ -58,7 +58,7 @@ ScheduleSearch::ScheduleSearch(const Problem& problem, const Routes& start, std:
   best_value_.weight = -kNever;
   note_best();
   fill();
-  if (roster_.finish(trial_)) {
+  if (roster_.finish(trial_) && roster_.admissible()) {
     roster_.commit();
   } else {
     roster_.rollback();
@@ -82,7 +82,7 @@ void ScheduleSearch::fill() {
       if (unit < 0 || roster_.present(unit) || !roster_.ready(unit)) continue;
       const UnitInsertion* insertion = roster_.best_insertion(std::exchange(unit, -1), trial_);
       if (!insertion) continue;
-      if (roster_.insert(*insertion)) {
+      if (roster_.insert(*insertion) && roster_.admissible()) {
         roster_.commit();
         more = true;
       } else {

@@ -69,8 +69,12 @@ bool ScheduleSearch::is_tail(int robot, int at, int other) const {
     if (!problem_.allowed(other, visit.place) || !problem_.same_robot(visit.place).empty() ||
         !problem_.other_robot(visit.place).empty() || !does_alone(other, visit.place))
       return false;
-    const int partner = roster_.partner(visit.unit);
-    if (partner >= 0 && timeline.visit(timeline.visits_of(partner).front()).at <= at) return false;
+    const auto in_tail = [&](int unit) {
+      return std::ranges::all_of(timeline.visits_of(unit), [&](int number) {
+        return timeline.visit(number).robot == robot && timeline.visit(number).at > at;
+      });
+    };
+    if (!std::ranges::all_of(problem_.inseparable(visit.unit), in_tail)) return false;
   }
   return true;
 }

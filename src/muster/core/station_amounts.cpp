@@ -100,25 +100,4 @@ void StationCalls::trace(int robot, Route& route, int best, std::span<const doub
   }
 }
 
-std::vector<double> usage_with_calls(const Problem& problem, std::span<const int> pickups) {
-  StationCalls calls(problem);
-  const std::vector<double> works(problem.tasks(), 0.0);
-  std::vector<int> delivery(problem.tasks(), -1);
-  for (int task = 0; task < problem.tasks(); ++task) {
-    if (pickups[task] >= 0) delivery[pickups[task]] = task;
-  }
-  std::vector<double> usages;
-  for (int robot = 0; robot < problem.robots(); ++robot) {
-    for (int task = 0; task < problem.tasks(); ++task) {
-      std::vector<int> route;
-      if (pickups[task] >= 0) route.push_back(pickups[task]);
-      route.push_back(task);
-      if (delivery[task] >= 0) route.push_back(delivery[task]);
-      calls.measure(robot, route, works);
-      usages.push_back(calls.usage(robot));
-    }
-  }
-  return usages;
-}
-
 }  // namespace muster

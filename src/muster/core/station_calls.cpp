@@ -18,6 +18,7 @@ constexpr int kFewStations = 3;  // of which all pairs are tried on the way to a
 void StationCalls::Labels::clear() {
   all.clear();
   at_stop.clear();
+  spare.clear();
   loads.clear();
   pending.clear();
 }
@@ -66,8 +67,7 @@ Called StationCalls::with_task(int robot, int task, int at, std::span<const doub
   const Route& own = routes_[robot];
   sequence_.assign(1, task);
   sequence_.insert(sequence_.end(), own.tasks.begin() + at, own.tasks.end());
-  copy_labels(own.labels, at);
-  return run(robot, tried_, sequence_, works);
+  return try_from(robot, at, works);
 }
 
 Called StationCalls::with_pair(int robot, int first, int at, int second, int second_at, std::span<const double> works) {
@@ -78,7 +78,23 @@ Called StationCalls::with_pair(int robot, int first, int at, int second, int sec
   sequence_.insert(sequence_.end(), own.tasks.begin() + at, own.tasks.begin() + second_at);
   sequence_.push_back(second);
   sequence_.insert(sequence_.end(), own.tasks.begin() + second_at, own.tasks.end());
-  copy_labels(own.labels, at);
+  return try_from(robot, at, works);
+}
+
+// Runs through `sequence_` after so many tasks of the route, from the labels that are known of them; all anew where
+// the rest is so much longer than the route's own that the robot may have to call before.
+Called StationCalls::try_from(int robot, int at, std::span<const double> works) {
+  const Route& own = routes_[robot];
+  const int from = at == 0 ? problem_.start(robot) : own.tasks[at - 1];
+  const auto behind = std::span<const int>(own.tasks).subspan(at);
+  const bool is_known = at < static_cast<int>(own.labels.spare.size());
+  const double longer = rest_usage(robot, from, sequence_, works) - rest_usage(robot, from, behind, works);
+  if (at == 0 || (is_known && longer <= own.labels.spare[at])) {
+    copy_labels(own.labels, at);
+  } else {
+    sequence_.insert(sequence_.begin(), own.tasks.begin(), own.tasks.begin() + at);
+    begin(robot, tried_);
+  }
   return run(robot, tried_, sequence_, works);
 }
 
@@ -127,6 +143,7 @@ void StationCalls::begin(int robot, Labels& labels) {
   const double energy = problem_.battery(robot) < kNever ? problem_.battery_at_start(robot) : 0.0;
   labels.all.push_back({0.0, Frontier(problem_.available_from(robot), energy), -1, -1, -1});
   labels.at_stop.emplace_back(0, 1);
+  labels.spare.push_back(kNever);
   if (!unloads_) return;
   for (int c = 0; c < problem_.commodities(); ++c) {
     labels.loads.push_back(problem_.load_at_start(robot, c));
@@ -139,11 +156,13 @@ void StationCalls::copy_labels(const Labels& labels, int stop) {
   tried_.clear();
   if (stop >= static_cast<int>(labels.at_stop.size())) {
     tried_.at_stop.assign(stop + 1, {0, 0});
+    tried_.spare.assign(stop + 1, kNever);
     return;
   }
   const auto [first, last] = labels.at_stop[stop];
   tried_.all.assign(labels.all.begin() + first, labels.all.begin() + last);
   tried_.at_stop.assign(stop + 1, {0, last - first});
+  tried_.spare.assign(stop + 1, labels.spare[stop]);
   if (!unloads_) return;
   const auto kept = static_cast<std::ptrdiff_t>(stop + 1) * problem_.commodities();
   tried_.loads.assign(labels.loads.begin(), labels.loads.begin() + kept);
@@ -158,12 +177,16 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   int from = problem_.start(robot);
   if (stop > 0) from = &labels == &tried_ ? routes_[robot].tasks[stop - 1] : from;
   measure_rest(robot, from, rest, works);
+  if (problem_.has_within()) measure_lags(robot, stop, rest, works);
+  spare_ = labels.spare.back();
   for (std::size_t k = 0; k < rest.size(); ++k) {
     if (unloads_) carry(robot, labels, rest[k]);
+    gap_limit_s_ = problem_.has_within() ? most_gap_s_[k] : kNever;
     if (!cross(robot, labels, from, rest[k], rest_[k], rest_[k + 1])) return {kNever, kNever};
     from = rest[k];
   }
   last_task_ = from;
+  gap_limit_s_ = kNever;
   const bool moves = !rest.empty() || stop > 0;
   if (moves && problem_.must_end(robot) && !cross(robot, labels, from, problem_.end(robot), rest_[rest.size()], 0.0)) {
     return {kNever, kNever};
@@ -176,6 +199,31 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   return {last.usage, end_s, last.extra};
 }
 
+// How long the way to each task of the rest may take: a task that must begin shortly after an earlier one of the route
+// leaves little time for calls between the two.
+void StationCalls::measure_lags(int robot, int stop, std::span<const int> rest, std::span<const double> works) {
+  std::vector<int> tasks(routes_[robot].tasks.begin(), routes_[robot].tasks.begin() + stop);
+  tasks.insert(tasks.end(), rest.begin(), rest.end());
+  offsets_.assign(tasks.size(), 0.0);  // when each would begin if the robot never waited or called
+  const auto way = [&](std::size_t k) { return problem_.travel_time(robot, tasks[k - 1], tasks[k]); };
+  for (std::size_t k = 1; k < tasks.size(); ++k) offsets_[k] = offsets_[k - 1] + works[tasks[k - 1]] + way(k);
+  most_gap_s_.assign(rest.size(), kNever);
+  for (std::size_t k = 1; k < tasks.size(); ++k) {
+    const auto before = problem_.prerequisites(tasks[k]);
+    for (std::size_t b = 0; b < before.size(); ++b) {
+      const double within = problem_.within(tasks[k], static_cast<int>(b));
+      const auto from = static_cast<std::size_t>(
+          std::find(tasks.begin(), tasks.begin() + static_cast<std::ptrdiff_t>(k), before[b]) - tasks.begin());
+      if (within == kNever || from == k) continue;
+      const double slack = within - (offsets_[k] - offsets_[from] - works[tasks[from]]);
+      for (std::size_t gap = std::max(from + 1, static_cast<std::size_t>(stop)); gap <= k; ++gap) {
+        double& most = most_gap_s_[gap - stop];
+        most = std::min(most, way(gap) + slack);
+      }
+    }
+  }
+}
+
 void StationCalls::measure_rest(int robot, int from, std::span<const int> rest, std::span<const double> works) {
   rest_.assign(rest.size() + 1, 0.0);
   const int last = rest.empty() ? from : rest.back();
@@ -184,6 +232,16 @@ void StationCalls::measure_rest(int robot, int from, std::span<const int> rest, 
     const int before = k == 0 ? from : rest[k - 1];
     rest_[k] = rest_[k + 1] + problem_.travel_usage(robot, before, rest[k]) + work_usage(robot, rest[k], works);
   }
+}
+
+// What is used from a place to the end of a route by way of the rest of its tasks, without calls.
+double StationCalls::rest_usage(int robot, int from, std::span<const int> rest, std::span<const double> works) const {
+  double usage = 0.0;
+  for (const int task : rest) {
+    usage += problem_.travel_usage(robot, from, task) + work_usage(robot, task, works);
+    from = task;
+  }
+  return from == problem_.start(robot) ? usage : usage + problem_.end_usage(robot, from);
 }
 
 double StationCalls::work_usage(int robot, int task, std::span<const double> works) const {

@@ -63,11 +63,13 @@ class StationCalls {
     int station;   // where it is; -1: at a stop
     int unloaded;  // the stop after which the robot last unloaded; -1: never
     double extra = 0.0;
+    double gap_s = 0.0;  // at a station: how long it is at least since the robot left the last stop
   };
   // Labels of each stop, the start included; those of stations stand between.
   struct Labels {
     std::vector<Label> all;
     std::vector<std::pair<int, int>> at_stop;
+    std::vector<double> spare;           // by stop: by how much the rest of the route may grow and its labels stay all
     std::vector<double> loads, pending;  // (stops, commodities) after each
     void clear();
   };
@@ -81,9 +83,12 @@ class StationCalls {
   };
 
   Called run(int robot, Labels& labels, std::span<const int> rest, std::span<const double> works);
+  Called try_from(int robot, int at, std::span<const double> works);
+  double rest_usage(int robot, int from, std::span<const int> rest, std::span<const double> works) const;
   void begin(int robot, Labels& labels);
   void copy_labels(const Labels& labels, int stop);
   void label(int robot);
+  void measure_lags(int robot, int stop, std::span<const int> rest, std::span<const double> works);
   void measure_rest(int robot, int from, std::span<const int> rest, std::span<const double> works);
   bool cross(int robot, Labels& labels, int from, int to, double rest_before, double rest_after);
   bool arrive(int robot, Labels& labels, int parent, int from, int to, double rest_after);
@@ -94,7 +99,7 @@ class StationCalls {
   double put_down(const Labels& labels, const Label& label, int commodity) const;
   bool carry_alike(const Labels& labels, const Label& a, const Label& b) const;
   bool overloaded(int robot, const Labels& labels, const Label& label, int stop) const;
-  bool runs_short(int robot, const Labels& labels, const Label& label, double rest) const;
+  bool runs_short(int robot, const Labels& labels, const Label& label, double rest);
   void carry(int robot, Labels& labels, int task) const;
   double work_usage(int robot, int task, std::span<const double> works) const;
   double least_onward(int robot, int from) const;
@@ -114,13 +119,13 @@ class StationCalls {
   std::vector<double> rest_;  // by stop of the rest, usage from there to the end without calls
   std::vector<int> current_, deeper_, places_;
   int layer_ = 0, last_task_ = -1;
+  double spare_ = kNever;           // of the labels up to the current stop
+  std::vector<double> most_gap_s_;  // by task of the rest, how long the way to it may take for lags between its tasks
+  double gap_limit_s_ = kNever;     // of the way that is labelled
+  std::vector<double> offsets_;
   Labels tried_;
   std::vector<int> sequence_;
   std::unordered_map<std::uint64_t, std::vector<int>> between_;
 };
-
-// By robot and task: what a route with that task alone uses with its calls, or with the one whose load it delivers, or
-// that delivers its own; infinite where the robot runs short.
-std::vector<double> usage_with_calls(const Problem& problem, std::span<const int> pickups);
 
 }  // namespace muster

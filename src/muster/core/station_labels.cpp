@@ -41,15 +41,21 @@ bool StationCalls::cross(int robot, Labels& labels, int from, int to, double res
   if (has_few_) call_again(robot, labels, to, beyond);
   settle();
   for (int depth = has_few_ ? 2 : 1; depth <= problem_.stations(); ++depth) {
-    const bool well = std::any_of(labels.all.begin() + layer_, labels.all.end(), [&](const Label& label) {
-      return label.frontier.last().energy >= needed * (1.0 - kLabelRounding);
-    });
-    if (well || current_.empty()) break;
+    double most = -kNever;
+    for (auto each = labels.all.begin() + layer_; each != labels.all.end(); ++each) {
+      most = std::max(most, each->frontier.last().energy);
+    }
+    if (current_.empty()) break;
+    if (most >= needed * (1.0 - kLabelRounding)) {
+      spare_ = std::min(spare_, most - needed);  // with more to do, more calls would be looked at
+      break;
+    }
     labels.all.resize(layer_);
     call_again(robot, labels, to, beyond);
     settle();
   }
   labels.at_stop.emplace_back(layer_, static_cast<int>(labels.all.size()));
+  labels.spare.push_back(spare_);
   return layer_ < static_cast<int>(labels.all.size());
 }
 
@@ -71,10 +77,13 @@ void StationCalls::call_again(int robot, Labels& labels, int to, double beyond) 
   places_.insert(places_.end(), current_.begin(), current_.end());
 }
 
-// Whether a robot with this label cannot do the rest of the route without a call.
-bool StationCalls::runs_short(int robot, const Labels& labels, const Label& label, double rest) const {
-  if (problem_.battery(robot) < kNever && label.frontier.first().energy < rest) return true;
-  return unloads_ && !labels.loads.empty();
+// Whether a robot with this label cannot do the rest of the route without a call. If it can, notes by how much the rest
+// may grow until it cannot.
+bool StationCalls::runs_short(int robot, const Labels& labels, const Label& label, double rest) {
+  const bool drains = problem_.battery(robot) < kNever;
+  if ((drains && label.frontier.first().energy < rest) || (unloads_ && !labels.loads.empty())) return true;
+  if (drains) spare_ = std::min(spare_, label.frontier.first().energy - rest);
+  return false;
 }
 
 // A label at a task once the work is done, or at the end.
@@ -84,6 +93,8 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
   const double way = problem_.travel_usage(robot, from, to);
   if (!std::isfinite(way)) return false;
   const double slack = drains ? -kLabelRounding * problem_.battery(robot) : -kNever;
+  if (label.station >= 0 && label.gap_s + problem_.travel_time(robot, from, to) > gap_limit_s_) return false;
+  label.gap_s = 0.0;
   label.usage += way;
   label.parent = parent;
   label.station = -1;
@@ -142,6 +153,7 @@ int StationCalls::call(int robot, Labels& labels, int parent, int from, int numb
   label.usage += way;
   label.parent = parent;
   label.station = number;
+  label.gap_s += problem_.travel_time(robot, from, place) + std::max(0.0, station.swap_s);
   const bool drains = full < kNever;
   label.frontier.shift(problem_.travel_time(robot, from, place), drains ? way : 0.0);
   if (drains) label.frontier.keep_from(-kLabelRounding * full);

@@ -106,9 +106,9 @@ bool Placement::seek_near(int unit) {
     for (const int near : trial_->neighbours->of(task)) {
       const auto visits = timeline_.visits_of(problem_.unit(near));
       if (visits.empty()) continue;
-      const Visit& visit = timeline_.visit(visits.front());
-      mark(visit);
-      mark(timeline_.stop(visit.robot, visit.at - 1));
+      mark(timeline_.visit(visits.front()));
+      for (const int number : visits)
+        mark(timeline_.stop(timeline_.visit(number).robot, timeline_.visit(number).at - 1));
       if (++tried >= trial_->most_places / 2) break;
     }
   }

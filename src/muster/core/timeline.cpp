@@ -209,10 +209,11 @@ void Timeline::measure_work(int unit) {
   }
 }
 
-void Timeline::insert(int unit, std::span<const Member> members) {
+void Timeline::insert(int unit, std::span<const Member> members, int before) {
   const auto label_between = [&] {
     const Labels places = between(members), allowed = labels_for(unit);
-    return std::pair{std::max(places.low, allowed.low), std::min(places.high, allowed.high)};
+    const double high = before < 0 ? places.high : std::min(places.high, nodes_[before].label);
+    return std::pair{std::max(places.low, allowed.low), std::min(high, allowed.high)};
   };
   auto [low, high] = label_between();
   if (forward_.has(unit) || backward_.has(unit)) settle();

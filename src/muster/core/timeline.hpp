@@ -65,6 +65,14 @@ class Timeline {
   double label_of(int unit) const { return nodes_[unit].label; }
   std::span<const int> visits_of(int unit) const { return nodes_[unit].visits; }
   const Visit& visit(int number) const { return visits_[number]; }
+  // The place of a task in a robot's route; -1: the robot does not do it. A unit has a visit for each of its tasks and
+  // for each member of a team.
+  int place_of(int task, int robot) const {
+    for (const int number : nodes_[problem_.unit(task)].visits) {
+      if (visits_[number].robot == robot && visits_[number].place == task) return visits_[number].at;
+    }
+    return -1;
+  }
   // The visits of a route, start and end included.
   const std::vector<int>& route(int robot) const { return routes_[robot]; }
   int tasks_in(int robot) const { return static_cast<int>(routes_[robot].size()) - 2; }
@@ -93,8 +101,8 @@ class Timeline {
   void restore_way(int robot, int at, double seconds) { visits_[routes_[robot][at]].in = seconds; }
 
   // Both leave times as they were until `settle`. A unit goes in at a label between those of its neighbours in every
-  // route, and within `labels_for`.
-  void insert(int unit, std::span<const Member> members);
+  // route, within `labels_for`, and below that of the unit `before`, if there is any.
+  void insert(int unit, std::span<const Member> members, int before = -1);
   void remove(int unit);
   // Propagates what was changed. False: no schedule exists; then only `rollback` helps.
   bool settle();
@@ -177,6 +185,8 @@ class Timeline {
   void drop_queues();
   bool forward();
   void backward();
+  void renew_budget();
+  bool within_budget() { return !has_within_ || --budget_ >= 0; }
   bool settle_cycles();
   double earliest_begin(int unit);
   double latest_begin(int unit);
@@ -200,7 +210,7 @@ class Timeline {
   // What prerequisites and dependants ask for: when a task ends, and the tail of a unit; -inf where they are absent.
   std::vector<double> ends_, tails_;
   UnitQueue forward_, backward_;
-  int budget_ = 0;  // units that `settle_cycles` still looks at, before it holds that bounds rise for ever
+  int budget_ = 0;  // where maximum lags make cycles: units that a propagation still looks at before it gives up
   std::vector<double> works_;
   // Undo.
   int step_ = 1;

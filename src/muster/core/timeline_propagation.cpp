@@ -134,7 +134,7 @@ bool Timeline::forward() {
     const int unit = forward_.pop();
     Node& node = nodes_[unit];
     if (node.visits.empty()) continue;
-    if (has_within_ && --budget_ < 0) return false;
+    if (!within_budget()) return false;
     const double begin = earliest_begin(unit);
     const Visit& first = visits_[node.visits.front()];
     const bool changed = begin != node.begin || first.leave != begin + work_[first.place];
@@ -149,11 +149,16 @@ bool Timeline::forward() {
   return possible;
 }
 
+// Latest begins only fall here. Where no schedule exists they fall for ever round a cycle of maximum lags, as begins
+// rise: the propagation ends with its budget then. What it leaves is too late at worst, so that nothing is rejected by
+// it that begins do not reject.
 void Timeline::backward() {
+  renew_budget();
   while (!backward_.empty()) {
     const int unit = backward_.pop();
     Node& node = nodes_[unit];
     if (node.visits.empty()) continue;
+    if (!within_budget()) return backward_.clear();
     const double latest = has_limits_ ? latest_begin(unit) : kNever;
     const double tail = has_tails_ ? longest_tail(unit) : 0.0;
     const Visit& first = visits_[node.visits.front()];
@@ -168,9 +173,7 @@ void Timeline::backward() {
 // rise from nothing, and latest begins fall from the end of time.
 bool Timeline::settle_cycles() {
   drop_queues();
-  const auto present_units =
-      static_cast<int>(std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); }));
-  budget_ = 1000 + 64 * present_units;
+  renew_budget();
   for (std::size_t unit = 0; unit < nodes_.size(); ++unit) {
     if (nodes_[unit].visits.empty()) continue;
     save(static_cast<int>(unit));
@@ -181,6 +184,14 @@ bool Timeline::settle_cycles() {
   if (!forward()) return false;
   backward();
   return true;
+}
+
+// In a graph with cycles a fixpoint is found after each unit was looked at some times, or there is none.
+void Timeline::renew_budget() {
+  if (!has_within_) return;
+  const auto present_units =
+      static_cast<int>(std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); }));
+  budget_ = 1000 + 64 * present_units;
 }
 
 void Timeline::drop_queues() {

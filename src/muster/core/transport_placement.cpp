@@ -19,7 +19,8 @@ bool Placement::best_transport(int pickup, int delivery, const Trial& trial) {
   best_.unit = unit;
   labels_ = roster_.timeline_.labels_for(unit);
   second_labels_ = roster_.timeline_.labels_for(second);
-  if (labels_.empty() || second_labels_.empty() || !alone(unit) || !alone(second)) return false;
+  if (labels_.empty() || second_labels_.empty()) return false;
+  if (std::ranges::find(problem_.other_robot(pickup), delivery) != problem_.other_robot(pickup).end()) return false;
   ready_ = timeline_.ready(unit);
   second_ready_ = timeline_.ready(second);
   peak_ = roster_.peak();

@@ -44,6 +44,13 @@ def verify(
     return judge(mission, plan_of(plan), ignore, objective)
 
 
+def admits(mission: Mission, plan: Plan, ignored: tuple[str, ...]) -> bool:
+    """Return whether nothing is wrong with a plan: the `Judge` of searches and proofs."""
+    from muster.verification import verify as judge
+
+    return judge(mission, plan, ignored).valid
+
+
 def judged(mission: Mission, plan: Plan, ignored: Collection[str], objective: str | None) -> Verdict:
     """The verdict on a plan that an allocator has made for an objective, some rules ignored.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.plan import Plan
-from muster.planning.judging import judged
+from muster.planning.judging import admits, judged
 from muster.planning.request import Request
 from muster.traffic.names import may_reserve
 
@@ -169,7 +169,7 @@ def _improved(
         return plan, ""
     if stop.interrupted:
         return plan, "planning was stopped before a bound was proven"
-    proof = prove(problem, plan, request.bound, stop, budget.proof_s, quick)
+    proof = prove(problem, plan, request.bound, stop, budget.proof_s, quick, judge=admits)
     return proof.plan, proof.why
 
 

@@ -13,6 +13,7 @@ from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules import RULES
 
 Routes = Sequence[Sequence[int]]
+RealCosts = tuple[Floats, Floats, Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -58,23 +59,40 @@ class Costs:
         return int(self.first[i, route[0]]) + steps + work + int(self.last[i, route[-1]])
 
 
-def real_costs(problem: Problem) -> tuple[Floats, Floats, Floats, Floats]:
+def real_costs(problem: Problem) -> RealCosts:
     """`first`, `between`, `work` and `last` of all robots; inf where there is no leg."""
     tasks = np.arange(len(problem.tasks))
     robots = range(len(problem.robots))
+    ways = [_ways(problem, i) for i in robots]
     return (
-        np.array([problem.legs(i, [problem.start(i)], tasks)[0] for i in robots]),
-        np.array([problem.legs(i, tasks, tasks) for i in robots]),
+        np.array([ways[i][problem.start(i), tasks] for i in robots]),
+        np.array([ways[i][np.ix_(tasks, tasks)] for i in robots]),
         np.array([problem.work_usage(i) for i in robots]),
-        np.array([_last(problem, i) for i in robots]),
+        np.array([_last(problem, i, ways[i]) for i in robots]),
     )
 
 
-def _last(problem: Problem, i: int) -> Floats:
+def _ways(problem: Problem, i: int) -> Floats:
+    """(places, places) usage between places; where a table may make ways through stations shorter, the least."""
+    places = np.arange(len(problem.tasks) + 2 * len(problem.robots) + len(problem.stations))
+    ways = problem.legs(i, places, places)
+    for k in places[len(places) - len(problem.stations) :] if len(problem.travel[0]) else ():
+        ways = np.minimum(ways, ways[:, k, None] + ways[None, k, :])
+    return np.asarray(ways)
+
+
+def real_usage(costs: RealCosts, i: int, route: Sequence[int], *, ends: bool = True) -> float:
+    """What a route of robot i uses by itself, without calls at stations; `ends`: with the way to its end."""
+    first, between, work, last = costs
+    usage = first[i, route[0]] + sum(between[i, a, b] for a, b in pairwise(route)) + work[i, list(route)].sum()
+    return float(usage + (last[i, route[-1]] if ends else 0.0))
+
+
+def _last(problem: Problem, i: int, ways: Floats) -> Floats:
     tasks = np.arange(len(problem.tasks))
     if problem.robots[i].place_at_end(problem.mission.rules) is None:
         return np.zeros(len(tasks))
-    return problem.legs(i, tasks, [problem.end(i)])[:, 0]
+    return np.asarray(ways[tasks, problem.end(i)])
 
 
 def like_robots(problem: Problem, usable: Bools) -> list[list[int]]:

@@ -2,24 +2,22 @@
 
 Stations are no part of the program, which is a relaxation without them. Where a route of its plan must call at some, or
 cannot be done, the cut says so of all routes that begin alike: a logic-based Benders decomposition ([hooker2003]), of
-which the labelling of the core is the subproblem.
+which `RouteBounds` is the subproblem.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from muster import core
-from muster.allocation.earliest_times import opened
 from muster.allocation.exact.circuits import Circuits
-from muster.allocation.exact.costs import real_costs
+from muster.allocation.exact.costs import real_costs, real_usage
 from muster.allocation.problem import Problem
+from muster.allocation.route_bounds import RouteBounds
 from muster.allocation.rules.battery import Battery
 from muster.allocation.rules.load import Load, pickups
 
@@ -112,7 +110,7 @@ class Cut:
     adds
         what calls at stations add to the usage; inf: there are no such routes.
     value
-        the least of the objective that the tasks come to, of `average` their sum.
+        the least of the objective that the tasks come to, of `average` their sum; 0: nothing is known.
     whole
         whether it holds of the route that ends with them alone.
     """
@@ -125,12 +123,10 @@ class Cut:
 
 
 class StationCuts:
-    """The cuts that routes of the program give."""
+    """The cuts that routes of the program give, as far as `RouteBounds` proves them."""
 
     def __init__(self, problem: Problem) -> None:
-        self._asked = problem
-        self._problem = replace(problem, objective="total", known=problem.measured)
-        self._counts_tasks = problem.objective in ("average", "makespan", "lateness")
+        self._bounds = RouteBounds(problem)
         self._known: set[tuple[int, tuple[int, ...]]] = set()
 
     def of(self, routes: Sequence[Sequence[int]]) -> list[Cut]:
@@ -143,39 +139,24 @@ class StationCuts:
         self._known.add((i, route))
         added = 0.0
         for count in range(1, len(route) + 1):
-            adds = self._adds(i, route[:count], self._open)
+            adds, _ = self._least(i, route[:count], whole=False)
             if adds > added + _ROUNDING * (1 + added):
                 yield Cut(i, route[:count], adds, 0.0, False)
                 added = adds
             if adds == np.inf:
                 return
-        adds = self._adds(i, route, self._problem)
-        value = self._value(i, route) if self._counts_tasks else 0.0
+        adds, value = self._least(i, route, whole=True)
         if value or adds > added + _ROUNDING * (1 + added):
             yield Cut(i, route, adds, value, True)
 
-    def _value(self, i: int, route: tuple[int, ...]) -> float:
-        """The objective of a route by itself, of `average` the sum; waiting for others makes none less."""
-        value = core.Inspection(self._asked.core, self._alone(i, route)).objective
-        count = len(route) if self._asked.objective == "average" else 1
-        return 0.0 if value is None or not np.isfinite(value) else value * count
-
-    def _alone(self, i: int, route: tuple[int, ...]) -> list[list[int]]:
-        return [list(route) if k == i else [] for k in range(len(self._asked.robots))]
-
-    def _adds(self, i: int, route: tuple[int, ...], problem: Problem) -> float:
-        found = core.Inspection(problem.core, self._alone(i, route))
-        if found.all_stops is None:
-            return np.inf
-        first, between, work, last = self._costs
-        usage = first[i, route[0]] + sum(between[i, a, b] for a, b in itertools.pairwise(route))
-        usage += sum(work[i, j] for j in route) + (last[i, route[-1]] if problem is self._problem else 0.0)
-        return max(0.0, float(found.usages[i] - usage))
-
-    @cached_property
-    def _open(self) -> Problem:
-        return opened(self._problem)
+    def _least(self, i: int, route: tuple[int, ...], *, whole: bool) -> tuple[float, float]:
+        """What calls add to the usage of a route, and the least of the objective; 0 where nothing is proven."""
+        bound = self._bounds.of(i, route, whole=whole)
+        if bound is None:
+            return 0.0, 0.0
+        adds = bound.usage - real_usage(self._costs, i, route, ends=whole)
+        return max(0.0, adds), bound.value if bound.usage < np.inf else 0.0
 
     @cached_property
     def _costs(self) -> tuple[Any, Any, Any, Any]:
-        return real_costs(self._problem)
+        return real_costs(self._bounds.problem)

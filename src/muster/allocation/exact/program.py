@@ -189,9 +189,11 @@ class Program:
         bound = solver.best_objective_bound
         return Solved(self.routes(solver), min(bound, self.unproven) if self._maximises else max(bound, 0.0))
 
-    def forbid(self, routes: Routes) -> None:
-        """Leave out all plans with these routes of some robots, which are not admissible in real numbers."""
-        self.model.add_bool_or([self._circuits.legs[key].negated() for key in self._circuits.legs_of(routes)])
+    def forbid(self, routes: Routes, *, alone: bool = False) -> None:
+        """Leave out a plan; `alone`: all plans with these routes, whatever the robots do that have none."""
+        circuits = self._circuits
+        others = [] if alone else [circuits.used[i] for i, route in enumerate(routes) if not route]
+        self.model.add_bool_or([*others, *(circuits.legs[key].negated() for key in circuits.legs_of(routes))])
 
     def cut(self, cut: Cut) -> None:
         """Let all routes that begin alike, of this robot and those like it, use what calls at stations add."""

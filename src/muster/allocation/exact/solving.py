@@ -1,23 +1,32 @@
-"""Proven optimal plans: first the greatest weight of tasks, then the least objective."""
+"""Proven optimal plans: first the greatest weight of tasks, then the least objective.
+
+Whether a plan is admissible the judge says, who is given by the caller. Nothing is excluded because the core rejects
+it: what the judge rejects is excluded where no calls at stations could make up for it, and so is what a cut proves.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.bounds import best_bound, sound_bound
+from muster.allocation.exact.costs import real_costs, real_usage
 from muster.allocation.exact.partition import few_partings, least_average
 from muster.allocation.exact.scale import whole_weights
 from muster.allocation.feasibility import impossible, usable_pairs
 from muster.allocation.problem import Problem
+from muster.allocation.rules.rule import ROUNDING
+from muster.allocation.witness_plans import Judge, bare_plan
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.plan import Plan, Route
 
 if TYPE_CHECKING:
-    from muster.allocation.exact.goods import Cut, StationCuts
+    from muster.allocation.exact.goods import Cut
     from muster.allocation.exact.program import Program
 
 _WORKERS = 4
@@ -56,6 +65,8 @@ def solve_exactly(
     seed: int = 0,
     clock: Clock | None = None,
     interrupted: Callable[[], bool] = lambda: False,
+    *,
+    judge: Judge,
 ) -> ExactResult:
     """Find the best plan of a small mission and prove it, or prove what can be proven in the time.
 
@@ -69,6 +80,8 @@ def solve_exactly(
         routes of an admissible plan to begin with.
     interrupted
         whether to end at once with what is proven until then.
+    judge
+        whether a plan is admissible, some rules ignored.
 
     Raises
     ------
@@ -79,7 +92,7 @@ def solve_exactly(
     """
     require_ortools()
     first = start or [list(problem.beginning(i)) for i in range(len(problem.robots))]
-    return _Solving(problem, time_limit, first, seed, clock or SystemClock(), interrupted).result()
+    return _Solving(problem, time_limit, first, seed, clock or SystemClock(), interrupted, judge).result()
 
 
 def require_ortools() -> None:
@@ -101,24 +114,25 @@ class _Solving:
         seed: int,
         clock: Clock,
         interrupted: Callable[[], bool],
+        judge: Judge,
     ) -> None:
         self._problem, self._seed, self._clock, self._interrupted = problem, seed, clock, interrupted
+        self._judge = judge
         self._until = clock.now() + time_limit
         self._usable = usable_pairs(problem)
         self._routes = start
         forbidden = any(not problem.allowed[i, j] for i, route in enumerate(start) for j in route)
-        if forbidden or not core.Inspection(problem.core, start).admissible:
+        if forbidden or not self._is_admissible(start):
             raise ParameterError("start: the plan is not admissible")
         weights = whole_weights([task.priority for task in problem.tasks])
         if weights is None:
             raise ParameterError("priority: too many digits for a proof; expected priorities like 1, 2.5 or 0.01")
         self._weights: Sequence[int] = weights
-        self._cuts: StationCuts | None = None
         self._given: list[Cut] = []
         from muster.allocation.exact.goods import StationCuts, needs_stations
 
-        if needs_stations(problem):
-            self._cuts = StationCuts(problem)
+        self._costs = real_costs(problem)
+        self._cuts = StationCuts(problem) if needs_stations(problem) else None
 
     def result(self) -> ExactResult:
         if not self._problem.tasks:
@@ -161,7 +175,7 @@ class _Solving:
             least, why = quick.value, quick.why
         if self._problem.objective == "average" and few_partings(self._problem) and self._alone():
             parting = least_average(self._problem, self._usable, self._weights, self._weight())
-            if core.Inspection(self._problem.core, parting.routes).admissible:
+            if self._is_admissible(parting.routes):
                 self._take_over(parting.routes)
             least, why = max((least, why), (parting.value, "the best parting of the tasks among the robots"))
         if self._value() <= least * (1 + _ROUNDING):
@@ -206,40 +220,61 @@ class _Solving:
     def _run(self, program: Program, *, maximises: bool = False) -> float:
         """Take over the program's best plan, if it is better; returns the bound of its objective, in units.
 
-        A plan that is admissible only because costs were rounded is forbidden, and the program runs again.
+        A plan of the program that is not admissible gives cuts, or is forbidden, and the program runs again. Where it
+        is not proven that no calls at stations make it admissible, nothing beyond its value is proven.
         """
-        proven = program.unproven
+        proven, best = program.unproven, max if maximises else min
+        open_ended = [-math.inf if maximises else math.inf]  # what plans may come to of which nothing is proven
         while (left := self._until - self._clock.now()) > 0 and not self._interrupted():
             solved = program.solve(left, self._seed, _WORKERS, interrupted=self._interrupted)
             if solved.routes is None:
-                return solved.bound
+                return best(solved.bound, *open_ended)
             proven = min(proven, solved.bound) if maximises else max(proven, solved.bound)
-            inspection = core.Inspection(self._problem.core, solved.routes)
             cuts = self._cuts.of(solved.routes) if self._cuts else []
             self._given += cuts
             for cut in cuts:
                 program.cut(cut)
-            if inspection.admissible:
-                self._take_over(solved.routes)
-                if not cuts or maximises:
-                    return solved.bound
+            admitted = self._is_admissible(solved.routes)
+            if admitted and self._take_over(solved.routes) and (maximises or not cuts):
+                return best(solved.bound, *open_ended)
             if cuts:
                 continue
-            for some in self._not_admissible(solved.routes, inspection.usages):
-                program.forbid(some)
-        return proven
+            if admitted or not self._is_excluded(solved.routes):
+                open_ended.append(solved.bound)
+            self._forbid(program, solved.routes)
+        return best(proven, *open_ended)
 
-    def _not_admissible(self, routes: Routes, usages: Sequence[float]) -> Iterator[Routes]:
-        """Routes that rounding alone made admissible: one that is above its capacity, else all of them together."""
-        above = [i for i, usage in enumerate(usages) if usage > self._problem.capacity[i] * (1 + _ROUNDING)]
+    def _is_admissible(self, routes: Routes) -> bool:
+        """Whether the judge admits routes, with the calls at stations that the core finds for them."""
+        return self._judge(self._problem.mission, bare_plan(self._problem, routes), self._problem.ignored)
+
+    def _is_excluded(self, routes: Routes) -> bool:
+        """Whether the judge rejects routes that are not admissible, wherever their robots call at stations."""
+        if self._cuts is None:
+            return True
+        pairs = zip(self._problem.robots, routes, strict=True)
+        bare = [Route(robot.id, tuple(self._problem.tasks[j].id for j in route)) for robot, route in pairs]
+        ignored = tuple(dict.fromkeys((*self._problem.ignored, "battery", "load")))
+        return not self._judge(self._problem.mission, Plan(routes=tuple(bare)), ignored)
+
+    def _forbid(self, program: Program, routes: Routes) -> None:
+        """Leave out routes of robots that they alone put above a capacity; without such, the plan."""
+        above = [i for i, route in enumerate(routes) if route and self._is_above_capacity(i, route)]
         for i in above:
-            yield [route if k == i else [] for k, route in enumerate(routes)]
+            program.forbid([route if k == i else [] for k, route in enumerate(routes)], alone=True)
         if not above:
-            yield routes
+            program.forbid(routes)
 
-    def _take_over(self, routes: Routes) -> None:
+    def _is_above_capacity(self, i: int, route: Sequence[int]) -> bool:
+        return real_usage(self._costs, i, route) > float(self._problem.capacity[i]) * (1 + ROUNDING)
+
+    def _take_over(self, routes: Routes) -> bool:
+        """Keep an admissible plan if it is the best; returns whether the core has a value of it."""
+        if core.Inspection(self._problem.core, routes).objective is None:
+            return False
         if self._rank(routes) < self._rank(self._routes):
             self._routes = routes
+        return True
 
     def _rank(self, routes: Routes) -> tuple[float, ...]:
         """What is least of the best plan; of plans that are late alike, the one of least total cost is the best."""

@@ -59,6 +59,8 @@ class Battery(Rule):
     word: ClassVar[str] = "battery"
     asked = ("battery",)
     lifted_late = True
+    of_a_route = True
+    kept_by_calls = True
     key = "battery"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
@@ -75,8 +77,8 @@ class Battery(Rule):
         if not problem.holds(self.word) or all(robot.battery is None for robot in robots):
             return {"battery": np.empty(0), "battery_at_start": np.empty(0), "stations": stations}
         return {
-            "battery": np.array([_room(robot) for robot in robots]),
-            "battery_at_start": np.array([_at_start(problem, i) for i in range(len(robots))]),
+            "battery": np.array([energy_room(robot) for robot in robots]),
+            "battery_at_start": np.array([energy_at_start(problem, i) for i in range(len(robots))]),
             "stations": stations,
         }
 
@@ -86,21 +88,21 @@ class Battery(Rule):
     def possible(self, limits: Limits) -> Bools | None:
         if not any(robot.battery for robot in limits.problem.robots):
             return None
-        return np.asarray(np.isfinite(limits.problem.usage_with_calls) | ~limits.usable)
+        return limits.problem.energy_reaches
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         battery = problem.robots[i].battery
-        if battery is None or np.isfinite(problem.usage_with_calls[i, j]) or math.isinf(outlook.least):
+        if battery is None or problem.energy_reaches[i, j] or math.isinf(outlook.least):
             return None
         least, unit = outlook.least, problem.usage_unit
-        holds = f"its battery holds {_at_start(problem, i):.2f} {unit} above its reserve"
+        holds = f"its battery holds {energy_at_start(problem, i):.2f} {unit} above its reserve"
         if not problem.mission.stations:
             return f"takes at least {least:.2f} {unit}, {holds}"
         return f"takes at least {least:.2f} {unit}, {holds}, and no station is near enough"
 
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
         usage, unit = min(found.usages[i] for _, found in places), problem.usage_unit
-        holds = f"its battery holds {_at_start(problem, i):.2f} {unit} above its reserve"
+        holds = f"its battery holds {energy_at_start(problem, i):.2f} {unit} above its reserve"
         stations = ", and no calls at stations make up for that" if problem.mission.stations else ""
         return f"at least {usage:.2f} {unit} with it, {holds}{stations}"
 
@@ -114,11 +116,13 @@ class Battery(Rule):
         return plan.kept_out(self.word, i, j)
 
 
-def _room(robot: Robot) -> float:
+def energy_room(robot: Robot) -> float:
+    """Return what a robot's battery holds above its reserve when it is full; inf without a battery."""
     return math.inf if robot.battery is None else robot.battery.capacity - robot.battery.least
 
 
-def _at_start(problem: Question, i: int) -> float:
+def energy_at_start(problem: Question, i: int) -> float:
+    """Return what it holds above its reserve at first."""
     battery = problem.robots[i].battery
     if battery is None:
         return math.inf

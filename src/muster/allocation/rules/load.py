@@ -56,6 +56,8 @@ class Load(Rule):
     asked = ("load",)
     key = "load_capacity"
     lifted_late = True
+    of_a_route = True
+    kept_by_calls = True
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         if not self._holds(problem):

@@ -59,6 +59,8 @@ class MinTasks(Rule):
     asked = ("min-tasks",)
     for_good = False
     lifted_late = True
+    of_a_route = True
+    names_robots = True
     key = "min_tasks"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:

@@ -50,7 +50,7 @@ class Question(Protocol):
     @property
     def levels(self) -> tuple[float, ...]: ...
     @property
-    def usage_with_calls(self) -> Floats: ...
+    def energy_reaches(self) -> Bools: ...
     @property
     def core(self) -> core.Problem: ...
     @property
@@ -227,6 +227,10 @@ class Rule:
         that never takes a task out of a route again.
     lifted_late
         whether reasons seek it among all places in a route, one such rule after the other in the order of rules.
+    of_a_route, names_robots
+        whether a route keeps or breaks it whatever the others do; and whether its words name the robot that breaks it.
+    kept_by_calls
+        whether calls at stations may keep a route from breaking it.
     key, no_change
         of its change in the plain data of a remedy, and what stands there where no change is needed; no key: a robot
         is not changed for it, or not by it alone.
@@ -238,6 +242,9 @@ class Rule:
     asked: ClassVar[tuple[str, ...]] = ()
     for_good: ClassVar[bool] = True
     lifted_late: ClassVar[bool] = False
+    of_a_route: ClassVar[bool] = False
+    names_robots: ClassVar[bool] = False
+    kept_by_calls: ClassVar[bool] = False
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
 

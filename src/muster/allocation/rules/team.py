@@ -106,7 +106,7 @@ class Team(Rule):
         if refused or not problem.timed_rules.is_for_team(j):
             return refused
         allowed = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
-        return shortfall(problem, i, j, allowed)
+        return shortfall(problem, i, j, allowed) or plan.kept_out(self.word, i, j)
 
 
 def in_some_team(problem: Question, j: int, able: Bools) -> Bools:

@@ -6,17 +6,21 @@ from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from muster.allocation.allocator import routes_of
+from muster.allocation.allocator import Routes, routes_of
 from muster.allocation.explanations import Alternative, alternatives, unassigned
+from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
+from muster.allocation.proofs import is_small_enough
 from muster.allocation.remedies import remedies, smallest_as_is
 from muster.allocation.remedy import Remedy
 from muster.allocation.stop import Stop
+from muster.allocation.work_shortfall import Shortfall, shortfalls
 from muster.mission.auction_book import Award
 from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, Unassigned
+from muster.planning.judging import admits
 from muster.verification import RouteFigures, Verdict, verify
 
 EXPLAIN_TIME_LIMIT_S = 10.0
@@ -34,12 +38,15 @@ class LeftOut:
     changes: Mapping[str, Remedy | None]
     cut_short: bool = False
     """Whether time was up before all reasons and changes were found."""
+    shortfalls: tuple[Shortfall, ...] = ()
+    """Proofs that no plan does all tasks, as their work is too much for the robots."""
 
     def as_dict(self) -> dict[str, Any]:
         """Return what `muster explain --format json` prints."""
         smallest = [{"task": task, "remedy": _plain(remedy)} for task, remedy in self.changes.items()]
         return {
             "ignored": list(self.problem.ignored),
+            "shortfalls": [short.as_dict() for short in self.shortfalls],
             "unassigned": [asdict(item) for item in self.unassigned],
             "smallest": smallest,
             "cut_short": self.cut_short,
@@ -126,6 +133,7 @@ def left_out(mission: Mission, plan: Plan, ignore: Collection[str], stop: Stop) 
     """Explain why tasks are left out of a plan that fits the mission, as far as there is time."""
     problem = Problem.compile(mission, plan.objective, ignore)
     routes = routes_of(problem, plan)
+    short = _shortfalls(problem, routes)
     for_reasons = None if stop.time_left_s is None else _FOR_REASONS * stop.time_left_s
     missing = unassigned(problem, routes, stop.part(time_limit=for_reasons, iterations=None).due)
     changes: dict[str, Remedy | None] = {}
@@ -135,7 +143,15 @@ def left_out(mission: Mission, plan: Plan, ignore: Collection[str], stop: Stop) 
             break
         changes[item.task] = found
     cut_short = stop.due() or not all(item.reasons for item in missing)
-    return LeftOut(problem, missing, changes, cut_short)
+    return LeftOut(problem, missing, changes, cut_short, short)
+
+
+def _shortfalls(problem: Problem, routes: Routes) -> tuple[Shortfall, ...]:
+    """Proofs by sums of work that tasks are left out by every plan; none is looked for in a very large problem."""
+    if len({j for route in routes for j in route}) == len(problem.tasks) or not is_small_enough(problem):
+        return ()
+    lost = {item.task for item in impossible(problem)}
+    return shortfalls(problem, [j for j, task in enumerate(problem.tasks) if task.id not in lost])
 
 
 def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str], stop: Stop) -> OneTask:
@@ -168,11 +184,6 @@ def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str], s
         award=None if plan.book is None else plan.book.award_of(task),
         cut_short=cut_short,
     )
-
-
-def admits(mission: Mission, plan: Plan, ignored: tuple[str, ...]) -> bool:
-    """Whether nothing is wrong with a plan: the `Judge` of searches."""
-    return verify(mission, plan, ignored).valid
 
 
 def _plain(remedy: Remedy | None) -> dict[str, Any] | None:

@@ -10,13 +10,14 @@ from muster.allocation.conflicts import Conflict, Together, together
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
+from muster.allocation.work_shortfall import Shortfall
 from muster.mission.model import Mission
 from muster.mission.plan import Reason, Unassigned
 from muster.motion.actions.unseen_places import Unseen
 from muster.planning.explaining.crossings import BlockedWay, blocked_ways
-from muster.planning.explaining.explanations import admits
 from muster.planning.explaining.stations import CutOff, cut_off_stations
 from muster.planning.explaining.unseen_searches import unseen_searches
+from muster.planning.judging import admits
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ class Possible:
             "impossible": [asdict(item) for item in self.impossible],
             "conflict": None if conflict is None else asdict(conflict),
             "unknown": self.together.unknown,
+            "shortfalls": [short.as_dict() for short in self.together.shortfalls],
             "unseen": [asdict(item) for item in self.unseen],
             "blocked": [asdict(item) for item in self.blocked],
             "cut_off": [asdict(item) for item in self.cut_off],
@@ -65,7 +67,9 @@ class Possible:
         unseen = tuple(Unseen(**item) for item in data.get("unseen", ()))
         blocked = tuple(BlockedWay(**{**item, "robots": tuple(item["robots"])}) for item in data.get("blocked", ()))
         cut_off = tuple(CutOff(**item) for item in data.get("cut_off", ()))
-        return cls(tuple(lost), Together(_conflict(data["conflict"]), data["unknown"]), unseen, blocked, cut_off)
+        short = tuple(map(Shortfall.from_dict, data.get("shortfalls", ())))
+        all_others = Together(_conflict(data["conflict"]), data["unknown"], short)
+        return cls(tuple(lost), all_others, unseen, blocked, cut_off)
 
 
 def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float | None = None) -> Possible:

@@ -8,6 +8,7 @@ from muster.allocation.explanations import Alternative, without_bid
 from muster.allocation.problem import Problem
 from muster.allocation.remedies import smallest
 from muster.allocation.remedy import Remedy
+from muster.allocation.work_shortfall import Shortfall
 from muster.mission.auction_book import Award, Book
 from muster.mission.goods import shown_amounts
 from muster.planning.explaining.explanations import OneTask
@@ -29,6 +30,11 @@ def place(found: OneTask) -> list[str]:
         said.append(f"{found.robot} arrives at {stop.arrives_s:.2f} s{waiting} and ends at {stop.ends_s:.2f} s")
         said += _battery_and_load(found, stop)
     return said
+
+
+def shortfall_lines(found: Shortfall) -> list[str]:
+    """That work is too much for robots, and what is least to add."""
+    return [f"proven: {found.detail}", f"  {found.least}"]
 
 
 def _battery_and_load(found: OneTask, stop: Stop) -> list[str]:

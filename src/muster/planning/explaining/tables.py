@@ -20,6 +20,7 @@ from muster.planning.explaining.phrases import (
     place,
     reserve,
     short,
+    shortfall_lines,
     smallest_change,
     what_then,
 )
@@ -80,6 +81,7 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
     shown = rows[:_MOST_ROWS]
     parts: list[Part] = [
         *ignored(found.problem),
+        *(line for short in found.shortfalls for line in shortfall_lines(short)),
         Table(title, ("task", "robot", "reason", "detail"), shown),
         _smallest(found.problem, changes),
     ]

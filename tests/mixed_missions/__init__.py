@@ -1,0 +1,1 @@
+"""Tiny missions with rules of every kind at once, and the best of all their plans by the independent judge."""
