@@ -213,6 +213,8 @@ class Live:
     def hear(self, until_s: float) -> None:
         """Send and receive until a time of the mission's clock, or until something is due."""
         for event in self._fleet.advance(min(until_s, self.executor.due_s)):
+            if event.robot_joins is not None and event.robot_joins.id in self.executor.crew:
+                continue  # it joined before a restart
             self.executor.report_if_it_fits(event, reason_of(event))
 
     def tell_places(self) -> None:

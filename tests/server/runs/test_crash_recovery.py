@@ -167,7 +167,9 @@ def test_what_an_event_has_changed_is_known_after_a_crash(plan, kind, then_s):
         assert known(run.killed()) == known(run.executor)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize(
+    "seed", [*range(20), 58, 198, *(pytest.param(k, marks=pytest.mark.long) for k in range(200, 400))]
+)
 def test_whatever_has_happened_is_known_after_a_crash(plan, seed):
     draw = random.Random(seed)
     run = Played(site([Event(at_s=15.0, cancel_task="t_0"), Event(at_s=500.0, cancel_task="t_1")]), plan)
@@ -179,3 +181,28 @@ def test_whatever_has_happened_is_known_after_a_crash(plan, seed):
         run.report(event(kind, draw.choice(SAMPLES[kind])))
     run.go_to(run.world.now + draw.choice([0.0, 1.0, 10.0]))
     assert known(run.killed()) == known(run.executor)
+
+
+def test_events_of_the_mission_file_that_fell_into_the_time_without_a_process_happen(plan):
+    run = Played(site([Event(at_s=5.0, station_fails="dock"), Event(at_s=50.0, cancel_task="t_1")]), plan)
+    run.go_to(3.0)
+    for _ in range(20):
+        run.world.step(0.5)
+    executor = run.killed()
+    assert executor.now_s == 13.0
+    assert executor.stations.failed == {"dock"}
+    assert executor._script.next_s == 50.0
+
+
+def test_a_robot_that_joined_and_cannot_be_reached_is_known_again_when_it_joins_again(plan):
+    run = Played(site(), plan)
+    run.report(event("robot_joins", NEWCOMER))
+    run.go_to(5.0)
+    run.report(event("robot_fails", "r_9"))
+    port = run.world.ports.pop("r_9")
+    executor = run.killed()
+    assert "r_9" not in executor.crew
+    run.world.ports["r_9"] = port
+    executor.report(Event(at_s=0, robot_joins=NEWCOMER))
+    assert executor.crew["r_9"].out == "robot_fails"
+    assert known(executor)["out"] == known(run.executor)["out"]

@@ -252,6 +252,9 @@ class _Fold:
     def take_lost(self, _: float, data: Mapping[str, Any]) -> None:
         self.forgotten[data["task"]] = data["reason"]
 
+    def take_end_of_mission(self, _: float, data: Mapping[str, Any]) -> None:
+        self.forgotten.clear()  # tasks lost at the end are listed, and may be done if something brings work
+
     def _take_out(self, now: float, why: str, robot: str) -> None:
         self.out[robot] = (why, now)
         if why == FAILED:
@@ -290,6 +293,7 @@ _TAKE: Mapping[str, Callable[[_Fold, float, Mapping[str, Any]], None]] = {
     "task_refused": _Fold.take_refusal,
     "standstill": _Fold.take_standstill,
     "lost": _Fold.take_lost,
+    "mission_ended": _Fold.take_end_of_mission,
 }
 """What changes what is known, by the kind of the entry."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 from muster.bridges.fleet import Fleet
@@ -57,7 +57,7 @@ class RealRun:
     ) -> None:
         self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
         self._paused = False
-        found = recovered_from(mission, plan, log)
+        found = recovered_from(mission, plan, log, fleet.ports)
         there = with_reported_starts(found.mission, fleet)
         gauged = _Gauged(recorder)
         self._live = Live(
@@ -79,6 +79,11 @@ class RealRun:
         else:
             for line in elsewhere(mission, there):
                 self._live.executor.emit("elsewhere", {"what": line})
+
+    @property
+    def robots(self) -> Collection[str]:
+        """Ids of the robots that take part, or did, in the order of their rows in records."""
+        return self._live.executor.crew.keys()
 
     @property
     def time_s(self) -> float:

@@ -122,7 +122,7 @@ def _world_run(
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
     try:
-        return RealRun(
+        run = RealRun(
             mission,
             plan,
             fleet,
@@ -135,6 +135,8 @@ def _world_run(
             begin_s=begin["until_s"],
             at_end=at_end,
         )
+        recorder.keep_robots(run.robots)
+        return run
     except BaseException:
         fleet.close()
         raise
