@@ -5,10 +5,12 @@ The table of docs/commands.md is made from `Ending`; a test compares them.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from enum import Enum
 
+import click
+
 from muster.cli import exits
-from muster.cli.invocation import this_invocation
 
 
 class Ending(Enum):
@@ -85,6 +87,28 @@ class Ending(Enum):
 
     def __init__(self, code: int, ended: str, verbs: str, words: str, status: str) -> None:
         self.code, self.ended, self.verbs, self.words, self.status = code, ended, verbs, words, status
+
+
+@dataclass
+class Invocation:
+    """One call of the command.
+
+    Attributes
+    ----------
+    began_s : float or None
+        Time of `SystemClock` at which the call began; None where it began with the verb.
+    endings : list of Ending
+        What a verb has noted for the exit code, see `note_ending`.
+    """
+
+    began_s: float | None = None
+    endings: list[Ending] = field(default_factory=list)
+
+
+def this_invocation() -> Invocation:
+    """Return the call that is under way; a new one where the verb was not called by `muster.cli.main.run`."""
+    context = click.get_current_context(silent=True)
+    return (context and context.find_object(Invocation)) or Invocation()
 
 
 def exit_code(*endings: Ending) -> int:

@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exit_codes import Ending, exit_code
-from muster.cli.invocation import Invocation
+from muster.cli.exit_codes import Ending, Invocation, exit_code
 from muster.mission.errors import MusterError
 from muster.mission.value_types import shown
 

@@ -316,6 +316,18 @@ class Executor:
             raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
         self.now_s = now
 
+    def come_to(self, now: float) -> None:
+        """Advance the clock as `set_clock` does, and let what is due by then happen."""
+        self.set_clock(now)
+        self._follow_script()
+
+    def pass_over(self, now: float) -> None:
+        """Advance the clock over a pause: robots had nothing to do meanwhile, and count as neither busy nor stuck."""
+        self.set_clock(now)
+        for state in self.crew.values():
+            state.since_s = state.nearest_s = now
+        self._supervisor.pass_over(now)
+
     @property
     def _present(self) -> list[RobotState]:
         return [state for state in self.crew.values() if not state.out]

@@ -106,6 +106,11 @@ class Supervisor:
             elif state.activity is Activity.DRIVING and self.capacity(state) is not None:
                 yield from self._notice_capacity(state, now)
 
+    def pass_over(self, now: float) -> None:
+        """Leave a pause that ends now out of all that is counted."""
+        self.standstill.since_s = now
+        self.traffic.pass_over(now)
+
     def _look_at_traffic(self, now: float) -> None:
         """Who waits for another, or was sent another way, is not stuck for coming no nearer.
 

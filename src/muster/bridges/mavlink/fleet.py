@@ -73,6 +73,7 @@ class MavlinkFleet:
         self._settings = Settings() if settings is None else settings
         _check(mission, endpoints, self._settings, height_m)
         self._clock, self._wait = SystemClock() if clock is None else clock, wait
+        self.simulated_time = clock is not None
         self._begun_s = self._clock.now()
         self._speaker = threading.Thread(target=self._speak_on, daemon=True) if clock is None else None
         self._lock, self._closed = threading.RLock(), threading.Event()
