@@ -11,6 +11,11 @@ from enum import Enum
 import click
 
 from muster.cli import exits
+from muster.mission.errors import MusterError
+
+
+class CutShortError(MusterError):
+    """A plan that was cut short is not carried out."""
 
 
 class Ending(Enum):
@@ -114,6 +119,12 @@ def this_invocation() -> Invocation:
 def exit_code(*endings: Ending) -> int:
     """Return the exit code of a command for which all of `endings` hold; 0 if there are none."""
     return min((*endings, Ending.DONE), key=_PRECEDENCE.__getitem__).code
+
+
+def gravest(*codes: int) -> int:
+    """Return the exit code that decides among those of several parts of a command."""
+    by_code = {ending.code: ending for ending in Ending}
+    return exit_code(*(by_code[code] for code in codes))
 
 
 def exit_code_if(*conditions: tuple[Ending, object]) -> int:
