@@ -107,10 +107,10 @@ def command(
     fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)
     with closing(fleet), signals_interrupt(), LastLines(fleet.final_states) as last_lines:
         start = start_in_time(loaded, fleet, options)
-        fleet.connect(wait)
         plan = given or planned(options, loaded, start)
         if not options.quiet:
             _warn(loaded, plan, height)
+        fleet.connect(wait)
         if not arm:
             return _show(loaded, plan, fleet, options.form)
         last_lines.begun = True
@@ -154,7 +154,7 @@ def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> int:
     else:
         _print_orders(rows)
     armed = [state for state in fleet.final_states() if state.moving]
-    show_final_states(armed)
+    show_final_states(armed, asks=True)
     return exit_code_if((Ending.STILL_MOVING, armed))
 
 

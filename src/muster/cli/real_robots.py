@@ -276,10 +276,10 @@ def reported(
         print_report(figures, mission, with_tasks=options.verbose)
     if halt.is_set():
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission; {left}", err=True)
-    show_final_states(final_states)
     lost = [task for task, reason in report.tasks_lost if not was_cancelled(reason)]
     if lost and not halt.is_set():
         click.echo(f"{counted(len(lost), 'task')} lost: {sequence(lost)}", err=True)
+    show_final_states(final_states, asks=halt.is_set() or bool(lost))
     return exit_code_if(
         (Ending.STILL_MOVING, any(state.moving for state in final_states)),
         (Ending.INTERRUPTED, halt.is_set()),
@@ -287,13 +287,16 @@ def reported(
     )
 
 
-def show_final_states(states: Sequence[FinalState]) -> None:
-    """Print a line for each robot, and what to do; it concerns safety, so `--quiet` does not silence it."""
+def show_final_states(states: Sequence[FinalState], *, asks: bool) -> None:
+    """Print a line for each robot; it concerns safety, so `--quiet` does not silence it.
+
+    Where the mission did not end as planned (`asks`), a line before them says what to do with robots that still move.
+    """
+    if asks and (moving := [state.robot for state in states if state.moving]):
+        todo = "land or stop them by their own controls or a ground station, and disarm them"
+        click.echo(f"still flying, driving or armed: {', '.join(moving)}; {todo}", err=True)
     for state in states:
         click.echo(str(state), err=True)
-    if moving := [state.robot for state in states if state.moving]:
-        what = "land or stop with their own controls or a ground station, and disarm"
-        click.echo(f"still flying, driving or armed: {', '.join(moving)}; expected you to {what}", err=True)
 
 
 class LastLines:
@@ -327,6 +330,6 @@ class LastLines:
             click.echo(f"warning: where robots are is not known: {unknown}", err=True)
             return
         moving = [state for state in states if state.moving]
-        show_final_states(states if self.begun else moving)
+        show_final_states(states if self.begun else moving, asks=True)
         if moving:
             note_ending(Ending.STILL_MOVING)
