@@ -40,7 +40,7 @@ class Ending(Enum):
         "a real robot still flies or drives, is armed, or did or was when it was last heard",
         "`fly`, `ros`, `ros2`",
         "flies; at (",
-        "the run's entry `final_states`",
+        "entry `final_states` of the run",
     )
     INTERNAL_ERROR = (exits.INTERNAL_ERROR, "an error of Muster itself", "all", "internal error:", "500; run `failed`")
     INTERRUPTED = (exits.INTERRUPTED, "interrupted: Ctrl-C, SIGTERM, SIGHUP", "all", "interrupted", "run `cancelled`")

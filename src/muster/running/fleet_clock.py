@@ -11,7 +11,7 @@ from muster.mission.model import Event, Mission
 from muster.motion.port import RobotPort, Telemetry, TranslatedPort
 from muster.running.wall_time import MissionStart
 
-BEHIND_S = 5.0
+BEHIND_S = 10.0
 """Seconds by which a fleet's clock may fall behind the wall clock: the clock of a machine that slept stood still."""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
+from muster.bridges.final_state import final_states_of
 from muster.bridges.fleet import Fleet
 from muster.execution import Recorder, Report, Standing, Status, broken_off
 from muster.mission.clock import Clock
@@ -120,6 +121,7 @@ class RealRun:
         if self.done:
             self._fleet.stop()
             self._at_end()
+            self._tell_final_states()
             self._recorder.on_report(self._live.result().as_dict())
 
     def report(self, event: Event) -> None:
@@ -131,9 +133,16 @@ class RealRun:
 
     def break_off(self, reason: str) -> Report:
         self._fleet.stop()
+        self._tell_final_states()
         report = broken_off(self._live.result(), self._live.executor.account, reason)
         self._recorder.on_report(report.as_dict())
         return report
+
+    def _tell_final_states(self) -> None:
+        """Log where each robot is at the end, what it does, and whether it still flies, drives or is armed."""
+        states = final_states_of(self._fleet, self._live.start.mission)
+        robots = [{"robot": one.robot, "moving": one.moving, "words": str(one)} for one in states]
+        self._live.executor.emit("final_states", {"robots": robots})
 
     def pause(self) -> None:
         self._live.pause()
