@@ -76,14 +76,18 @@ def command(
     """
     from muster.bridges.final_state import final_states_by_telemetry
     from muster.bridges.ros2.fleet import Ros2Fleet
+    from muster.bridges.ros2.middleware import domain_or_own
     from muster.bridges.ros2.open_middleware import open_middleware
     from muster.bridges.ros2.port import Arrival
+    from muster.running.claim_locks import robots_claimed
     from muster.running.live import wait_for_robots
+    from muster.server.runs.robot_claims import claims_of
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
     given = read_given_plan(options, loaded)
-    with ctrl_c_halts(TO_END) as halt:
+    claims = claims_of("ros2", {"namespace": namespace, "domain": domain_or_own(domain)})
+    with ctrl_c_halts(TO_END) as halt, robots_claimed(claims):
         fleet = Ros2Fleet(
             loaded,
             middleware=open_middleware(by, domain),
