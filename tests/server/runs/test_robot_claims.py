@@ -126,9 +126,9 @@ def test_a_fleet_of_another_package_is_claimed_as_a_whole_unless_it_says_what_a_
 def test_a_declaration_that_is_wrong_is_one_line(fleets):
     fleets("sites", claims(sites)(lambda *_: open_acme(*_)))
     fleets("numbers", claims(no_texts)(lambda *_: open_acme(*_)))
-    with pytest.raises(PluginError, match="^fleet sites: its claims: KeyError: 'site'$"):
+    with pytest.raises(PluginError, match=r"^fleet sites: its claims: KeyError: 'site'$"):
         claims_of("sites", {})
-    with pytest.raises(PluginError, match="^fleet numbers: its claims: .*; expected texts$"):
+    with pytest.raises(PluginError, match=r"^fleet numbers: its claims: .*; expected texts$"):
         claims_of("numbers", {"site": "a"})
     assert claims_as_far_as_known("sites", {}) == {"fleet sites"}
     assert claims_as_far_as_known("gone", {}) == {"fleet gone"}

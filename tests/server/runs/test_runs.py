@@ -200,6 +200,7 @@ def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_lat
     assert (store.runs.get(run).state, store.runs.get(run).remark) == ("ended", "")
     assert store.log.last_stretch(run) > 50
     assert action.id < 0 or refuses is FULL  # which may have room for a few bytes
+    assert action.kept == (action.id > 0)
     asked = {action.verb: (action.outcome, action.who) for action in store.actions.list(run=run)}
     assert asked == dict.fromkeys(("run.start", "run.pause", "run.speed", "run.resume"), ("done", "ada"))
 
@@ -230,7 +231,7 @@ def test_a_pause_does_not_wait_for_a_locked_database_and_is_written_once(store):
 
     run, took, unsaved_action = asyncio.run(story())
     assert 0.5 < took[0] < took[1] < 8  # of the database's own patience of 10 s
-    assert all(action.id < 0 for action in unsaved_action)
+    assert all(action.id < 0 and not action.kept for action in unsaved_action)
     asked = [(action.verb, action.outcome) for action in store.actions.list(run=run)]
     assert asked == [(f"run.{verb}", "done") for verb in ("speed", "resume", "pause", "start")]
     at = {action.verb: action.at for action in store.actions.list(run=run)}
