@@ -20,6 +20,7 @@ import muster
 from muster.exchange.mission_control import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
 from muster.mission.plan_reader import plan_from
+from muster.mission.yaml_writer import yaml_text
 from muster.server.runs.unsaved_actions import number_at
 from muster.server.services.records import Records
 from muster.server.services.runs import Runs
@@ -367,3 +368,27 @@ def test_who_is_refused_does_not_wait_for_a_locked_database(store):
 
     assert asyncio.run(story()) < 8  # of the database's own patience of 10 s
     assert [action.outcome for action in store.actions.list()] == ["no run 99"]
+
+
+@pytest.mark.parametrize("world", ["kinematic", "mavlink"])
+def test_a_plan_that_was_cut_short_is_not_carried_out_unless_that_is_accepted(store, world):
+    mission = muster.load("6T-2R")
+    version = store.missions.create(mission.name, yaml_text(mission), {}, {"name": mission.name}, "ada")
+    cut = replace(muster.solve(mission, iterations=10), cut_short=True).as_dict()
+    plan = store.plans.add(version.mission, version.version, "planned", "ada", cut).id
+
+    async def story():
+        async with opened(store, bridges=("mavlink",)) as runs:
+            words = f"^plan {plan}: planning was cut short; expected a whole plan, or accept_partial: true$"
+            with pytest.raises(ConflictError, match=words):
+                await runs.start(ADA, plan, world)
+            with pytest.raises(ConflictError, match=words):
+                await runs.start(ADA, plan, world, accept_partial=False)
+            assert store.runs.list() == []
+            if world == "kinematic":
+                run = (await runs.start(ADA, plan, speed=None, accept_partial=True)).id
+                await watched(runs, run)
+                return await runs.get(run)
+
+    found = asyncio.run(story())
+    assert found is None or len(found.report["tasks_done"]) == 6

@@ -82,7 +82,8 @@ class Runs:
         ForbiddenError, NotFoundError, ParameterError
             if the user may only watch; there is no such plan; the world, speed or a setting is wrong.
         ConflictError
-            if another run commands some of the robots (`claims_of`), or another request had the key.
+            if another run commands some of the robots (`claims_of`), the plan was cut short and that is not accepted,
+            or another request had the key.
         BusyError
             if the most runs are under way.
         """
@@ -264,6 +265,8 @@ class Runs:
         request: RequestKey | None,
     ) -> Run:
         entry = self._store.plans.get(plan)
+        if entry.plan.get("cut_short") and not settings.get("accept_partial"):
+            raise ConflictError(f"plan {plan}: planning was cut short; expected a whole plan, or accept_partial: true")
         return self._store.runs.add(
             entry.mission,
             entry.mission_version,
