@@ -96,6 +96,7 @@ class Ros1Fleet:
         require_avoidance(avoidance, mission.dimensions)
         self._now = time_of_ros()
         self.clock = clock or MissionClock(self._now)
+        self.simulated_time = isinstance(self._now, Forward)
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
         self.topics = topics_in(namespace)
         """The namespace of a robot's topics, such as `/r_0`."""
@@ -130,7 +131,7 @@ class Ros1Fleet:
 
     @property
     def time_s(self) -> float:
-        """See `Fleet`. It stands still while the fleet pauses."""
+        """See `Fleet`. It stands still while the fleet pauses; the mission's clock does so for a simulator's alone."""
         return self.clock.time_s
 
     def advance(self, until_s: float) -> Sequence[Event]:
@@ -160,8 +161,13 @@ class Ros1Fleet:
             self._events.append(event)
         self._news.set()
 
+    @property
+    def paused(self) -> bool:
+        """Whether robots stand because somebody wants that."""
+        return self.clock.paused
+
     def pause(self) -> None:
-        """Robots stand, and the mission's clock too, until `resume`."""
+        """Robots stand, and the fleet's clock too, until `resume`."""
         with self._lock:
             self.clock.pause()
             self._tell_all(Ros1Port.stand)
@@ -183,7 +189,7 @@ class Ros1Fleet:
         if isinstance(self._now, Forward) and not self._now.has_begun:
             return dict.fromkeys(self._all(), "/use_sim_time is set, and nothing is on /clock")
         return {
-            name: f"its poses are in frame {port.untied}, which tf does not tie to {self._frame.name}"
+            name: self._frame.untied(port.untied)
             if port.untied
             else f"nothing on {self.topics(name)}/odom or {self._pose_topic(name) or self.topics(name) + '/pose'}"
             for name, port in self._all().items()

@@ -13,12 +13,13 @@ from typing import Any, Literal
 from muster.bridges.follower import Follower
 from muster.bridges.pose_port import goal_heading, require_finite
 from muster.bridges.ros1.clock import MissionClock
-from muster.bridges.ros1.map_frame import OWN, MapFrame
+from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.message_conversion import place_and_heading, pose_stamped, tf_of, twist_of
 from muster.bridges.ros1.node import publish
 from muster.bridges.ros1.pose_listener import PoseListener
 from muster.bridges.ros1.ros import PoseStamped, Twist, rospy
 from muster.bridges.steering import STILL, SteeredRobot, Velocity
+from muster.bridges.tied_frames import OWN
 from muster.mission.model import Robot
 from muster.motion.frames import Floats
 from muster.motion.port import Place, Telemetry, Waypoint

@@ -15,6 +15,7 @@ import sys
 import threading
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -24,9 +25,11 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
+from muster.running.claim_locks import robots_claimed
 from muster.running.worlds import WORLDS
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
+from muster.server.runs.robot_claims import claims_as_far_as_known
 from muster.server.runs.run_loop import RunLoop, WorldRun
 from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
@@ -34,6 +37,8 @@ from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
 from muster.traffic.names import DEFAULT
 
+_ENDS_WITHIN_S = 30.0
+"""Seconds within which another run of the same robots, which is over, tells them to stand and ends."""
 STRETCH_S, REAL_STRETCH_S = 5.0, 1.0
 """Seconds of mission time a stretch of tracks: of real robots a crash loses what is not yet kept."""
 
@@ -84,6 +89,7 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
     with ExitStack() as stack:
         if real:
             stack.enter_context(alone(Path(begin["lock"]), begin["run"]))
+            stack.enter_context(robots_claimed(_claims_here(begin["world"], begin["settings"]), _ENDS_WITHIN_S))
         os.chdir(folder)
         mission = mission_of(begin["mission"])
         outbox.send({"type": "mission", "mission": _shown(mission)})
@@ -97,14 +103,20 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
         )
         plan = plan_from(begin["plan"], "the plan")
         with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
-            how = {"speed": begin["speed"], "starts_at": mission.starts_at, "ended": ended.is_set}
+            how = {"speed": begin["speed"], "starts_at": world_run.starts_at, "ended": ended.is_set}
             run_loop = RunLoop(world_run, recorder, inbox, outbox, **how)
             if real:
+                outbox.send({"type": "mission", "mission": _shown(replace(mission, starts_at=world_run.starts_at))})
                 run_loop.recall(log)
             else:
                 run_loop.catch_up(log, begin["until_s"])
             outbox.send({"type": "going"})
             run_loop.run()
+
+
+def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
+    """What the run claims on this machine; on ROS 1 the master ends the first of two nodes /muster."""
+    return frozenset() if world == "ros1" else claims_as_far_as_known(world, settings)
 
 
 def _world_run(
@@ -122,7 +134,7 @@ def _world_run(
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
     try:
-        return RealRun(
+        run = RealRun(
             mission,
             plan,
             fleet,
@@ -132,9 +144,11 @@ def _world_run(
             standing=standing_of(settings),
             traffic=settings.get("traffic", DEFAULT),
             log=log,
-            begin_s=begin["until_s"],
+            starts=settings.get("starts", "given"),
             at_end=at_end,
         )
+        recorder.keep_robots(run.robots)
+        return run
     except BaseException:
         fleet.close()
         raise
