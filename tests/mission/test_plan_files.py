@@ -41,6 +41,7 @@ plans = st.builds(
     weight_completed=optional(finite),
     lower_bound=optional(finite),
     elapsed_s=optional(finite),
+    cut_short=st.booleans(),
     routes=st.lists(st.builds(Route, words, st.lists(words, max_size=3).map(tuple), optional(finite)), max_size=3).map(
         tuple
     ),
@@ -64,7 +65,9 @@ def test_plans_are_read_back(folder, plan):
     again = read_plan(path)
     assert again == plan
     assert again.text() == path.read_text(encoding="utf-8")
-    assert json.loads(plan.text())["schema"] == "muster-plan/1"
+    data = json.loads(plan.text())
+    assert data["schema"] == "muster-plan/1"
+    assert data.get("cut_short", "absent") == (plan.cut_short or "absent")
 
 
 def test_a_plan_from_elsewhere_needs_only_schema_and_routes(tmp_path):
@@ -96,6 +99,7 @@ BAD_PLANS = {
         '{"schema": "muster-plan/1",\n "routes": [],\n}',
         ":3: Expecting property name enclosed in double quotes; expected a plan in JSON",
     ),
+    "cut short": (with_routes('"cut_short": 1'), ": cut_short: 1; expected true or false"),
     "list": ("[]", ": []; expected a mapping with schema: muster-plan/1 and routes"),
     "number": ("12", ": 12; expected a mapping with schema: muster-plan/1 and routes"),
     "null": ("null", ": null; expected a mapping with schema: muster-plan/1 and routes"),

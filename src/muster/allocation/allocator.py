@@ -189,6 +189,7 @@ def finished_plan(problem: Problem, stop: Stop, outcome: Outcome, *, allocator: 
         tasks_total=len(problem.tasks),
         weight_completed=sum(problem.tasks[j].priority for j in done),
         elapsed_s=elapsed,
+        cut_short=stop.cut_short and len(done) < len(problem.tasks),
         routes=tuple(by_robot[robot.id] for robot in mission.robots),
         unassigned=unassigned_of_plan(problem, lists, lambda: stop.overdue),
         history=tuple(stop.history),

@@ -110,7 +110,8 @@ def _exact(problem: Problem, plan: Plan, stop: Stop, time_limit: float | None) -
         why = f"what {_SOLVER} and quick bounds had ruled out after {seconds:g} s"
     else:
         why = f"whether more tasks can be done is not known after {seconds:g} s of {_SOLVER}"
-    return Proof(replace(plan, lower_bound=result.lower_bound), why)
+    cut_short = plan.cut_short and not result.optimal
+    return Proof(replace(plan, lower_bound=result.lower_bound, cut_short=cut_short), why)
 
 
 def _is_cheaper(problem: Problem, routes: Routes, plan: Plan) -> bool:

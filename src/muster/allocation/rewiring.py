@@ -50,6 +50,7 @@ def rewire(problem: Problem, plan: Plan) -> Rewired:
         allocator=plan.allocator,
         seed=plan.seed,
         elapsed_s=plan.elapsed_s,
+        cut_short=plan.cut_short,
         history=plan.history if made.objective_value == plan.objective_value else own_history,
         book=plan.book,
     )

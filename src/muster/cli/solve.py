@@ -86,7 +86,7 @@ def command(
         if not quiet:
             click.echo("interrupted: this is the best plan so far", err=True)
         return INTERRUPTED
-    if solution.cut_short and not quiet:
+    if solution.plan.cut_short and not quiet:
         click.echo("time limit: planning was cut short; it did not come to all tasks that are left out", err=True)
     if options.time_limit is not None and not quiet:
         _say_overrun(interrupt.elapsed_s, options.time_limit, solution.plan)

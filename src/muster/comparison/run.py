@@ -131,5 +131,5 @@ def figures(made: Attempt, problem: Problem, stop: Stop) -> dict[str, Any]:
         "found_s": stop.history[-1][0] if stop.history else None,
         "cpu_s": made.cpu_s,
         "iterations": stop.iterations_done,
-        "cut_short": stop.cut_short and not made.plan.complete,
+        "cut_short": made.plan.cut_short,
     }

@@ -109,8 +109,8 @@ class Plan:
 
     Figures are None in a plan from elsewhere that does not state them. The times with and without traffic are a
     forecast of when all robots have ended their routes, ways home included, where they pass in turn; None where they
-    do not. Of those stated here, `elapsed_s` and the
-    seconds in `history` are times; all others are the same whenever mission, allocator, parameters and seed are.
+    do not. `cut_short` says that planning was ended before it had looked at every task that is left out, so that the
+    plan is a part of one; files have it only where it is true. Of the figures, `elapsed_s` and the seconds in `history` are times; all others are the same whenever mission, allocator, parameters and seed are.
 
     Raises
     ------
@@ -134,6 +134,7 @@ class Plan:
     weight_completed: float | None = None
     lower_bound: float | None = None
     elapsed_s: float | None = None
+    cut_short: bool = False
     time_with_traffic_s: float | None = None
     time_without_traffic_s: float | None = None
     routes: tuple[Route, ...]
@@ -161,7 +162,7 @@ class Plan:
                 data[name] = [route.as_dict() for route in self.routes]
             elif name == "unassigned":
                 data[name] = tuple(asdict(left_out) for left_out in self.unassigned)
-            elif name in _TRAFFIC_TIMES and value is None:
+            elif (name in _TRAFFIC_TIMES and value is None) or (name == "cut_short" and not value):
                 continue
             elif name not in ("objective_value", "book"):
                 data[name] = value

@@ -125,6 +125,7 @@ class _Reading:
             objective=objective.get("name") if objective.get("name") in OBJECTIVES else None,
             objective_value=self._number(objective, "value", "objective."),
             usage_unit=self._given(data, "usage_unit", str),
+            cut_short=self._flag(data, "cut_short"),
             tasks_completed=self._given(data, "tasks_completed", int),
             tasks_total=self._given(data, "tasks_total", int),
             routes=self._routes(data),
@@ -151,6 +152,12 @@ class _Reading:
             self._refuse(name, value, {str: "a text", int: "a whole number", dict: "a mapping", list: "a list"}[kind])
             return default
         return value
+
+    def _flag(self, data: Mapping[str, Any], name: str) -> bool:
+        value = data.get(name, False)
+        if not isinstance(value, bool):
+            self._refuse(name, value, "true or false")
+        return value is True
 
     def _number(self, data: Mapping[str, Any], name: str, at: str = "") -> float | None:
         value = data.get(name)

@@ -38,8 +38,6 @@ class Solution:
         how many the allocator did.
     interrupted
         whether planning was interrupted, so that the plan is the best until then, neither rewired nor bounded.
-    cut_short
-        whether the time limit ended an auction before it came to all tasks that are left out.
     """
 
     plan: Plan
@@ -47,7 +45,6 @@ class Solution:
     why: str = ""
     iterations: int = 0
     interrupted: bool = False
-    cut_short: bool = False
 
 
 def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt: Stop | None = None) -> Solution:
@@ -102,7 +99,6 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
         why=why,
         iterations=stop.iterations_done,
         interrupted=stop.interrupted,
-        cut_short=stop.cut_short and not plan.complete,
     )
 
 
