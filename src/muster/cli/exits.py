@@ -7,6 +7,8 @@ INCOMPLETE = 3
 """Tasks are left out that are required; or no run of a comparison has a plan."""
 STILL_MOVING = 4
 """A real robot still flies or drives, or did when it was last heard."""
+TASKS_LOST = 5
+"""Real robots are safe, and tasks were lost."""
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 BROKEN_PIPE = 141

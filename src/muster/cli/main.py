@@ -1,8 +1,6 @@
 """The command's entry: finds the verb, and turns every expected failure into a line and an exit code.
 
-Exit codes: 0 done; 1 `verify` rejects the plan; 2 bad input, usage or a missing extra; 3 `--require-complete` and some
-task is left out or impossible, or a comparison without any plan; 4 a real robot still flies or drives at
-the end; 130 interrupted.
+`muster.cli.exit_codes` has the table of exit codes.
 """
 
 from __future__ import annotations
@@ -18,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exits import BAD_INPUT, BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED
+from muster.cli.exit_codes import Ending, exit_code
+from muster.cli.invocation import Invocation
 from muster.mission.errors import MusterError
 from muster.mission.value_types import shown
 
@@ -172,50 +171,46 @@ def run(arguments: list[str], began_s: float | None = None) -> int:
     colour = (
         True if os.environ.get("FORCE_COLOR") else None
     )  # as Rich takes it; NO_COLOR leaves bold, which is no colour
+    invocation = Invocation(began_s)
     try:
-        result = muster.main(arguments, prog_name="muster", standalone_mode=False, obj=began_s, color=colour)
+        result = muster.main(arguments, prog_name="muster", standalone_mode=False, obj=invocation, color=colour)
         sys.stdout.flush()
     except click.exceptions.Exit as stop:
         return stop.exit_code
-    except click.ClickException as error:
+    except (KeyboardInterrupt, Exception) as error:  # whatever happens, the user gets a line
+        return exit_code(_told(error), *invocation.endings)
+    return result if isinstance(result, int) else exit_code(Ending.DONE)
+
+
+def _told(error: BaseException) -> Ending:
+    """Print the line of an exception that ended the command; returns how the command ended."""
+    if isinstance(error, click.Abort) or _is_ctrl_c(error):
+        click.echo("interrupted", err=True)
+        return Ending.INTERRUPTED
+    if isinstance(error, click.ClickException):
         error.show(sys.stderr)
-        return BAD_INPUT
-    except MusterError as error:
-        return _fail(str(error))
-    except (BrokenPipeError, _OutputClosedError):
+        return Ending.REFUSED
+    if isinstance(error, MusterError):
+        return _refused(str(error))
+    if isinstance(error, (BrokenPipeError, _OutputClosedError)):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return BROKEN_PIPE
-    except OSError as error:
-        if error.filename is None and error.errno in (errno.ENOSPC, errno.EDQUOT):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # which would fail again at the end
-            return _fail(f"{error.strerror}; expected room for what is written, and printed")
-        if error.filename is None:
-            return _internal(error)
-        return _fail(f"{error.filename}: {error.strerror}; expected a file that can be read or written")
-    except (KeyboardInterrupt, click.Abort):
-        return _interrupted()
-    except Exception as error:  # whatever happens, the user gets a line
-        return _interrupted() if _is_ctrl_c(error) else _internal(error)
-    return result if isinstance(result, int) else 0
+        return Ending.BROKEN_PIPE
+    if isinstance(error, OSError) and error.filename is not None:
+        return _refused(f"{error.filename}: {error.strerror}; expected a file that can be read or written")
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # which would fail again at the end
+        return _refused(f"{error.strerror}; expected room for what is written, and printed")
+    if os.environ.get("MUSTER_DEBUG"):
+        raise error
+    click.echo(f"internal error: {type(error).__name__}: {error} (MUSTER_DEBUG=1 shows where)", err=True)
+    return Ending.INTERNAL_ERROR
 
 
-def _fail(message: str) -> int:
+def _refused(message: str) -> Ending:
     click.echo(message, err=True)
-    return BAD_INPUT
-
-
-def _interrupted() -> int:
-    click.echo("interrupted", err=True)
-    return INTERRUPTED
+    return Ending.REFUSED
 
 
 def _is_ctrl_c(error: BaseException | None) -> bool:
     """Whether Ctrl-C is at the root of an error: Python 3.11 wraps one that comes while it makes a class."""
     return isinstance(error, KeyboardInterrupt) or (error is not None and _is_ctrl_c(error.__cause__))
-
-
-def _internal(error: Exception) -> int:
-    if os.environ.get("MUSTER_DEBUG"):
-        raise error
-    click.echo(f"internal error: {type(error).__name__}: {error} (MUSTER_DEBUG=1 shows where)", err=True)
-    return INTERNAL_ERROR

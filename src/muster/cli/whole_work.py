@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import click
+from muster.cli.invocation import this_invocation
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Stop
@@ -14,7 +14,7 @@ def whole_work() -> Stop:
     """A stop for all the work of a verb, whose time began with the command: loading the program counts too."""
     from muster.allocation.stop import Stop
 
-    return Stop(began_s=click.get_current_context().find_object(float))
+    return Stop(began_s=this_invocation().began_s)
 
 
 def time_left_s(limit_s: float) -> float:
