@@ -161,7 +161,7 @@ class Live:
         past: CompletedWork | None = None,
         begin_s: float = 0.0,
     ) -> None:
-        robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+        robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
         self._fleet, self._recorder = FleetWithMissionClock(managed, begin_s), recorder

@@ -130,7 +130,7 @@ class Simulation:
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
     ) -> None:
-        robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+        robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         travel = travel_of(mission, robot_paths)
         manager = manager_for(
             traffic,
