@@ -17,6 +17,7 @@ from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import Itinerary, Passage, itineraries
 from muster.exchange.kml import kml_text
+from muster.exchange.open_ways import require_open_itineraries
 from muster.exchange.qgc_writer import PlanFiles
 from muster.exchange.spreadsheet import csv_text
 from muster.exchange.thinning import thinned
@@ -27,6 +28,7 @@ from muster.mission.sol_files import sol_text
 from muster.motion.map_world import body_of
 from muster.motion.robot_paths import RobotPaths
 from muster.verification import Verdict
+from muster.verification.required import require_geometry
 
 
 def exported(mission: Mission, verdict: Verdict, form: str, options: ExportOptions, plan: Plan | None = None) -> Files:
@@ -90,9 +92,11 @@ def _features(
 ) -> tuple[PlanFeatures, tuple[str, ...]]:
     """The features of a plan, drones at their heights, and messages on these."""
     earth = Earth.of(mission, f"--to {form}")
+    require_geometry(mission, f"--to {form}")
     options = options or ExportOptions()
     altitudes = altitudes_of(mission, options)
     team, notes = raised_team(mission, verdict, altitudes, options)
+    require_open_itineraries(mission, team)
     return features_of(mission, verdict, team, earth, layered=altitudes), notes
 
 
@@ -110,12 +114,14 @@ def plan_files(
     """
     options = options or ExportOptions()
     earth = Earth.of(mission, "--to qgc")
+    require_geometry(mission, "--to qgc")
     robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
     altitudes = altitudes_of(mission, options)
     straight = [_thinned(i, robot_paths, options.tolerance) for i in itineraries(mission, verdict, robot_paths)]
     whole = at_work(mission, straight)
     _require_heights(mission, whole, altitudes)
     team = [raised(itinerary, altitudes) for itinerary in whole]
+    require_open_itineraries(mission, team)
     busy = [itinerary for itinerary in team if len(itinerary.passages) > 1]
     files = dict(zip(file_names([i.robot.id for i in busy], ".plan"), busy, strict=True))
     plans = PlanFiles(mission, earth, team, options.firmware)

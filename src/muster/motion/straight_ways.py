@@ -23,7 +23,7 @@ from muster.motion.path import NoPath, Path
 if TYPE_CHECKING:
     import shapely
 
-_SLACK, _ULPS = 1e-9, 1e-14  # of the extent, and of the greatest coordinate: so deep counts as touching
+_SLACK_M, _SLACK, _ULPS = 2e-9, 1e-9, 1e-14  # metres, of the extent, of the greatest coordinate: so deep is touching
 _LEGS_AT_ONCE = 200_000
 CLOSED = "closed area"
 """The reason of legs that do not exist."""
@@ -185,7 +185,7 @@ def _tops(starts: Floats, ends: Floats) -> Floats:
 
 def _slack_m(polygon: shapely.Polygon) -> float:
     west, south, east, north = polygon.bounds
-    return _SLACK * max(east - west, north - south) + _ULPS * max(map(abs, polygon.bounds))
+    return _SLACK_M + _SLACK * max(east - west, north - south) + _ULPS * max(map(abs, polygon.bounds))
 
 
 def _shares_between(first: Floats, last: Floats, low: float, high: float) -> tuple[Floats, Floats]:

@@ -35,6 +35,7 @@ from muster.running.fleet_in_traffic import FleetInTraffic
 from muster.running.replanning import planning_of
 from muster.running.traffic_choice import manager_for
 from muster.traffic.names import DEFAULT
+from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Report
@@ -161,6 +162,9 @@ class Live:
         past: CompletedWork | None = None,
         begin_s: float = 0.0,
     ) -> None:
+        if past is None:  # else each robot stands anywhere, and its next leg is checked when it is sent
+            require_open_ways(mission, plan)
+        require_geometry(mission, "a run of real robots")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)

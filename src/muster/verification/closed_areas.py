@@ -25,7 +25,7 @@ from muster.motion.maps.polygons import read_polygon
 if TYPE_CHECKING:
     import shapely
 
-_TOUCH, _ROUNDING = 1e-9, 1e-14  # of an area's extent, and of its greatest coordinate
+_TOUCH_M, _TOUCH, _ROUNDING = 2e-9, 1e-9, 1e-14  # metres, of an area's extent, and of its greatest coordinate
 
 Spot = tuple[float, float, float]
 
@@ -158,7 +158,7 @@ def _leg(start: tuple[float, float], end: tuple[float, float]) -> shapely.Geomet
 
 def _touch_m(polygon: shapely.Polygon) -> float:
     west, south, east, north = polygon.bounds
-    return _TOUCH * max(east - west, north - south) + _ROUNDING * max(map(abs, polygon.bounds))
+    return _TOUCH_M + _TOUCH * max(east - west, north - south) + _ROUNDING * max(map(abs, polygon.bounds))
 
 
 def _spot(point: Point) -> Spot:

@@ -100,11 +100,6 @@ class Travel:
         return self._paths is None and not self._by_table and not self._has_closed_legs
 
     @property
-    def is_checked_along_legs(self) -> bool:
-        """Whether closed areas are looked for along whole legs, which are straight; else at places alone."""
-        return self._paths is None and not self._by_table
-
-    @property
     def may_need_detours(self) -> bool:
         """Whether a place without a leg from another may be reached by way of a third."""
         return self._by_table or self._has_closed_legs
