@@ -146,9 +146,6 @@ def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
     name, fence = itinerary.robot.id, Fence.of(plans.mission, itinerary)
     for k in fence.passed:
         yield f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
-    for broken in fence.broken:
-        how = "does not stay in" if broken == "the boundary" else "leads through"
-        yield f"warning: {name}: its way {how} {broken}; its fence will stop it"
     if stations := dict.fromkeys(passage.station for passage in itinerary.passages if passage.station is not None):
         yield f"{name}: holds at {', '.join(stations)} for its service; whether it lands there is up to you"
     if any(crosses(plans.earth.spots([*corners, corners[0]])) for corners, _ in fence.polygons):
