@@ -40,8 +40,8 @@ def closed_legs(mission: Mission, areas: ClosedAreas, robot: Robot, stops: Itera
         elif isinstance(stop, Task) and (work := _work(areas, robot, stop, whole=whole)) is not None:
             yield Violation(CLOSED_AREA, robot.id, task, work)
         here, left_at = name, place.exit
-    end = place_at_end(robot, mission.rules) if here != "its start" else None
-    if end is not None and (found := areas.obstacle(robot, left_at if whole else end.entry, end.entry)) is not None:
+    end = place_at_end(robot, mission.rules) if whole and here != "its start" else None
+    if end is not None and (found := areas.obstacle(robot, left_at, end.entry)) is not None:
         yield Violation(CLOSED_AREA, robot.id, None, f"the leg from {here} to where the route must end {found}")
 
 

@@ -115,7 +115,11 @@ class Travel:
             return self._paths.metres(robot, start.exit, end.entry)
         if not self._is_open(robot, start.exit, end.entry):
             return None
-        length = self._tabled(robot, start, end) if self._by_table else math.dist(start.exit, end.entry)
+        if self._by_table:
+            is_closed = end.id != robot.id and self.areas.obstacle(robot, end.entry, end.entry) is not None
+            length = math.inf if is_closed else self._tabled(robot, start, end)
+        else:
+            length = math.dist(start.exit, end.entry)
         return length if math.isfinite(length) else None
 
     def work_metres(self, robot: Robot, task: Task) -> float | None:
