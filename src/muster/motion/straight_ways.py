@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,7 +34,8 @@ CLOSED = "closed area"
 class _Block:
     """A zone for one body: legs may not meet `shape` where they are above `low` and below `high`.
 
-    They meet it within `reach_m`, if that is above 0, else where they intersect it.
+    They meet it within `reach_m`, if that is above 0, else where they intersect it; never farther than `radius_m` from
+    its `middle`.
     """
 
     name: str
@@ -41,6 +43,18 @@ class _Block:
     reach_m: float
     low: float
     high: float
+
+    @cached_property
+    def middle(self) -> Floats:
+        """The middle (2,) of the box around the shape."""
+        west, south, east, north = self.shape.bounds
+        return np.array([west + east, south + north]) / 2
+
+    @cached_property
+    def radius_m(self) -> float:
+        """The radius of a circle around the middle that holds the shape, and what is within its reach."""
+        west, south, east, north = self.shape.bounds
+        return math.hypot(east - west, north - south) / 2 * (1 + _SLACK) + self.reach_m
 
 
 class StraightWays:
@@ -54,11 +68,12 @@ class StraightWays:
         self._blocks = [self._block(area) for area in world.stopping(body, world.dimensions == 3)]
         for block in self._blocks:
             shapely.prepare(block.shape)
-        self._within, self._edge, self._edge_m = None, None, 0.0
+        self._within, self._edge, self._edge_m, self._is_convex = None, None, 0.0, True
         if world.boundary is not None and not world.is_unbounded:
             slack = _slack_m(world.boundary)
             self._within = shapely.buffer(world.boundary, slack, join_style="mitre")
             self._edge, self._edge_m = world.boundary.exterior, body.radius_m - slack
+            self._is_convex = bool(world.boundary.equals(world.boundary.convex_hull))
             shapely.prepare(self._within)
             shapely.prepare(self._edge)
 
@@ -86,24 +101,33 @@ class StraightWays:
     def clear(self, points: Floats) -> bool:
         """Return whether the straight pieces through points (k, d) keep out of closed areas."""
         places = _in_space(points)
-        return not self.crossed(
-            places[:-1] if len(places) > 1 else places, places[1:] if len(places) > 1 else places
-        ).any()
+        return not self.crossed(places[: max(1, len(places) - 1)], places[min(1, len(places) - 1) :]).any()
 
     def lengths(self, exits: npt.ArrayLike, entries: npt.ArrayLike, *, threads: int = 1) -> Floats:
         """Return the lengths (n, m), metres, of legs from exits (n, 3) to entries (m, 3); inf where they are closed."""
         leave, enter = _in_space(np.asarray(exits)), _in_space(np.asarray(entries))
         metres = np.asarray(np.linalg.norm(leave[:, None] - enter[None], axis=2))
+        metres[self.crossed(leave, leave)] = math.inf
+        metres[:, self.crossed(enter, enter)] = math.inf
+        both_ways = np.array_equal(leave, enter)  # then a leg is closed as the leg back is
         rows = max(1, _LEGS_AT_ONCE // max(1, len(enter)))
         for first in range(0, len(leave), rows):
-            some = leave[first : first + rows]
-            crossed = self.crossed(np.repeat(some, len(enter), axis=0), np.tile(enter, (len(some), 1)))
-            metres[first : first + rows][crossed.reshape(len(some), len(enter))] = math.inf
-        return metres
+            some = metres[first : first + rows]
+            at, to = np.nonzero(np.triu(np.isfinite(some), first) if both_ways else np.isfinite(some))
+            some[at, to] += np.where(self._between(leave[first + at], enter[to]), math.inf, 0.0)
+        return np.maximum(metres, metres.T) if both_ways else metres
 
     def crossed(self, starts: Floats, ends: Floats) -> Bools:
         """Return which legs (k,) from starts (k, 3) to ends (k, 3) enter a closed zone or leave the boundary."""
-        found = self._leaves(starts, ends)
+        return np.asarray(self._leaves(starts, ends) | self._meets_any(starts, ends))
+
+    def _between(self, starts: Floats, ends: Floats) -> Bools:
+        """Which legs (k,) between places that are open are closed."""
+        return self._meets_any(starts, ends) if self._is_convex else self.crossed(starts, ends)
+
+    def _meets_any(self, starts: Floats, ends: Floats) -> Bools:
+        """Which legs (k,) meet a block."""
+        found = np.zeros(len(starts), dtype=np.bool_)
         grounded = self._grounded(starts, ends)
         for block in self._blocks:
             left = np.flatnonzero(~found)
@@ -116,9 +140,7 @@ class StraightWays:
     def _grounded(self, starts: Floats, ends: Floats) -> Bools:
         """Whether each leg (k,) begins or ends with a drone on the ground."""
         lower, upper = np.minimum(starts[:, 2], ends[:, 2]), np.maximum(starts[:, 2], ends[:, 2])
-        return (
-            np.asarray((lower <= self._ground_m) & (upper > lower)) if self._flies else np.zeros(len(starts), np.bool_)
-        )
+        return np.asarray((lower <= self._ground_m) & (upper > lower) & self._flies)
 
     def is_open(self, points: Floats) -> bool:
         """Return whether no closed zone and no side of the boundary is near the convex hull of points (k, 3)."""
@@ -149,18 +171,10 @@ class StraightWays:
 
         begin, end = _shares_between(starts[:, 2], ends[:, 2], block.low, block.high)
         from_, to = (starts + share[:, None] * (ends - starts) for share in (begin, end))
-        west, south, east, north = block.shape.bounds
-        near = begin <= end
-        for k, (low, high) in enumerate(((west, east), (south, north))):
-            near &= np.maximum(from_[:, k], to[:, k]) >= low - block.reach_m
-            near &= np.minimum(from_[:, k], to[:, k]) <= high + block.reach_m
+        near = (begin <= end) & (_distances(block.middle, from_, to) <= block.radius_m)
         legs = _lines(from_[near], to[near])
-        met = (
-            shapely.dwithin(block.shape, legs, block.reach_m)
-            if block.reach_m
-            else shapely.intersects(block.shape, legs)
-        )
-        near[near] = met
+        shape, reach_m = block.shape, block.reach_m
+        near[near] = shapely.dwithin(shape, legs, reach_m) if reach_m else shapely.intersects(shape, legs)
         return np.asarray(near)
 
     def _leaves(self, starts: Floats, ends: Floats) -> Bools:
@@ -199,6 +213,14 @@ def _shares_between(first: Floats, last: Floats, low: float, high: float) -> tup
     begin, end = np.maximum(at.min(axis=0), 0.0), np.minimum(at.max(axis=0), 1.0)
     inside = (first > low) & (first < high)
     return np.where(level, np.where(inside, 0.0, 1.0), begin), np.where(level, np.where(inside, 1.0, 0.0), end)
+
+
+def _distances(point: Floats, starts: Floats, ends: Floats) -> Floats:
+    """The distances (k,) in the plane of legs from a point (2,)."""
+    along, toward = (ends - starts)[:, :2], point - starts[:, :2]
+    squares = np.einsum("ij,ij->i", along, along)
+    shares = np.clip(np.einsum("ij,ij->i", toward, along) / np.where(squares > 0, squares, 1.0), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(toward - shares[:, None] * along, axis=1))
 
 
 def _lines(starts: Floats, ends: Floats) -> npt.NDArray[np.object_]:
