@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from muster.bridges.final_state import FinalState, final_states_by_telemetry
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, STILL_MOVING
+from muster.cli.exits import INTERRUPTED, STILL_MOVING, TASKS_LOST
 from muster.cli.real_robots import reported
 from muster.execution.report import ObjectiveReport, Report
 from muster.mission.errors import NetworkError
@@ -82,7 +82,7 @@ def test_where_nothing_is_heard_any_more_the_last_telemetry_counts():
 
 @pytest.mark.parametrize(
     ("moving", "halted", "code"),
-    [(False, False, INCOMPLETE), (True, False, STILL_MOVING), (True, True, INTERRUPTED), (False, True, INTERRUPTED)],
+    [(False, False, TASKS_LOST), (True, False, STILL_MOVING), (True, True, STILL_MOVING), (False, True, INTERRUPTED)],
 )
 def test_the_exit_code_and_the_last_lines(capsys, moving, halted, code):
     report = Report(
@@ -107,4 +107,5 @@ def test_the_exit_code_and_the_last_lines(capsys, moving, halted, code):
     assert reported(Mission(robots=(ROVER,), tasks=()), report, wishes, halt, "they stand", states) == code
     lines = capsys.readouterr().err.splitlines()
     assert lines[-2:] == ["r_0: stands; at (1.00, 2.00, 0.00)", "r_1: drives; position unknown"]
-    assert (STILL_MOVING, DONE) == (4, 0)
+    assert ("still flying, driving or armed: r_1; land or stop them" in "\n".join(lines)) == moving
+    assert ("1 task lost: t" in lines) == (not halted)

@@ -47,6 +47,14 @@ class FinalState:
         return f"{self.robot}: {self.state}; at ({', '.join(f'{c:.2f}' for c in self.position)})"
 
 
+def final_states_of(fleet: Fleet, mission: Mission) -> list[FinalState]:
+    """The state of each robot of a fleet, as the fleet itself tells it by `final_states()`, else by telemetry."""
+    told = getattr(fleet, "final_states", None)
+    if told is not None:
+        return list(told())
+    return final_states_by_telemetry(fleet, mission, getattr(fleet, "not_told", ()))
+
+
 def final_states_by_telemetry(fleet: Fleet, mission: Mission, not_told: Collection[str] = ()) -> list[FinalState]:
     """The state of each robot of a fleet, those that joined included; robots that brake get two seconds to stand.
 

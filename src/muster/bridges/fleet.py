@@ -22,6 +22,19 @@ def reason_of(event: Event) -> str:
     return event.reason if isinstance(event, Failure) else ""
 
 
+def has_simulated_time(fleet: Fleet) -> bool:
+    """Return whether a fleet says that its clock is a simulator's, by an attribute `simulated_time` that is true.
+
+    The clock of a mission is the wall clock otherwise.
+    """
+    return bool(getattr(fleet, "simulated_time", False))
+
+
+def is_paused(fleet: Fleet) -> bool:
+    """Return whether a fleet says that somebody let its robots stand, by an attribute `paused` that is true."""
+    return bool(getattr(fleet, "paused", False))
+
+
 class Fleet(Protocol):
     """Robots that are reached through one bridge. Frames and units are converted in the bridge and nowhere else."""
 
@@ -32,7 +45,7 @@ class Fleet(Protocol):
 
     @property
     def time_s(self) -> float:
-        """Seconds of the mission's clock, which never goes back; telemetry is stamped by it."""
+        """Seconds of a clock in real time that never goes back and never stops; telemetry is stamped by it."""
         ...
 
     def advance(self, until_s: float) -> Sequence[Event]:

@@ -5,10 +5,17 @@ The table of docs/commands.md is made from `Ending`; a test compares them.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from enum import Enum
 
+import click
+
 from muster.cli import exits
-from muster.cli.invocation import this_invocation
+from muster.mission.errors import MusterError
+
+
+class CutShortError(MusterError):
+    """A plan that was cut short is not carried out."""
 
 
 class Ending(Enum):
@@ -33,7 +40,7 @@ class Ending(Enum):
         "a real robot still flies or drives, is armed, or did or was when it was last heard",
         "`fly`, `ros`, `ros2`",
         "flies; at (",
-        "the run's entry `final_states`",
+        "entry `final_states` of the run",
     )
     INTERNAL_ERROR = (exits.INTERNAL_ERROR, "an error of Muster itself", "all", "internal error:", "500; run `failed`")
     INTERRUPTED = (exits.INTERRUPTED, "interrupted: Ctrl-C, SIGTERM, SIGHUP", "all", "interrupted", "run `cancelled`")
@@ -87,9 +94,37 @@ class Ending(Enum):
         self.code, self.ended, self.verbs, self.words, self.status = code, ended, verbs, words, status
 
 
+@dataclass
+class Invocation:
+    """One call of the command.
+
+    Attributes
+    ----------
+    began_s : float or None
+        Time of `SystemClock` at which the call began; None where it began with the verb.
+    endings : list of Ending
+        What a verb has noted for the exit code, see `note_ending`.
+    """
+
+    began_s: float | None = None
+    endings: list[Ending] = field(default_factory=list)
+
+
+def this_invocation() -> Invocation:
+    """Return the call that is under way; a new one where the verb was not called by `muster.cli.main.run`."""
+    context = click.get_current_context(silent=True)
+    return (context and context.find_object(Invocation)) or Invocation()
+
+
 def exit_code(*endings: Ending) -> int:
     """Return the exit code of a command for which all of `endings` hold; 0 if there are none."""
     return min((*endings, Ending.DONE), key=_PRECEDENCE.__getitem__).code
+
+
+def gravest(*codes: int) -> int:
+    """Return the exit code that decides among those of several parts of a command."""
+    by_code = {ending.code: ending for ending in Ending}
+    return exit_code(*(by_code[code] for code in codes))
 
 
 def exit_code_if(*conditions: tuple[Ending, object]) -> int:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Sequence
+from contextlib import closing
 from typing import TYPE_CHECKING, Literal
 
 import click
 
-from muster.cli.exits import DONE
+from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
+    LastLines,
     RealRunOptions,
     carried_out,
     planned,
@@ -18,15 +21,17 @@ from muster.cli.real_robots import (
     reported,
     require_outputs,
     show_final_states,
+    start_in_time,
 )
 from muster.mission.errors import ParameterError
-from muster.mission.interrupts import TO_END, ctrl_c_halts
+from muster.mission.interrupts import TO_END, ctrl_c_halts, signals_interrupt
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 
 if TYPE_CHECKING:
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.autopilots import AtEnd
+    from muster.bridges.mavlink.dry_run import Line
 
 
 @click.command()
@@ -100,17 +105,16 @@ def command(
     given = read_given_plan(options, loaded)
     settings = Settings(arm=arm, offboard=offboard, local_frame=local_frame, low_battery=low_battery / 100)
     fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)
-    try:
-        plan = given or planned(options, loaded)
+    with closing(fleet), signals_interrupt(), LastLines(fleet.final_states) as last_lines:
+        start = start_in_time(loaded, fleet, options)
+        plan = given or planned(options, loaded, start)
         if not options.quiet:
             _warn(loaded, plan, height)
         fleet.connect(wait)
         if not arm:
-            _show(loaded, plan, fleet, options.form)
-            return DONE
+            return _show(loaded, plan, fleet, options.form)
+        last_lines.begun = True
         return _fly(loaded, plan, fleet, at_end, options)
-    finally:
-        fleet.close()
 
 
 def _by_robot(endpoints: tuple[str, ...]) -> dict[str, str]:
@@ -139,16 +143,24 @@ def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
         click.echo(f"warning: {meeting}", err=True)
 
 
-def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> None:
-    """Print the orders of each drone, in order."""
+def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> int:
+    """Print the orders of each drone, in order, and which drones are armed; returns the exit code."""
     from muster.bridges.mavlink.dry_run import lines_of
-    from muster.cli.tables import print_table
     from muster.execution import way_of
 
     rows = lines_of(mission, plan, fleet, way_of(mission))
     if form == "json":
         click.echo(json_text({"would_send": [row.as_dict() for row in rows]}), nl=False)
-        return
+    else:
+        _print_orders(rows)
+    armed = [state for state in fleet.final_states() if state.moving]
+    show_final_states(armed, asks=True)
+    return exit_code_if((Ending.STILL_MOVING, armed))
+
+
+def _print_orders(rows: Sequence[Line]) -> None:
+    from muster.cli.tables import print_table
+
     table = [
         (
             row.robot,
@@ -171,11 +183,7 @@ def _degrees(value: float | None) -> str:
 
 def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: AtEnd, options: RealRunOptions) -> int:
     with ctrl_c_halts(TO_END) as halt:
-        try:
-            report = carried_out(mission, plan, fleet, options, halt, at_end=lambda: _end(fleet, at_end, halt))
-        except BaseException:
-            show_final_states(fleet.final_states())
-            raise
+        report = carried_out(mission, plan, fleet, options, halt, at_end=lambda: _end(fleet, at_end, halt))
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
     return reported(mission, report, options, halt, "drones were told to hover", fleet.final_states())

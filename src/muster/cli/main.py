@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exit_codes import Ending, exit_code
-from muster.cli.invocation import Invocation
+from muster.cli.exit_codes import CutShortError, Ending, Invocation, exit_code
 from muster.mission.errors import MusterError
 from muster.mission.value_types import shown
 
@@ -190,6 +189,9 @@ def _told(error: BaseException) -> Ending:
     if isinstance(error, click.ClickException):
         error.show(sys.stderr)
         return Ending.REFUSED
+    if isinstance(error, CutShortError):
+        click.echo(str(error), err=True)
+        return Ending.CUT_SHORT
     if isinstance(error, MusterError):
         return _refused(str(error))
     if isinstance(error, (BrokenPipeError, _OutputClosedError)):

@@ -260,6 +260,13 @@ def require_complete_option(verb: Verb) -> Verb:
     )
 
 
+def accept_partial_option(verb: Verb) -> Verb:
+    """--accept-partial."""
+    return click.option(
+        "--accept-partial", is_flag=True, help="Also with a plan that the time limit cut short, which leaves tasks out."
+    )(verb)
+
+
 def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
     return ignored_rules([name.strip() for name in (value or "").split(",") if name.strip()])
 

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, STILL_MOVING
+from muster.cli.exit_codes import CutShortError, Ending, exit_code_if, note_ending
 from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
 from muster.cli.options import (
     Finite,
     Verb,
+    accept_partial_option,
     format_option,
     load_plan,
     quiet_option,
@@ -28,15 +29,20 @@ from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.planning_options import planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
+from muster.cli.tables import sequence
+from muster.mission.counting import counted
 from muster.mission.errors import MusterError
+from muster.mission.event_descriptions import was_cancelled
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.planning.options import PlanningOptions
+from muster.running.wall_time import STARTS, notes_on_start, planned_from, require_time_left
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
     from muster.bridges.fleet import Fleet
     from muster.execution import Recorder, Report
+    from muster.running.wall_time import MissionStart
 
 _FILE = click.Path(path_type=Path)
 
@@ -53,6 +59,8 @@ class RealRunOptions:
     html: Path | None
     plot: Path | None
     gantt: Path | None
+    starts: str = "given"
+    accept_partial: bool = False
     traffic: str
     foxglove: int | None
     require_complete: bool
@@ -73,6 +81,14 @@ def real_options(verb: Verb) -> Verb:
     declared = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]"),
         planning_options(time_limit_s=2.0, carries_out=True),
+        click.option(
+            "--starts",
+            type=click.Choice(STARTS),
+            default="given",
+            show_default=True,
+            help="given: the mission starts at its starts_at; now: when robots are ready, with all its times shifted.",
+        ),
+        accept_partial_option,
         traffic_option,
         record_option,
         drawing_options,
@@ -141,14 +157,47 @@ def read_given_plan(options: RealRunOptions, mission: Mission) -> Plan | None:
     ignore = options.planning.ignore
     plan = load_plan(options.plan, mission, ignore, quiet=options.quiet, verbose=options.verbose)
     require_admissible(mission, plan, options.plan, ignore)
+    return require_whole(plan, options)
+
+
+def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> Plan:
+    """A plan made now, as the options say; no robot is available before.
+
+    Raises
+    ------
+    CutShortError
+        if planning was cut short, and that is not accepted.
+    """
+    from muster.planning.solving import answer
+
+    there = planned_from(mission, start.seconds())
+    return require_whole(answer(request_of(options.planning, there, options.start, options.fixed)).plan, options)
+
+
+def require_whole(plan: Plan, options: RealRunOptions) -> Plan:
+    """Return a plan; raise `CutShortError` if planning was cut short, and that is not accepted."""
+    if plan.cut_short and not options.accept_partial:
+        counts = f"{plan.tasks_completed} of {plan.tasks_total} tasks are planned"
+        expected = "more time (--time-limit), or --accept-partial"
+        raise CutShortError(f"planning was cut short: {counts}; nothing was started; expected {expected}")
     return plan
 
 
-def planned(options: RealRunOptions, mission: Mission) -> Plan:
-    """A plan made as the options say."""
-    from muster.planning.solving import answer
+def start_in_time(mission: Mission, fleet: Fleet, options: RealRunOptions) -> MissionStart:
+    """Return when the mission starts, and print what that means for it.
 
-    return answer(request_of(options.planning, mission, options.start, options.fixed)).plan
+    Raises
+    ------
+    ParameterError
+        if the mission's time is over.
+    """
+    from muster.running.fleet_clock import start_of
+
+    start = start_of(mission, fleet, options.starts)
+    require_time_left(mission, start.seconds())
+    for line in notes_on_start(mission, start.seconds()):
+        click.echo(line, err=True)
+    return start
 
 
 def from_here(mission: Mission, fleet: Fleet) -> Mission:
@@ -191,6 +240,7 @@ def carried_out(
                 planning=options.planning,
                 ignore=options.planning.ignore,
                 traffic=options.traffic,
+                starts=options.starts,
                 record=file,
                 observers=(*observers, *viewers),
                 on_event=None if options.quiet else print_event,
@@ -226,15 +276,60 @@ def reported(
         print_report(figures, mission, with_tasks=options.verbose)
     if halt.is_set():
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission; {left}", err=True)
-    show_final_states(final_states)
-    if halt.is_set():
-        return INTERRUPTED
-    if any(state.moving for state in final_states):
-        return STILL_MOVING
-    return INCOMPLETE if options.require_complete and report.tasks_lost else DONE
+    lost = [task for task, reason in report.tasks_lost if not was_cancelled(reason)]
+    if lost and not halt.is_set():
+        click.echo(f"{counted(len(lost), 'task')} lost: {sequence(lost)}", err=True)
+    show_final_states(final_states, asks=halt.is_set() or bool(lost))
+    return exit_code_if(
+        (Ending.STILL_MOVING, any(state.moving for state in final_states)),
+        (Ending.INTERRUPTED, halt.is_set()),
+        (Ending.TASKS_LOST, lost),
+    )
 
 
-def show_final_states(states: Sequence[FinalState]) -> None:
-    """A line for each robot; it concerns safety, so `--quiet` does not silence it."""
+def show_final_states(states: Sequence[FinalState], *, asks: bool) -> None:
+    """Print a line for each robot; it concerns safety, so `--quiet` does not silence it.
+
+    Where the mission did not end as planned (`asks`), a line before them says what to do with robots that still move.
+    """
+    if asks and (moving := [state.robot for state in states if state.moving]):
+        todo = "land or stop them by their own controls or a ground station, and disarm them"
+        click.echo(f"still flying, driving or armed: {', '.join(moving)}; {todo}", err=True)
     for state in states:
         click.echo(str(state), err=True)
+
+
+class LastLines:
+    """Context manager that prints where robots are if an exception ends it: a refusal, an error, Ctrl-C, a signal.
+
+    Before robots were commanded, only those are printed that fly, drive or are armed all the same; afterwards all. The
+    exit code of the command is 4 if any does.
+
+    Attributes
+    ----------
+    begun : bool
+        Whether robots were commanded.
+    """
+
+    def __init__(self, final_states: Callable[[], Sequence[FinalState]]) -> None:
+        self._final_states = final_states
+        self.begun = False
+
+    def __enter__(self) -> LastLines:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
+        if kind is not None:
+            self.tell()
+
+    def tell(self) -> None:
+        """Print where robots are, and note for the exit code whether any moves."""
+        try:
+            states = self._final_states()
+        except MusterError as unknown:
+            click.echo(f"warning: where robots are is not known: {unknown}", err=True)
+            return
+        moving = [state for state in states if state.moving]
+        show_final_states(states if self.begun else moving, asks=True)
+        if moving:
+            note_ending(Ending.STILL_MOVING)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
+from muster.cli.exit_codes import Ending, exit_code, gravest, this_invocation
 from muster.cli.exits import DONE, INTERRUPTED
 from muster.cli.options import (
     Finite,
@@ -19,6 +20,7 @@ from muster.cli.options import (
     require_none_without_mission,
 )
 from muster.cli.real_robots import (
+    LastLines,
     RealRunOptions,
     carried_out,
     from_here,
@@ -26,7 +28,9 @@ from muster.cli.real_robots import (
     real_options,
     reported,
     require_outputs,
+    require_whole,
     ros_options,
+    start_in_time,
 )
 from muster.cli.ros_targets import TargetOptions, target_options
 from muster.mission.errors import MusterError, NetworkError, ParameterError
@@ -229,7 +233,7 @@ def _with_nodes(
                 code = _one(controller, work, children)
         if children.fault:
             raise NetworkError(children.fault)
-        return INTERRUPTED if controller.ending.is_set() else code
+        return gravest(code, INTERRUPTED) if controller.ending.is_set() else code
 
 
 def _one(controller: Controller, work: _Work, children: NodeProcesses) -> int:
@@ -248,7 +252,7 @@ def _one(controller: Controller, work: _Work, children: NodeProcesses) -> int:
             code = reported(mission, report, work.options, controller.halt, _LEFT, states)
         elif not children.fault and controller.halt.is_set():
             click.echo("interrupted" if mission is None else f"interrupted; {_LEFT}", err=True)
-            code = INTERRUPTED
+            code = exit_code(Ending.INTERRUPTED, *this_invocation().endings)
     except MusterError as error:
         if not work.stay and not children.fault:
             raise
@@ -263,28 +267,53 @@ def _through(
 ) -> tuple[Report, list[FinalState]] | None:
     """Wait for robots, plan, and carry the plan out; None if halted before the beginning."""
     from muster.bridges.final_state import final_states_by_telemetry
-    from muster.running.live import wait_for_robots
 
-    fleet, options = work.fleet_of(mission), work.options
+    fleet = work.fleet_of(mission)
+
+    def states() -> list[FinalState]:
+        return [] if children.fault else final_states_by_telemetry(fleet, mission)
+
     try:
-        wait_for_robots(fleet, controller.halt, work.wait_s)
-        if controller.halt.is_set():
-            return None
-        there = from_here(mission, fleet)
-        plan = work.plan or controller.plan(there, _as_data(options))
-        if plan is None or controller.halt.is_set():
-            return None
-        controller.carry_out(fleet)
-        observers: list[Recorder] = [controller.mission_topics]
-        if work.marked_in is not None:
-            from muster.bridges.ros1.markers import Markers
-
-            observers.append(Markers(there, work.marked_in))
-        report = carried_out(there, plan, fleet, options, controller.halt, observers)
-        return report, [] if children.fault else final_states_by_telemetry(fleet, there)
+        with LastLines(states) as last_lines:
+            return _carried_out(mission, controller, work, fleet, states, last_lines)
     finally:
         fleet.stop()
         if children.fault:
             fleet.fall_silent()  # a master that hangs is not told of the end
         else:
             fleet.close()
+
+
+def _carried_out(
+    mission: Mission,
+    controller: Controller,
+    work: _Work,
+    fleet: Ros1Fleet,
+    states: Callable[[], list[FinalState]],
+    last_lines: LastLines,
+) -> tuple[Report, list[FinalState]] | None:
+    """Carry a mission out with a fleet that is open; None if halted before the beginning."""
+    from muster.running.live import wait_for_robots
+    from muster.running.wall_time import planned_from
+
+    options = work.options
+    start = start_in_time(mission, fleet, options)
+    wait_for_robots(fleet, controller.halt, work.wait_s)
+    if controller.halt.is_set():
+        last_lines.tell()
+        return None
+    there = from_here(mission, fleet)
+    plan = work.plan or controller.plan(planned_from(there, start.seconds()), _as_data(options))
+    if plan is None or controller.halt.is_set():
+        last_lines.tell()
+        return None
+    require_whole(plan, options)
+    last_lines.begun = True
+    controller.carry_out(fleet)
+    observers: list[Recorder] = [controller.mission_topics]
+    if work.marked_in is not None:
+        from muster.bridges.ros1.markers import Markers
+
+        observers.append(Markers(there, work.marked_in))
+    report = carried_out(there, plan, fleet, options, controller.halt, observers)
+    return report, states()

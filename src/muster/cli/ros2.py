@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from contextlib import closing
+from typing import TYPE_CHECKING, Literal
 
 import click
 
-from muster.cli.exits import INTERRUPTED
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
+    LastLines,
     RealRunOptions,
     carried_out,
     from_here,
@@ -18,9 +19,13 @@ from muster.cli.real_robots import (
     reported,
     require_outputs,
     ros_options,
+    start_in_time,
 )
 from muster.cli.ros_targets import TargetOptions, target_options
 from muster.mission.interrupts import TO_END, ctrl_c_halts
+
+if TYPE_CHECKING:
+    from muster.bridges.final_state import FinalState
 
 _NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 
@@ -87,15 +92,17 @@ def command(
             targets=None if targets is None else targets.settings(),
             joins=not known_only,
         )
-        try:
+
+        def states() -> list[FinalState]:
+            return final_states_by_telemetry(fleet, loaded, fleet.not_told)
+
+        with closing(fleet), LastLines(states) as last_lines:
+            start = start_in_time(loaded, fleet, options)
             wait_for_robots(fleet, halt, wait_s, _NEEDED[give])
             there = from_here(loaded, fleet)
-            plan = given or planned(options, there)
+            plan = given or planned(options, there, start)
             if halt.is_set():
-                click.echo("interrupted; nothing was sent", err=True)
-                return INTERRUPTED
+                raise KeyboardInterrupt  # nothing was sent
+            last_lines.begun = True
             report = carried_out(there, plan, fleet, options, halt)
-            states = final_states_by_telemetry(fleet, there, fleet.not_told)
-        finally:
-            fleet.close()
-    return reported(there, report, options, halt, "the robots were told to stay where they are", states)
+            return reported(there, report, options, halt, "the robots were told to stay where they are", states())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from muster.cli.invocation import this_invocation
+from muster.cli.exit_codes import this_invocation
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Stop

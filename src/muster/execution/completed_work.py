@@ -1,4 +1,4 @@
-"""Work completed before a restart of the executor: tasks, and the robots' usage."""
+"""Work completed before a restart of the executor: tasks, the robots' usage, and what is known of the mission."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from dataclasses import dataclass, field
 
 from muster.execution.changes import FAILED
 from muster.execution.goods_ledger import GoodsLedger
+from muster.execution.orders import Orders
+from muster.execution.record import ExecutionEvent
 from muster.execution.robot_state import RobotState
-from muster.execution.task_ledger import Ledger
+from muster.execution.stations import Stations
+from muster.execution.task_ledger import Ledger, MissedTask
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,26 +30,70 @@ class CompletedTask:
     team: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class GoodsMoved:
+    """Goods that changed hands: a robot ended a task, unloaded at a station, or let all lie where it failed.
+
+    Attributes
+    ----------
+    at_s : float
+        Time of the mission's clock.
+    robot : str
+        Id of the robot.
+    task : str
+        Id of the task that ended; empty if none did.
+    falls : bool
+        Whether the robot failed, so that its goods lie.
+    """
+
+    at_s: float
+    robot: str
+    task: str = ""
+    falls: bool = False
+
+
 @dataclass(frozen=True, kw_only=True)
 class CompletedWork:
     """What is known of the time before.
 
-    Parameters
+    Attributes
     ----------
-    done, cancelled, delays_s
-        tasks that were done; when others were cancelled; by how much others were delayed.
-    barred
-        tasks that must not be begun again, and why.
-    used, failed_s
-        by robot what it had used, in the mission's unit; since when it takes no part.
-    closed
-        ids of the doors that are closed; None: as before any event.
-    unloaded_s
-        when robots unloaded at stations: (seconds, robot), in order of time.
-    levels
-        by robot what its battery last held, a share of its capacity, and its usage then.
-    lying
-        by task the goods that it had taken on and that lie elsewhere, by commodity; it is open again.
+    done, cancelled, delays_s : mapping
+        By task: its end; when it was cancelled; by how much it was delayed.
+    barred : mapping
+        By task that must not be begun again, why.
+    used : mapping
+        By robot its usage, in the mission's unit.
+    out : mapping
+        By robot that takes no part, why (`FAILED`, `SILENT`, `STUCK`) and since when.
+    closed : frozenset of str or None
+        Ids of the doors that are closed; None: as before any event.
+    failed_stations, cut_off_stations : frozenset of str
+        Stations that serve nobody; stations to which a robot found no way.
+    refusals : mapping
+        By task and robot why the robot cannot do the task.
+    blocked_by : mapping
+        By task the broken robot that stands there.
+    misfits : frozenset of (str, str)
+        Robots and tasks that did not fit what the robots had on board.
+    expired : mapping
+        By task why it can never begin any more, in order of time.
+    missed : sequence of MissedTask
+        Tasks that were not begun in time.
+    forgotten : mapping
+        By task of a standing fleet that was lost and forgotten, why.
+    goods : sequence of GoodsMoved
+        How goods changed hands, in order of time.
+    levels : mapping
+        By robot what its battery last held, a share of its capacity, and its usage then.
+    happened : sequence of ExecutionEvent
+        Events by which orders are counted, in order of time.
+    replanned : int
+        How often the rest was planned again.
+    begun_s : float
+        Time at which the mission began.
+    until_s : float or None
+        Time up to which events of the mission file have happened; None: up to now.
     """
 
     done: Mapping[str, CompletedTask] = field(default_factory=dict)
@@ -54,56 +101,96 @@ class CompletedWork:
     delays_s: Mapping[str, float] = field(default_factory=dict)
     barred: Mapping[str, str] = field(default_factory=dict)
     used: Mapping[str, float] = field(default_factory=dict)
-    failed_s: Mapping[str, float] = field(default_factory=dict)
+    out: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     closed: frozenset[str] | None = None
-    unloaded_s: Sequence[tuple[float, str]] = ()
+    failed_stations: frozenset[str] = frozenset()
+    cut_off_stations: frozenset[str] = frozenset()
+    refusals: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    blocked_by: Mapping[str, str] = field(default_factory=dict)
+    misfits: frozenset[tuple[str, str]] = frozenset()
+    expired: Mapping[str, str] = field(default_factory=dict)
+    missed: Sequence[MissedTask] = ()
+    forgotten: Mapping[str, str] = field(default_factory=dict)
+    goods: Sequence[GoodsMoved] = ()
     levels: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    lying: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    happened: Sequence[ExecutionEvent] = ()
+    replanned: int = 0
+    begun_s: float = 0.0
+    until_s: float | None = None
 
-    def recall(self, ledger: Ledger, crew: Mapping[str, RobotState], goods: GoodsLedger) -> None:
+    def happened_until_s(self, now: float) -> float:
+        """Return the time up to which events of the mission file have happened."""
+        return now if self.until_s is None else self.until_s
+
+    def recall(
+        self,
+        ledger: Ledger,
+        crew: Mapping[str, RobotState],
+        goods: GoodsLedger,
+        stations: Stations,
+        orders: Orders,
+    ) -> None:
         """Write it into ledgers and a crew that are new."""
-        self._recall_tasks(ledger, crew)
+        self._recall_tasks(ledger)
         self._recall_goods(ledger, goods)
-        for robot, used in self.used.items():
-            if robot in crew:
-                crew[robot].recall(used)
-                crew[robot].used_before = used
-        for robot, (share, then) in self.levels.items():
-            energy = crew[robot].energy if robot in crew else None
-            if energy is not None:
-                energy.recall(share, self.used.get(robot, then) - then)
-        for robot, since_s in self.failed_s.items():
-            if robot in crew:
-                crew[robot].out, crew[robot].out_s = FAILED, since_s
+        for state in crew.values():
+            self.recall_robot(state, ledger)
+        for task, why in self.barred.items():
+            for robot in crew:
+                ledger.refuse(task, robot, why)
+        stations.failed.update(self.failed_stations)
+        stations.cut_off.update(self.cut_off_stations)
+        for event in self.happened:
+            orders.take(event.time_s, event.kind, event.data)
+        ledger.expired.update({name: why for name, why in self.forgotten.items() if name in ledger.tasks})
+        ledger.retire([name for name in self.forgotten if name in ledger.tasks])
 
-    def _recall_tasks(self, ledger: Ledger, crew: Mapping[str, RobotState]) -> None:
+    def recall_robot(self, state: RobotState, ledger: Ledger) -> None:
+        """Write what is known of one robot into its state, which is new; also of one that joins again."""
+        robot = state.robot.id
+        if robot in self.used:
+            state.recall(self.used[robot])
+            state.used_before = self.used[robot]
+        if robot in self.levels and state.energy is not None:
+            share, then = self.levels[robot]
+            state.energy.recall(share, self.used.get(robot, then) - then)
+        state.done += [task for task in self.done if robot in ledger.members(task)]
+        state.at_home = state.at_home and not state.done
+        if robot in self.out:
+            state.out, state.out_s = self.out[robot]
+            said = state.port.telemetry()
+            if state.out != FAILED and said is not None:
+                state.out_at = said.position
+
+    def _recall_tasks(self, ledger: Ledger) -> None:
         for task, deed in self.done.items():
             ledger.arrivals_s[task], ledger.starts_s[task] = deed.arrives_s, deed.starts_s
             ledger.arrival_usage[task], ledger.usage[task] = deed.arrival_usage, deed.usage
             ledger.end(task, deed.robot, deed.ends_s)
             ledger.teams[task] = deed.team or (deed.robot,)
-            for robot in ledger.teams[task]:
-                if robot in crew:
-                    crew[robot].done.append(task)
-                    crew[robot].at_home = False
-        ledger.cancelled.update(self.cancelled)
+        for task, at_s in self.cancelled.items():
+            ledger.cancelled[task] = at_s
+            ledger.expire(task, "cancelled")
+        for task, why in self.expired.items():
+            ledger.expire(task, why)
         for open_task in ledger.open:
             if late := ledger.too_late_to_begin_with(ledger.unit(open_task.id)):
-                ledger.expired[open_task.id] = late
+                ledger.expired.setdefault(open_task.id, late)
+        ledger.missed.extend(self.missed)
         ledger.delays_s.update(self.delays_s)
-        for task, why in self.barred.items():
-            for robot in crew:
+        for task, refusals in self.refusals.items():
+            for robot, why in refusals.items():
                 ledger.refuse(task, robot, why)
+        ledger.blocked_by.update(self.blocked_by)
 
     def _recall_goods(self, ledger: Ledger, goods: GoodsLedger) -> None:
-        for task, amounts in self.lying.items():
-            goods.lies(task, amounts)
-        ends = [(deed.ends_s, robot, task) for task, deed in self.done.items() for robot in deed.team or (deed.robot,)]
-        for at_s, robot, name in sorted([*ends, *((at_s, robot, "") for at_s, robot in self.unloaded_s)]):
-            if name:
-                goods.end(ledger.tasks[name], robot)
+        for moved in self.goods:
+            if moved.falls:
+                goods.fall(moved.robot)
+            elif moved.task:
+                goods.end(ledger.tasks[moved.task], moved.robot)
             else:
-                goods.unload(robot, self._tied(ledger, at_s))
+                goods.unload(moved.robot, self._tied(ledger, moved.at_s))
 
     def _tied(self, ledger: Ledger, at_s: float) -> set[str]:
         """The tasks whose goods a task delivers that was not done at a time."""

@@ -53,8 +53,9 @@ class Deadlocks:
             wait = self._beginning.wait(task, now)
             if wait is not None and task not in self._ledger.expired:
                 rule = {"start": "relation"}.get(wait.cause, wait.cause)
-                self._ledger.expire(task, f"{rule}: {wait.words}; no new plan brings that about")
-                yield Change("standstill", {"task": task, "words": wait.words})
+                reason = f"{rule}: {wait.words}; no new plan brings that about"
+                self._ledger.expire(task, reason)
+                yield Change("standstill", {"task": task, "words": wait.words, "given_up": reason})
 
     def left_out_to_try(self, left_out: Iterable[str]) -> list[str]:
         """When no robot has a task any more: the tasks left out that are worth one more plan, as another has ended."""

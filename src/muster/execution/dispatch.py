@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 from muster.execution.beginning import Beginning, next_begin
@@ -67,7 +68,7 @@ class Dispatch:
         self._goods = GoodsLedger() if goods is None else goods
         self.service: StationService | None = None  # of missions with stations
         self.energy: EnergyWatch | None = None
-        self._misfits: set[tuple[str, str]] = set()  # robots and tasks that did not fit what they had on board
+        self.misfits: set[tuple[str, str]] = set()  # robots and tasks that did not fit what they had on board
         self._crew = crew
         self._beginning = beginning
         self._capacity = capacity
@@ -196,23 +197,25 @@ class Dispatch:
         """Whether a robot on the way would begin its task at once, and the task must wait for more than it did."""
         return state.activity is Activity.DRIVING and state.works and self._beginning.must_ask(state.route[0])
 
-    def refuse(self, state: RobotState, task: str, reason: str, now: float) -> Iterator[Change]:
-        """A robot cannot do a task of its route: it is never given it again."""
+    def refuse(
+        self, state: RobotState, task: str, reason: str, now: float, more: Mapping[str, Any] = MappingProxyType({})
+    ) -> Iterator[Change]:
+        """Record that a robot cannot do a task of its route; `more` are further data of the event."""
         self._ledger.refuse(task, state.robot.id, reason)
         if state.activity is Activity.WORKING:
             break_off(self._crew, self._ledger, task, now)
         else:
             self._leave_task(state, task, now)
-        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason})
+        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason, **more})
 
     def _leave_misfit(self, state: RobotState, task: str, reason: str, now: float) -> Iterator[Change]:
         """A task does not fit what a robot has on board now: it may have it later, but not twice in vain."""
-        if (state.robot.id, task) in self._misfits:
+        if (state.robot.id, task) in self.misfits:
             yield from self.refuse(state, task, reason, now)
             return
-        self._misfits.add((state.robot.id, task))
+        self.misfits.add((state.robot.id, task))
         self._leave_task(state, task, now)
-        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason})
+        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason, "for_now": True})
 
     def _leave_task(self, state: RobotState, task: str, now: float) -> None:
         """A robot that is not at work leaves a task; robots of its team that wait there stay."""

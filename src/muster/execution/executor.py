@@ -169,11 +169,12 @@ class Executor:
         )
         self._deadlocks = Deadlocks(self.ledger, self.crew, self._beginning, self._punctuality)
         self._forgetting = Forgetting(self.ledger, self.crew, self._forecast, self._standing.keep_s)
-        self._script = self._script_after(-math.inf if past is None else now)
+        self._past = past
+        self._script = self._script_after(-math.inf if past is None else past.happened_until_s(now))
         self._asked: list[Change] = []
         self._left_out = {item.task: reasons_in_one_line(item.reasons) for item in plan.unassigned if item.reasons}
         self.now_s = now
-        self.begun_s = now if past is None else 0.0
+        self.begun_s = now if past is None else past.begun_s
         planned = required_routes(mission, plan)
         for robot, stops in planned.items():
             if robot in self.crew:
@@ -186,6 +187,8 @@ class Executor:
         self._dispatch.ahead = {robot: one.usage for robot, one in ahead.items()}
         self._punctuality.expect(self._forecast, now)
         self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
+        if past is not None:
+            self._follow_script()  # what was due while nothing ran
         self._observer.on_plan(now, plan)
 
     @property
@@ -227,6 +230,8 @@ class Executor:
         changes = list(self._changes.apply(self._due_at_once(event), self.now_s, reason))
         if event.door is not None:
             self._forecast.forget()
+        if event.robot_joins is not None and self._past is not None:
+            self._past.recall_robot(self.crew[event.robot_joins.id], self.ledger)
         self._ask(changes)
         self.ended_s = None if changes else self.ended_s
         if not changes and event.robot_silent is None:
@@ -311,6 +316,18 @@ class Executor:
             raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
         self.now_s = now
 
+    def come_to(self, now: float) -> None:
+        """Advance the clock as `set_clock` does, and let what is due by then happen."""
+        self.set_clock(now)
+        self._follow_script()
+
+    def pass_over(self, now: float) -> None:
+        """Advance the clock over a pause: robots had nothing to do meanwhile, and count as neither busy nor stuck."""
+        self.set_clock(now)
+        for state in self.crew.values():
+            state.since_s = state.nearest_s = now
+        self._supervisor.pass_over(now)
+
     @property
     def _present(self) -> list[RobotState]:
         return [state for state in self.crew.values() if not state.out]
@@ -362,7 +379,9 @@ class Executor:
 
     def _recall(self, past: CompletedWork) -> None:
         """Robots keep the open tasks of their routes; all of them are planned again from the robots' positions."""
-        past.recall(self.ledger, self.crew, self.goods)
+        past.recall(self.ledger, self.crew, self.goods, self.stations, self.orders)
+        self._dispatch.misfits.update(past.misfits)
+        self._plans = past.replanned
         if past.closed is not None:
             self._changes.set_doors(past.closed)
         left = {task.id for task in self.ledger.open} - past.barred.keys()

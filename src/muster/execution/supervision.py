@@ -106,6 +106,11 @@ class Supervisor:
             elif state.activity is Activity.DRIVING and self.capacity(state) is not None:
                 yield from self._notice_capacity(state, now)
 
+    def pass_over(self, now: float) -> None:
+        """Leave a pause that ends now out of all that is counted."""
+        self.standstill.since_s = now
+        self.traffic.pass_over(now)
+
     def _look_at_traffic(self, now: float) -> None:
         """Who waits for another, or was sent another way, is not stuck for coming no nearer.
 
@@ -274,23 +279,28 @@ class Supervisor:
     def _give_up_blocked(self, state: RobotState, blocking: RobotState, now: float) -> Iterator[Change]:
         """A failed robot stands in the way to a task: others that have no way to it, or to others, get none either."""
         task, reason = state.route[0], f"unreachable: {blocking.robot.id} stands there, out"
+        others: dict[str, list[str]] = {}
         for other in self._present:
             able = set(self.ledger.tasks[task].requires) <= set(other.robot.skills)
             if other is not state and able and stands_in_the_way(blocking, other.robot, state.places_of_work):
                 self.ledger.refuse(task, other.robot.id, reason)
+                others.setdefault(task, []).append(other.robot.id)
         self.ledger.blocked_by[task] = blocking.robot.id
         for other in self._present:
-            self._refuse_cut_off(other, blocking.robot.id, reason)
-        return self.dispatch.refuse(state, task, reason, now)
+            for cut_off in self._refuse_cut_off(other, blocking.robot.id, reason):
+                others.setdefault(cut_off, []).append(other.robot.id)
+        more = {"blocked_by": blocking.robot.id, "others": others}
+        return self.dispatch.refuse(state, task, reason, now, more)
 
-    def _refuse_cut_off(self, state: RobotState, blocking: str, reason: str) -> None:
-        """A robot is given no task to which traffic knows no way for it."""
+    def _refuse_cut_off(self, state: RobotState, blocking: str, reason: str) -> Iterator[str]:
+        """Refuse a robot the tasks to which traffic knows no way for it; yields them."""
         known = [task for task in self.ledger.open if state.robot.id not in self.ledger.refusals.get(task.id, {})]
         places = [place(task.position if task.entry is None else task.entry) for task in known]
         for task, reached in zip(known, self.leader.reaches(state.robot.id, places), strict=True):
             if not reached and state.route[:1] != [task.id]:
                 self.ledger.refuse(task.id, state.robot.id, reason)
                 self.ledger.blocked_by[task.id] = blocking
+                yield task.id
 
     def _notice_capacity(self, state: RobotState, now: float) -> Iterator[Change]:
         """The capacity of a robot is too small for its current task, or for the rest of its route."""

@@ -154,6 +154,12 @@ class TrafficWaits:
         self.sent_round: set[str] = set()
         self.account = TrafficAccount()
 
+    def pass_over(self, now: float) -> None:
+        """Leave a pause that ends now out of all waits."""
+        self._looked_s = now
+        for wait in self.waits.values():
+            wait.until_s = now
+
     def look(self, now: float) -> Iterator[tuple[str, dict[str, Any]]]:
         """See who waits now; yields an event of each wait that begins to count, or is over."""
         self.sent_round.clear()

@@ -19,6 +19,13 @@ class SystemClock:
         return time.perf_counter()
 
 
+class WallClock:
+    """The time of day: seconds since 1970. It goes back where somebody sets it back."""
+
+    def now(self) -> float:
+        return time.time()
+
+
 class ProcessorClock:
     """The processor time of this process, of all its threads: what else the machine does takes nothing from a limit."""
 

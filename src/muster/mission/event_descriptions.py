@@ -33,8 +33,8 @@ def event_line(kind: str, data: Mapping[str, Any]) -> str:
         return f"waits: robot {data.get('robot')}, task {data.get('task')}, {data.get('words')}"
     if tells_cancelled(kind, data):
         return f"not done: task {data.get('task')}, {data['reason']}"
-    if kind in _TRAFFIC:
-        return _TRAFFIC[kind](data)
+    if kind in _SPECIAL:
+        return _SPECIAL[kind](data)
     parts = [f"{key} {_short(value)}" for key, value in data.items() if value not in ({}, [], ())]
     return f"{kind.replace('_', ' ')}: {', '.join(parts)}" if parts else kind.replace("_", " ")
 
@@ -77,11 +77,30 @@ def _traffic_jam(data: Mapping[str, Any]) -> str:
     )
 
 
+def _mission_begins(data: Mapping[str, Any]) -> str:
+    """`mission begins, 300 s before its start at 2027-03-01T08:00: robots wait`."""
+    after_s, start = data.get("after_s", 0.0), f"its start at {data.get('starts_at')}"
+    if after_s < 0:
+        return f"mission begins, {-after_s:.0f} s before {start}: robots wait"
+    return f"mission begins, {after_s:.0f} s after {start}" if after_s >= 1 else "mission begins"
+
+
+def _final_states(data: Mapping[str, Any]) -> str:
+    """`at the end: r_0: hovers, armed; at (9.54, 0.00, 4.77)`."""
+    return f"at the end: {' | '.join(str(one.get('words')) for one in data.get('robots', ()))}"
+
+
 def _place(data: Mapping[str, Any]) -> str:
     return ", ".join(f"{value + 0.0:.2f}" for value in data.get("position", ()))
 
 
-_TRAFFIC = {"waits_in_traffic": _waits_in_traffic, "goes_on": _goes_on, "traffic_jam": _traffic_jam}
+_SPECIAL = {
+    "waits_in_traffic": _waits_in_traffic,
+    "goes_on": _goes_on,
+    "traffic_jam": _traffic_jam,
+    "mission_begins": _mission_begins,
+    "final_states": _final_states,
+}
 
 
 def _short(value: Any) -> str:

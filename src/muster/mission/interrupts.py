@@ -38,6 +38,17 @@ def ctrl_c_halts(signals: Iterable[signal.Signals] = CTRL_C) -> Iterator[threadi
 
 
 @contextmanager
+def signals_interrupt() -> Iterator[None]:
+    """Raise KeyboardInterrupt at each of `TO_END`: what is to be said at Ctrl-C is said at the others, too."""
+
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    with on_ctrl_c(interrupt, TO_END):
+        yield
+
+
+@contextmanager
 def ctrl_c_held_back() -> Iterator[None]:
     """Keep Ctrl-C for later. Processes started here never see it, not even before their first line of Python.
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from muster.bridges.fleet import Fleet
     from muster.execution import ExecutionEvent, Recorder, Report, Standing
+    from muster.mission.clock import Clock
 
 
 def carry_out(
@@ -35,6 +36,8 @@ def carry_out(
     observers: Sequence[Recorder] = (),
     on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
+    starts: str = "given",
+    wall: Clock | None = None,
 ) -> Report:
     """Carry a plan out with real robots, in real time, to its end. The tasks left are planned again when robots fail.
 
@@ -62,6 +65,11 @@ def carry_out(
         is called with each event, as it happens.
     halt
         when it is set, by another thread or by `on_event`, robots stop where they are, and the run ends.
+    starts
+        "given": time 0 is the mission's `starts_at`, or now without one; "now": the mission starts now, all its times
+        are shifted.
+    wall
+        the wall clock, by which the mission's clock goes; by default the machine's.
 
     Returns
     -------
@@ -70,7 +78,8 @@ def carry_out(
     Raises
     ------
     ParameterError
-        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+        if the plan names robots or tasks that the mission does not have, a robot has no port, or the mission's time is
+        over.
     """
     from muster.running.live import carry_out_live
 
@@ -89,5 +98,7 @@ def carry_out(
             recorder=recorder,
             on_event=on_event,
             halt=halt,
+            starts=starts,
+            wall=wall,
         )
     return replace(report, remarks=(*report.remarks, *remarks))

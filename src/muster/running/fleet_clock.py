@@ -1,44 +1,67 @@
-"""A fleet whose clock begins with the mission: bridges begin theirs when they connect, and robots are waited for."""
+"""A fleet whose clock is that of the mission: the wall clock since the mission's start."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from muster.bridges.fleet import Fleet
-from muster.mission.model import Event
+from muster.bridges.fleet import Fleet, has_simulated_time
+from muster.mission.clock import Clock, VirtualClock, WallClock
+from muster.mission.model import Event, Mission
 from muster.motion.port import RobotPort, Telemetry, TranslatedPort
+from muster.running.wall_time import MissionStart
+
+BEHIND_S = 10.0
+"""Seconds by which a fleet's clock may fall behind the wall clock: the clock of a machine that slept stood still."""
+
+
+def clock_of(fleet: Fleet, wall: Clock | None = None) -> Clock:
+    """Return the wall clock of a mission: the one that is given, or the machine's; of simulated time 0."""
+    return wall or (VirtualClock() if has_simulated_time(fleet) else WallClock())
+
+
+def start_of(mission: Mission, fleet: Fleet, starts: str, wall: Clock | None = None) -> MissionStart:
+    """Return the start of a mission that a fleet begins to carry out now.
+
+    By the clock of a simulator alone there is no time of day: the mission starts now.
+    """
+    of_day = wall is not None or not has_simulated_time(fleet)
+    return MissionStart.of(mission, starts if of_day else "now", clock_of(fleet, wall))
 
 
 class FleetWithMissionClock:
-    """A `Fleet` that is another's from now on; what robots said before is of times below its beginning.
+    """A `Fleet` with the time of the mission; what robots said before the start is of times below 0.
+
+    The fleet's own clock goes on in pauses. Where it falls behind the wall clock it is set forward; where somebody sets
+    the wall clock back, it goes on.
 
     Parameters
     ----------
-    begin_s
-        the time that it is now.
+    fleet : Fleet
+        The robots.
+    begin_s : float
+        Time of the mission's clock now; before the start it is negative.
+    wall : Clock, optional
+        The wall clock. Without one the fleet's clock alone counts, as that of a simulator.
     """
 
-    def __init__(self, fleet: Fleet, begin_s: float = 0.0) -> None:
+    def __init__(self, fleet: Fleet, begin_s: float = 0.0, wall: Clock | None = None) -> None:
         self._fleet, self._off_s = fleet, fleet.time_s - begin_s
-        self._paused_s: float | None = None
+        self._wall, self._zero_s = wall, 0.0 if wall is None else wall.now() - begin_s
         self.ports: Mapping[str, RobotPort] = _Ports(fleet, lambda: self._off_s)
 
     @property
     def time_s(self) -> float:
-        return self._fleet.time_s - self._off_s if self._paused_s is None else self._paused_s
+        """Seconds since the mission's start; 0 before it."""
+        return max(0.0, self._since_start_s())
 
-    def pause(self) -> None:
-        """The clock stands still until `resume`."""
-        self._paused_s = self.time_s
-
-    def resume(self) -> None:
-        """The clock goes on."""
-        if self._paused_s is not None:
-            self._off_s, self._paused_s = self._fleet.time_s - self._paused_s, None
+    @property
+    def waits_s(self) -> float:
+        """Seconds until the mission's start; 0 after it."""
+        return max(0.0, -self._since_start_s())
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """See `Fleet`; in a pause, receive telemetry for as long as the step would have taken."""
+        """See `Fleet`."""
         return self._fleet.advance(self._fleet.time_s + until_s - self.time_s)
 
     def stop(self) -> None:
@@ -46,6 +69,14 @@ class FleetWithMissionClock:
 
     def close(self) -> None:
         self._fleet.close()
+
+    def _since_start_s(self) -> float:
+        now = self._fleet.time_s - self._off_s
+        behind_s = 0.0 if self._wall is None else self._wall.now() - self._zero_s - now
+        if behind_s <= BEHIND_S:
+            return now
+        self._off_s -= behind_s
+        return now + behind_s
 
 
 class _Ports(Mapping[str, RobotPort]):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from muster.bridges.fleet import Fleet, reason_of
+from muster.bridges.fleet import Fleet, has_simulated_time, is_paused, reason_of
 from muster.execution import (
     CompletedWork,
     Executor,
@@ -23,6 +23,7 @@ from muster.execution import (
     travel_of,
     way_of,
 )
+from muster.mission.clock import Clock
 from muster.mission.errors import NetworkError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission
@@ -30,10 +31,11 @@ from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
-from muster.running.fleet_clock import FleetWithMissionClock
+from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of
 from muster.running.fleet_in_traffic import FleetInTraffic
 from muster.running.replanning import planning_of
 from muster.running.traffic_choice import manager_for
+from muster.running.wall_time import MissionStart, has_time_limits, require_time_left
 from muster.traffic.names import DEFAULT
 from muster.verification.required import require_geometry, require_open_ways
 
@@ -43,6 +45,8 @@ if TYPE_CHECKING:
 
 LOOK_S = 0.2
 """Seconds between two looks at the robots, where nothing is heard before."""
+LATE_S = 1.0
+"""Seconds after its start from which a mission that begins is planned again."""
 ELSEWHERE_M = 0.5
 """Metres from where a mission says that a robot starts, from which it stands elsewhere."""
 
@@ -60,10 +64,12 @@ def carry_out_live(
     recorder: Recorder | None = None,
     on_event: Callable[[ExecutionEvent], None] | None = None,
     halt: threading.Event | None = None,
+    starts: str = "given",
+    wall: Clock | None = None,
 ) -> Report:
     """Let a fleet carry a plan out to its end, or until `halt` is set; then robots stay where they are.
 
-    The mission's clock begins now.
+    The mission's clock is the wall clock, see `muster.running.wall_time`. Robots wait for a start that is to come.
 
     Parameters
     ----------
@@ -83,11 +89,14 @@ def carry_out_live(
         receives all events, and the positions that robots report.
     on_event
         receives every event when it happens.
+    starts, wall
+        See `Live`.
 
     Raises
     ------
     ParameterError
-        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+        if the plan names robots or tasks that the mission does not have, a robot has no port, or the mission's time is
+        over.
     """
     live = Live(
         mission,
@@ -99,6 +108,8 @@ def carry_out_live(
         standing=standing,
         traffic=traffic,
         recorder=recorder,
+        starts=starts,
+        wall=wall,
     )
     halt, told = halt or threading.Event(), 0
     try:
@@ -138,13 +149,18 @@ class Live:
         who says which robot passes first; see `Simulation`.
     recorder
         receives all events, and the positions that robots report.
-    past, begin_s
-        what was done before, of a mission that goes on, and up to when.
+    past, zero_s
+        what was done before, of a mission that goes on; and when its clock was 0, seconds since 1970.
+    starts
+        "given": the mission starts at its `starts_at`; "now": it starts now, with all its times shifted.
+    wall
+        the wall clock; by default the machine's, or of a fleet with simulated time that clock alone.
 
     Raises
     ------
     ParameterError
-        if the plan names robots or tasks that the mission does not have, or a robot has no port.
+        if the plan names robots or tasks that the mission does not have, a robot has no port, or the mission's time is
+        over.
     """
 
     def __init__(
@@ -160,15 +176,24 @@ class Live:
         traffic: str = DEFAULT,
         recorder: Recorder | None = None,
         past: CompletedWork | None = None,
-        begin_s: float = 0.0,
+        zero_s: float | None = None,
+        starts: str = "given",
+        wall: Clock | None = None,
     ) -> None:
-        if past is None:  # else each robot stands anywhere, and its next leg is checked when it is sent
-            require_open_ways(mission, plan)
+        clock = clock_of(fleet, wall)
+        self.start = start_of(mission, fleet, starts, wall) if zero_s is None else MissionStart.at(mission, zero_s)
+        mission, begin_s = self.start.mission, self.start.seconds(clock)
+        if past is None:
+            require_time_left(mission, begin_s)
+            require_open_ways(mission, plan)  # later each robot stands anywhere, and a leg is checked when it is sent
+        else:
+            begin_s = max(begin_s, past.happened_until_s(begin_s))
         require_geometry(mission, "a run of real robots")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
-        self._fleet, self._recorder = FleetWithMissionClock(managed, begin_s), recorder
+        self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)
+        self._robots, self._recorder, self._stood = fleet, recorder, False
         travel = travel_of(mission, robot_paths)
         replan, self._standing = planning_of(mission, standing, planning, travel, seed, repeatable=False)
         self.executor = Executor(
@@ -179,7 +204,7 @@ class Live:
             travel=travel,
             replan=replan,
             observer=recorder,
-            now=begin_s,
+            now=self._fleet.time_s,
             past=past,
             standing=self._standing,
             on_doors=lambda closed: None if manager is None else manager.close(closed),
@@ -187,10 +212,12 @@ class Live:
         )
         if manager is not None:
             manager.expect(self.executor.outlook)
+        if past is None:
+            self._say_start(mission, begin_s)
 
     @property
     def time_s(self) -> float:
-        """The mission's clock; it stands still in a pause."""
+        """The mission's clock; it goes on in a pause."""
         return self._fleet.time_s
 
     @property
@@ -209,7 +236,14 @@ class Live:
         return status_of(self.executor)
 
     def look(self) -> None:
-        """See how far robots are, and send them on."""
+        """See how far robots are, and send them on; before the mission's start, and in a pause, they stay."""
+        if self._fleet.waits_s > 0 or is_paused(self._robots):
+            self._stood = True
+            self.tell_places()
+            return
+        if self._stood:
+            self._stood = False
+            self.executor.pass_over(self.time_s)
         self.executor.tick(self.time_s)
         self.executor.orders.clock_lag.add(self.time_s - self.executor.now_s)
         self.tell_places()
@@ -217,6 +251,8 @@ class Live:
     def hear(self, until_s: float) -> None:
         """Send and receive until a time of the mission's clock, or until something is due."""
         for event in self._fleet.advance(min(until_s, self.executor.due_s)):
+            if event.robot_joins is not None and event.robot_joins.id in self.executor.crew:
+                continue  # it joined before a restart
             self.executor.report_if_it_fits(event, reason_of(event))
 
     def tell_places(self) -> None:
@@ -225,14 +261,12 @@ class Live:
             _tell_places(self._recorder, self.time_s, self.executor.crew, self._fleet.ports)
 
     def pause(self) -> None:
-        """Robots stop where they are, and the mission's clock too, until `resume`."""
+        """Robots stop where they are until `resume`; the mission's clock goes on."""
         self.executor.pause()
-        self._fleet.pause()
 
     def resume(self) -> None:
         """Robots go on."""
-        self._fleet.resume()
-        self.executor.set_clock(self.time_s)
+        self.executor.pass_over(self.time_s)
         self.executor.resume()
 
     def stop(self) -> None:
@@ -240,6 +274,14 @@ class Live:
         self._fleet.stop()
         if self._standing is not None and self._standing.improver is not None:
             self._standing.improver.close()
+
+    def _say_start(self, mission: Mission, begin_s: float) -> None:
+        """Emit when the mission starts; begun late, what is left in time is planned again."""
+        data = {"zero_s": round(self.start.zero_s, 6), "starts_at": mission.starts_at, "after_s": round(begin_s, 6)}
+        if begin_s > LATE_S and has_time_limits(mission):
+            self.executor.plan_again("mission_begins", data)
+        else:
+            self.executor.emit("mission_begins", data)
 
     def result(self) -> Report:
         """What it took, so far or in all."""

@@ -8,18 +8,21 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 
 import pytest
 
+import muster
 from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.simulated_autopilot import faults_of, serve
 from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.bridges.mavlink.simulated_earth import origin_at
 from muster.bridges.mavlink.simulated_faults import Faults
-from muster.cli.exits import DONE, STILL_MOVING
+from muster.cli.exits import BAD_INPUT, DONE, INCOMPLETE, STILL_MOVING, TASKS_LOST
 from muster.cli.main import run
 from muster.mission.errors import ParameterError
 from muster.mission.model import Origin
+from muster.planning.request import Request
 
 ORIGIN = Origin(lat_deg=35.53, lon_deg=24.06)
 MISSION = """
@@ -140,7 +143,8 @@ def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=30)
     places = [drone.flight.place for drone in drones]
-    assert process.returncode == 130
+    assert process.returncode == STILL_MOVING  # which counts more than that it was interrupted
+    assert "still flying, driving or armed: r_0, r_1; land or stop them" in err
     assert re.search(r"interrupted at \d+\.\d s of the mission; drones were told to hover", err)
     assert "Traceback" not in err
     assert [line.split(";")[0] for line in err.splitlines()[-2:]] == [f"r_{k}: hovers, armed" for k in range(2)]
@@ -160,6 +164,87 @@ def test_ctrl_c_while_drones_arm_leaves_none_armed(sky, flying):
     assert process.wait(timeout=30) == 130
     time.sleep(1.5)  # so long arming takes
     assert not any(drone.armed or drone.flight.flies for drone in drones)
+
+
+def hovering(drone):
+    """A drone that is in the air, where somebody else has left it."""
+    drone.armed, drone.mode, drone.flight.place = True, PX4.hold, (0.0, 0.0, -5.0)
+    return drone
+
+
+def test_a_refusal_before_take_off_tells_of_a_drone_that_is_in_the_air(mission, port, sky, capsys):
+    hovering(sky(origin=origin_at(ORIGIN, (500.0, 0.0, 0.0))))
+    assert fly(mission, port, "--arm") == STILL_MOVING
+    said = capsys.readouterr().err.splitlines()
+    assert re.match(r"still flying, driving or armed: r_0; land or stop them by", said[0])
+    assert re.match(r"r_0: hovers, armed; at \(500\.\d\d, -?0\.\d\d, [45]\.\d\d\)$", said[1])
+    assert re.match(r"r_0: stands 500\.\d m from its start in the mission; expected", said[2])
+
+
+def test_a_refusal_before_anything_was_heard_listens_for_drones_that_are_armed(mission, port, sky, capsys):
+    hovering(sky())
+    timed = MISSION.replace("position: [10, 0, 5]", "position: [10, 0, 5], window_s: [0, 600]")
+    mission.write_text(timed + "starts_at: 2026-11-01T09:00\n")
+    assert fly(mission, port, "--arm") == STILL_MOVING
+    said = capsys.readouterr().err.splitlines()
+    assert "r_0: hovers, armed" in said[1]
+    assert "expected a start that is not over" in said[2]
+
+
+def test_without_arm_it_says_which_drones_are_armed(mission, port, sky, capsys):
+    hovering(sky())
+    assert fly(mission, port) == STILL_MOVING
+    said = capsys.readouterr()
+    assert "near" in said.out
+    assert "r_0: hovers, armed" in said.err.splitlines()[-1]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_before_take_off_tells_of_a_drone_that_is_in_the_air(sky, flying, number):
+    drone = hovering(sky(system=1))  # and one is missing: `fly` waits for it
+    process = flying("--wait", "60")
+    until(lambda: drone.heard, within_s=60)
+    process.send_signal(number)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == STILL_MOVING
+    assert [line.split(";")[0] for line in err.split("\n") if line][-2:] == ["r_0: hovers, armed", "interrupted"]
+    assert "Traceback" not in err
+
+
+def test_a_mission_whose_time_is_over_is_refused_or_shifted(mission, port, drone, capsys):
+    timed = MISSION.replace("position: [10, 0, 5]", "position: [10, 0, 5], window_s: [0, 600]")
+    mission.write_text(timed + "starts_at: 2026-11-01T09:00\n")
+    assert fly(mission, port, "--arm") == BAD_INPUT
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.search(
+        r"starts_at 2026-11-01T09:00 was \d+\.\d days ago, and the time for task near is over; expected", line
+    )
+    assert not drone.flight.flies
+    assert not drone.armed
+    assert fly(mission, port, "--arm", "--starts", "now", "--at-end", "land", "--format", "json") == DONE
+    assert json.loads(capsys.readouterr().out)["tasks_done"] == ["near"]
+
+
+@pytest.mark.parametrize("given", [False, True])
+def test_a_plan_that_was_cut_short_is_not_flown_unless_told(mission, port, drone, capsys, monkeypatch, tmp_path, given):
+    from muster.planning import solving
+
+    whole, file = solving.answer, tmp_path / "plan.json"
+
+    def cut(request, *more, **how):
+        solution = whole(request, *more, **how)
+        return replace(solution, plan=replace(solution.plan, cut_short=True))
+
+    monkeypatch.setattr(solving, "answer", cut)
+    cut(Request(mission=muster.load(mission))).plan.save(file)
+    plan = ["--plan", str(file)] if given else []
+    assert fly(mission, port, "--arm", *plan) == INCOMPLETE
+    said = (
+        "planning was cut short: 1 of 1 tasks are planned; nothing was started; expected more time (--time-limit), or"
+    )
+    assert said in capsys.readouterr().err
+    assert not drone.armed
+    assert fly(mission, port, "--arm", "--accept-partial", "--at-end", "land", *plan) == DONE
 
 
 def asked_to_arm(drone):
@@ -210,7 +295,7 @@ def test_what_would_be_sent_as_json(mission, port, drone, capsys):
 
 def test_a_drone_that_fails_is_named_with_its_reason_and_its_task_is_lost(mission, port, sky, capsys):
     sky(Faults(refuse_arm=True))
-    assert fly(mission, port, "--arm", "--require-complete") == 3
+    assert fly(mission, port, "--arm", "--require-complete") == TASKS_LOST
     said = capsys.readouterr()
     reason = "arm refused: MAV_CMD_COMPONENT_ARM_DISARM: MAV_RESULT_DENIED (PreArm: compass not healthy)"
     assert re.search(rf"\d s  robot fails: robot r_0, reason {re.escape(reason)}", said.err)

@@ -95,7 +95,10 @@ class Drone:
 
 def final_state_of(drone: Drone, now: float) -> FinalState:
     """Where a drone is at the end and what it does; one that is armed, or may be, counts as flying."""
-    telemetry, does = drone.telemetry, _activity(drone)
+    telemetry = drone.telemetry
+    if drone.autopilot is None:
+        return FinalState(drone.robot.id, "not heard", telemetry.place, moving=False)
+    does = _activity(drone)
     silent_s = now - telemetry.heartbeat_s
     if silent_s <= drone.settings.link_lost_s:
         return FinalState(drone.robot.id, does, telemetry.place, moving=telemetry.armed)

@@ -31,6 +31,8 @@ from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 _STEP_S = 0.02
 _LAST_WORDS_S = 1.0, 15.0
 """Seconds, at least and at most, for which final commands are sent to drones that do not confirm, or are silent."""
+_HEARTBEAT_S = 1.5
+"""Seconds within which a drone sends a heartbeat."""
 _STANDSTILL_S, _MOVED_M = 20.0, 3.0
 """A drone that returns or lands and moves less in this time is waited for no longer."""
 
@@ -73,6 +75,7 @@ class MavlinkFleet:
         self._settings = Settings() if settings is None else settings
         _check(mission, endpoints, self._settings, height_m)
         self._clock, self._wait = SystemClock() if clock is None else clock, wait
+        self.simulated_time = clock is not None
         self._begun_s = self._clock.now()
         self._speaker = threading.Thread(target=self._speak_on, daemon=True) if clock is None else None
         self._lock, self._closed = threading.RLock(), threading.Event()
@@ -88,6 +91,7 @@ class MavlinkFleet:
             robot: Port(session, lambda: self.time_s, self._lock) for robot, session in self.sessions.items()
         }
         self._told: set[str] = set()
+        self._listened = False
 
     @property
     def ports(self) -> Mapping[str, RobotPort]:
@@ -113,9 +117,7 @@ class MavlinkFleet:
         ParameterError
             if one is none that Muster flies, or stands far from where the mission says, or is not alone on its line.
         """
-        until = self.time_s + within_s
-        while self.time_s < until and not all(session.drone.located for session in self.sessions.values()):
-            self._go_on()
+        self._listen_until(self.time_s + within_s, lambda drone: drone.located)
         for name, session in self.sessions.items():
             self._require_one(name, within_s)
             if not session.drone.located:
@@ -165,7 +167,9 @@ class MavlinkFleet:
             self._go_on()
 
     def final_states(self) -> list[FinalState]:
-        """Where each drone is now, and what it does."""
+        """Where each drone is now, and what it does; drones that were not listened to are, for a moment."""
+        if not self._listened:
+            self._listen_until(self.time_s + _HEARTBEAT_S, lambda drone: drone.autopilot is not None)
         with self._lock:
             return [final_state_of(session.drone, self.time_s) for session in self.sessions.values()]
 
@@ -175,6 +179,12 @@ class MavlinkFleet:
             self._speaker.join()
         for link in self._links:
             link.close()
+
+    def _listen_until(self, time_s: float, enough: Callable[[Drone], bool]) -> None:
+        """Receive and send until a time, or until enough is known of each drone."""
+        self._listened = True
+        while self.time_s < time_s and not all(enough(session.drone) for session in self.sessions.values()):
+            self._go_on()
 
     def _new_faults(self) -> list[Fault]:
         """The first fault of each drone that was not reported yet, once its status texts are complete."""

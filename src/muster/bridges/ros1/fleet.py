@@ -96,6 +96,8 @@ class Ros1Fleet:
         require_avoidance(avoidance, mission.dimensions)
         self._now = time_of_ros()
         self.clock = clock or MissionClock(self._now)
+        self.simulated_time = isinstance(self._now, Forward)
+        self.paused = False
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
         self.topics = topics_in(namespace)
         """The namespace of a robot's topics, such as `/r_0`."""
@@ -130,7 +132,7 @@ class Ros1Fleet:
 
     @property
     def time_s(self) -> float:
-        """See `Fleet`. It stands still while the fleet pauses."""
+        """See `Fleet`."""
         return self.clock.time_s
 
     def advance(self, until_s: float) -> Sequence[Event]:
@@ -161,15 +163,15 @@ class Ros1Fleet:
         self._news.set()
 
     def pause(self) -> None:
-        """Robots stand, and the mission's clock too, until `resume`."""
+        """Robots stand until `resume`; the clock goes on."""
         with self._lock:
-            self.clock.pause()
+            self.paused = True
             self._tell_all(Ros1Port.stand)
 
     def resume(self) -> None:
         """Robots go on."""
         with self._lock:
-            self.clock.resume()
+            self.paused = False
 
     def robots_not_ready(self) -> dict[str, str]:
         """Robots of the mission that have not said where they are, and why that may be.
@@ -258,10 +260,10 @@ class Ros1Fleet:
 
     def _steer_on(self) -> None:
         """Send velocities to the robots at each interval; on an error they stop, and `advance` raises it."""
-        due_s, turn = self.clock.unpaused_s, 0
+        due_s, turn = self.clock.time_s, 0
         try:
-            while not self._closed.wait(min(_TICK_S, max(0.0, due_s - self.clock.unpaused_s))):
-                now = self.clock.unpaused_s
+            while not self._closed.wait(min(_TICK_S, max(0.0, due_s - self.clock.time_s))):
+                now = self.clock.time_s
                 if now < due_s or rospy.is_shutdown():
                     continue
                 due_s, turn = max(due_s + self._interval_s, now), turn + 1
@@ -278,9 +280,9 @@ class Ros1Fleet:
                     self._tell_all(Ros1Port.stand)
 
     def _steer(self) -> None:
-        steered_robots = [port.steered(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
+        steered_robots = [port.steered(within_s=_HEARD_S, paused=self.paused) for port in self._ports.values()]
         present = [steered for steered in steered_robots if steered is not None]
-        team = self._yielding.arranged(self.clock.unpaused_s, present)
+        team = self._yielding.arranged(self.clock.time_s, present)
         told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}
         for steered in team:
             self._ports[steered.robot.id].speak(steered, told.get(steered.robot.id, STILL))

@@ -96,7 +96,7 @@ class Ros1Port:
         """
         require_finite(self.robot, waypoints)
         with self._lock:
-            self._stood_s = self._clock.unpaused_s if waypoints else self._stood_s
+            self._stood_s = self._clock.time_s if waypoints else self._stood_s
             order = self._follower.take(waypoints)
             self._commanded = self._commanded or bool(waypoints)
             if not waypoints:
@@ -121,7 +121,7 @@ class Ros1Port:
         said = self._last_word
         if said is None:
             return None
-        stands = paused or self._clock.unpaused_s - self._heard_s > within_s
+        stands = paused or self._clock.time_s - self._heard_s > within_s
         aim = None if stands else self._follower.aim
         arrived = aim is not None and self._follower.is_at(said.position, aim)
         waits = self._follower.waits and not stands
@@ -129,7 +129,7 @@ class Ros1Port:
 
     def speak(self, steered: SteeredRobot, velocity: Velocity) -> None:
         """Tell the robot what it is to do now, and others where it goes."""
-        now = self._clock.unpaused_s
+        now = self._clock.time_s
         if steered.aim is not None:
             self._stood_s = now
         if self._drive == "cmd_vel":
@@ -156,7 +156,7 @@ class Ros1Port:
         """Stand where it is, at once, if it was ever sent anywhere."""
         with self._lock:
             if self._commanded:
-                self._stood_s = self._clock.unpaused_s
+                self._stood_s = self._clock.time_s
                 self._stand_still()
 
     def close(self) -> None:
@@ -197,7 +197,7 @@ class Ros1Port:
         with self._lock:
             self._height = place[2]
             place = (*place[:2], 0.0) if self._flat else place
-            heard_s = self._clock.unpaused_s
+            heard_s = self._clock.time_s
             velocity = self._gone(place, heard_s) if ahead is None else _turned(ahead, matrix)
             self._heard_s = heard_s
             now = self._clock.time_s

@@ -76,6 +76,7 @@ class Ros2Fleet:
         clock: Clock | None = None,
     ) -> None:
         self._clock: Clock = clock or SystemClock()
+        self.simulated_time = clock is not None
         self._begin = self._clock.now()
         self._namespace, self._topics = namespace, topics_in(namespace)
         self._give, self._arrival = give, arrival or Arrival()

@@ -24,9 +24,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from typing import Any, Self
 
+from muster.execution.task_ledger import moved
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.records import Record
@@ -88,7 +88,7 @@ class MissionState:
             return None
         if kind == "move_task":
             place = tuple(float(value) for value in data["position"])
-            self.tasks[name] = replace(self.tasks[name], position=place, entry=None, exit=None)
+            self.tasks[name] = moved(self.tasks[name], place)
             return str(name)
         if kind not in _BECOMES or self.states[name] == CANCELLED:
             return None

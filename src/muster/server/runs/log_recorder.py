@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import partial
 from typing import Any, Protocol
 
@@ -82,6 +82,11 @@ class LogRecorder:
         for entry in entries if not again else ():
             if entry["kind"] not in (RESUMED, "plan", "command", "report"):
                 self._mission_state.take(entry["kind"], entry["data"])
+
+    def keep_robots(self, robots: Collection[str]) -> None:
+        """Forget all other robots: those that joined before a crash and cannot be reached join again."""
+        known = self._mission_state.robots
+        self._mission_state.robots = {name: known[name] for name in robots}
 
     @property
     def catching_up(self) -> bool:

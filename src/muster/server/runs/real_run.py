@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
+from muster.bridges.final_state import final_states_of
 from muster.bridges.fleet import Fleet
 from muster.execution import Recorder, Report, Standing, Status, broken_off
+from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
@@ -28,12 +30,12 @@ class RealRun:
     ----------
     log
         the log before a crash; empty for a new run.
-    begin_s
-        the mission time at which the run starts or resumes.
     standing
         of a fleet that stays on duty.
     traffic
         who says which robot passes first; see `Simulation`.
+    starts, wall
+        when the mission starts, and the wall clock; see `Live`. A run that resumes keeps its start.
     at_end
         called when all tasks are done.
     """
@@ -52,12 +54,13 @@ class RealRun:
         standing: Standing | None = None,
         traffic: str = DEFAULT,
         log: Sequence[Mapping[str, Any]] = (),
-        begin_s: float = 0.0,
+        starts: str = "given",
+        wall: Clock | None = None,
         at_end: Callable[[], None] = lambda: None,
     ) -> None:
         self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
         self._paused = False
-        found = recovered_from(mission, plan, log)
+        found = recovered_from(mission, plan, log, fleet.ports)
         there = with_reported_starts(found.mission, fleet)
         gauged = _Gauged(recorder)
         self._live = Live(
@@ -71,7 +74,9 @@ class RealRun:
             ignore=found.plan.ignored,
             recorder=gauged,
             past=found.past if log else None,
-            begin_s=begin_s,
+            zero_s=zero_in(log) if log else None,
+            starts=starts,
+            wall=wall,
         )
         gauged.live = self._live
         if log:
@@ -79,6 +84,16 @@ class RealRun:
         else:
             for line in elsewhere(mission, there):
                 self._live.executor.emit("elsewhere", {"what": line})
+
+    @property
+    def starts_at(self) -> str | None:
+        """See `run_loop.WorldRun`."""
+        return self._live.start.mission.starts_at
+
+    @property
+    def robots(self) -> Collection[str]:
+        """Ids of the robots that take part, or did, in the order of their rows in records."""
+        return self._live.executor.crew.keys()
 
     @property
     def time_s(self) -> float:
@@ -106,10 +121,11 @@ class RealRun:
         if self.done:
             self._fleet.stop()
             self._at_end()
+            self._tell_final_states()
             self._recorder.on_report(self._live.result().as_dict())
 
     def report(self, event: Event) -> None:
-        self._live.executor.set_clock(self.time_s)
+        self._live.executor.come_to(self.time_s)
         self._live.executor.report(event)
 
     def replan(self) -> None:
@@ -117,9 +133,16 @@ class RealRun:
 
     def break_off(self, reason: str) -> Report:
         self._fleet.stop()
+        self._tell_final_states()
         report = broken_off(self._live.result(), self._live.executor.account, reason)
         self._recorder.on_report(report.as_dict())
         return report
+
+    def _tell_final_states(self) -> None:
+        """Log where each robot is at the end, what it does, and whether it still flies, drives or is armed."""
+        states = final_states_of(self._fleet, self._live.start.mission)
+        robots = [{"robot": one.robot, "moving": one.moving, "words": str(one)} for one in states]
+        self._live.executor.emit("final_states", {"robots": robots})
 
     def pause(self) -> None:
         self._live.pause()
@@ -135,6 +158,11 @@ class RealRun:
             self._fleet.stop()
         finally:
             self._fleet.close()
+
+
+def zero_in(log: Sequence[Mapping[str, Any]]) -> float | None:
+    """Return when the clock of a run was 0, seconds since 1970; None if its log does not say so."""
+    return next((float(entry["data"]["zero_s"]) for entry in log if "zero_s" in entry["data"]), None)
 
 
 class _Gauged:

@@ -15,6 +15,7 @@ from muster.mission.value_types import shown
 from muster.motion.avoidance_names import AVOIDANCE
 from muster.motion.laws import LAWS
 from muster.planning.options import options_from
+from muster.running.wall_time import STARTS
 from muster.running.worlds import WORLDS
 from muster.traffic.names import TRAFFIC
 
@@ -22,13 +23,14 @@ if TYPE_CHECKING:
     from muster.execution import Standing
 
 _PLANNING = {"seed": int, "ignore": list, "planning": dict, "stay": bool, "until_s": float, "traffic": str}
+_REAL = {**_PLANNING, "starts": str}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
 _WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
     "kinematic": {**_PLANNING, **_WORLD},
     "physics": {**_PLANNING, **_WORLD},
     "ros1": {
-        **_PLANNING,
+        **_REAL,
         "master": str,
         "drive": str,
         "frame": str,
@@ -38,9 +40,9 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
         "poses": str,
         **_ROS,
     },
-    "ros2": {**_PLANNING, "domain": int, "give": str, "by": str, **_ROS},
+    "ros2": {**_REAL, "domain": int, "give": str, "by": str, **_ROS},
     "mavlink": {
-        **_PLANNING,
+        **_REAL,
         "endpoints": dict,
         "arm": bool,
         "offboard": bool,
@@ -54,6 +56,7 @@ SETTINGS: Mapping[str, Mapping[str, type]] = {
 """What each world may be told, and of which kind it is."""
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "avoidance": AVOIDANCE,
+    "starts": STARTS,
     "traffic": TRAFFIC,
     "pose": ("true", "estimate"),
     "law": LAWS,

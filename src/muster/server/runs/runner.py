@@ -15,6 +15,7 @@ import sys
 import threading
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -97,9 +98,10 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
         )
         plan = plan_from(begin["plan"], "the plan")
         with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
-            how = {"speed": begin["speed"], "starts_at": mission.starts_at, "ended": ended.is_set}
+            how = {"speed": begin["speed"], "starts_at": world_run.starts_at, "ended": ended.is_set}
             run_loop = RunLoop(world_run, recorder, inbox, outbox, **how)
             if real:
+                outbox.send({"type": "mission", "mission": _shown(replace(mission, starts_at=world_run.starts_at))})
                 run_loop.recall(log)
             else:
                 run_loop.catch_up(log, begin["until_s"])
@@ -122,7 +124,7 @@ def _world_run(
 
     fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
     try:
-        return RealRun(
+        run = RealRun(
             mission,
             plan,
             fleet,
@@ -132,9 +134,11 @@ def _world_run(
             standing=standing_of(settings),
             traffic=settings.get("traffic", DEFAULT),
             log=log,
-            begin_s=begin["until_s"],
+            starts=settings.get("starts", "given"),
             at_end=at_end,
         )
+        recorder.keep_robots(run.robots)
+        return run
     except BaseException:
         fleet.close()
         raise

@@ -37,6 +37,7 @@ class SimulatedRun:
         how["planning"] = checked_options(how.get("planning", {}))
         self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)
         self._quanta = 0
+        self.starts_at = mission.starts_at
 
     @property
     def time_s(self) -> float:
