@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 from muster.exchange.altitudes import altitudes_of, at_work, height_notes, raised, raised_team
@@ -50,7 +51,9 @@ def exported(mission: Mission, verdict: Verdict, form: str, options: ExportOptio
     """
     write = FORMATS.named(form)
     made = write(mission, verdict, options, plan) if form in OPTIONS_OF else write(mission, verdict)
-    return made if isinstance(made, Files) else Files({f"plan.{form}": made})
+    files = made if isinstance(made, Files) else Files({f"plan.{form}": made})
+    cut_short = () if plan is None or not plan.cut_short else (plan.cut_short_line,)
+    return replace(files, messages=(*cut_short, *files.messages)) if cut_short else files
 
 
 def csv_file(mission: Mission, verdict: Verdict) -> str:
