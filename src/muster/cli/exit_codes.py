@@ -63,7 +63,7 @@ class Ending(Enum):
     )
     IMPOSSIBLE = (
         exits.INCOMPLETE,
-        "a task can never be done",
+        "tasks can never be done",
         "`check`",
         "can never be done",
         "`impossible` in the answer",
