@@ -184,6 +184,8 @@ def test_a_delivery_goes_around_the_wall():
     assert verdict.routes[0].travel == pytest.approx(5)
     assert verdict.routes[0].work == pytest.approx(2 * math.hypot(4, 5) + 2)
     straight = replace(mission, rules=Rules(travel="euclidean"))
+    assert muster.solve(straight, iterations=10).routes[0].tasks == ()
+    straight = replace(straight, map=None)
     assert muster.verify(straight, muster.solve(straight, iterations=10)).routes[0].work == pytest.approx(10)
 
 
@@ -201,25 +203,25 @@ def test_an_action_with_a_way_point_in_a_wall_is_unreachable():
     )
     plan = Plan(routes=(Route("r", ("p",)),))
     assert [(v.kind, v.detail) for v in muster.verify(patrol, plan).violations] == [
-        ("unreachable", "no way along the way points of its action")
+        ("closed-area", "the work at (10, 3) enters zone 0")
     ]
 
 
 @pytest.mark.parametrize(
-    ("out", "why"),
+    ("out", "why", "judged"),
     [
-        ((10, 0), "goal blocked on the way to its exit: (10, 0): inside zone 0"),
-        ((-20.5, 0), "goal blocked on the way to its exit: (-20.5, 0): outside the boundary"),
+        ((10, 0), "(10, 0): inside zone 0", "(10, 0) enters zone 0"),
+        ((-20.5, 0), "(-20.5, 0): outside the boundary", "(-20.5, 0) leaves the boundary"),
     ],
 )
-def test_an_exit_to_which_no_way_leads_is_unreachable_for_planner_and_judge(out, why):
+def test_an_exit_to_which_no_way_leads_is_unreachable_for_planner_and_judge(out, why, judged):
     mission = walled(Task(id="a", position=(7, 0), exit=out), Task(id="fine", position=(7, 0), exit=(15, 0)))
     (item,) = impossible(Problem.compile(mission))
-    assert [(item.task, r.reason, r.detail) for r in item.reasons] == [("a", "unreachable", why)]
-    verdict = muster.verify(mission, Plan(routes=(Route("r", ("fine", "a")),)))
-    assert [(v.kind, v.task, v.detail) for v in verdict.violations] == [
-        ("unreachable", "a", "no way from its entry to its exit")
+    assert [(item.task, r.reason, r.detail) for r in item.reasons] == [
+        ("a", "unreachable", f"goal blocked on the way to its exit: {why}")
     ]
+    verdict = muster.verify(mission, Plan(routes=(Route("r", ("fine", "a")),)))
+    assert [(v.kind, v.task, v.detail) for v in verdict.violations] == [("closed-area", "a", f"the work at {judged}")]
     plan = muster.solve(mission, iterations=10)
     assert (plan.routes[0].tasks, muster.verify(mission, plan).valid) == (("fine",), True)
 

@@ -234,7 +234,12 @@ def test_the_straight_line_stays_where_it_is_asked_for():
         name="straight", robots=mission.robots, tasks=mission.tasks, map=mission.map, rules=Rules(travel="euclidean")
     )
     problem = Problem.compile(straight)
-    assert len(problem.travel[0]) == 0
+    lengths = problem.over(problem.robot_paths).exits[0][:, None] - problem.over(problem.robot_paths).entries[0]
+    open_legs = np.isfinite(problem.travel[0][0])
+    assert 0 < open_legs.sum() < open_legs.size
+    assert problem.travel[0][0][open_legs] == pytest.approx(np.linalg.norm(lengths, axis=2)[open_legs])
+    apart = replace(straight, map=replace(straight.map, zones=()))
+    assert len(Problem.compile(apart).travel[0]) == 0  # where nothing can be in the way there is no table
 
 
 def test_too_many_places_for_a_table_are_refused():

@@ -42,10 +42,21 @@ def test_robots_that_come_near_each_other_are_named(export, muster):
     assert " apart at " not in err
 
 
-def test_ways_that_a_fence_would_stop_are_named(export):
+def test_ways_through_closed_areas_are_not_written(export):
     Path("bay.yaml").write_text(BAY.replace("ceiling_m: 4", "ceiling_m: 14"), encoding="utf-8")
-    _, _, err = export("--to", "qgc", "-o", "plans")
-    assert "warning: d2: its way leads through zone 1; its fence will stop it" in err.splitlines()
+    code, out, err = export("--to", "qgc", "-o", "plans")
+    assert (code, out) == (2, "")
+    assert "closed-area: d2, a, the leg from its start to task a enters zone 1" in err
+    assert not Path("plans").exists()
+
+
+def test_heights_do_not_lift_ways_into_closed_areas(export):
+    Path("bay.yaml").write_text(BAY.replace("ceiling_m: 4", "floor_m: 25"), encoding="utf-8")
+    assert export("--to", "qgc", "-o", "plans")[0] == 0
+    code, _, err = export("--to", "qgc", "-o", "high", "--altitude", "30")
+    assert code == 2
+    assert "closed-area: d2, a, the leg from" in err
+    assert not Path("high").exists()
 
 
 def test_a_fence_across_the_meridian_of_180_degrees_is_named(export):
@@ -179,6 +190,7 @@ def test_plan_files_that_were_read_are_not_replaced(export, muster):
 
 def test_drones_in_the_plane_need_a_height(export):
     text = re.sub(r"(position: \[[^],]*, [^],]*), [^],]*\]", r"\1]", BAY)
+    text = text.replace("60, 20], [90, 20", "85, 55], [90, 55")
     Path("bay.yaml").write_text(text, encoding="utf-8")
     code, out, err = export("--to", "qgc", "-o", "plans")
     assert (code, out) == (2, "")

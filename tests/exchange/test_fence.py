@@ -1,11 +1,14 @@
-"""What a fence holds, and what a way does not keep to."""
+"""What a fence holds, and which ways are not written."""
 
 import re
 
 import pytest
-from tests.exchange.bay import BAY, bay
+from tests.exchange.bay import BAY, bay, bay_plan
 
+from muster import export, load
 from muster.exchange.fence import Fence
+from muster.exchange.open_ways import require_open_itineraries
+from muster.mission.errors import PlanError
 
 
 def fences(folder, text=BAY):
@@ -13,29 +16,35 @@ def fences(folder, text=BAY):
     return {i.robot.id: Fence.of(mission, i) for i in team}
 
 
-def test_a_way_over_a_zone_leaves_it_out_and_one_through_it_breaks_the_fence(tmp_path):
+def test_a_way_over_or_under_a_zone_leaves_it_out(tmp_path):
     over = fences(tmp_path)["d2"]  # from (3, 0, 0) to (100, 40, 20), over the zone with a ceiling of 4 m
-    assert (over.passed, over.broken, list(over.zones)) == ((1,), (), [0])
-    through = fences(tmp_path, BAY.replace("ceiling_m: 4", "ceiling_m: 14"))["d2"]
-    assert (through.passed, through.broken, list(through.zones)) == ((), ("zone 1",), [0, 1])
-    under = fences(tmp_path, BAY.replace("ceiling_m: 4", "floor_m: 25"))["d2"]
-    assert (under.passed, under.broken) == ((1,), ())
+    assert (over.passed, list(over.zones)) == ((1,), [0])
+    assert fences(tmp_path, BAY.replace("ceiling_m: 4", "floor_m: 25"))["d2"].passed == (1,)
 
 
-def test_a_way_that_is_raised_into_a_zone_breaks_the_fence(tmp_path):
+def test_a_way_that_is_raised_into_a_zone_is_refused(tmp_path):
     mission, _, team = bay(tmp_path, BAY.replace("ceiling_m: 4", "floor_m: 25"))
-    (d2,) = [i for i in team if i.robot.id == "d2"]
-    assert Fence.of(mission, d2.at_least(30)).broken == ("zone 1",)
+    require_open_itineraries(mission, team)
+    with pytest.raises(PlanError, match=r"closed-area: d2, a, the leg from .* enters zone 1"):
+        require_open_itineraries(mission, [i.at_least(30) for i in team])
 
 
-def test_in_the_plane_heights_of_zones_do_not_count(tmp_path):
-    flat = re.sub(r"(position: \[[^],]*, [^],]*), [^],]*\]", r"\1]", BAY)
-    assert fences(tmp_path, flat)["d2"].broken == ("zone 1",)
+FLAT = re.sub(r"(position: \[[^],]*, [^],]*), [^],]*\]", r"\1]", BAY)
 
 
-@pytest.mark.parametrize(("corner", "broken"), [("[300, 300]", ()), ("[90, 30]", ("the boundary",))])
-def test_a_way_beyond_the_boundary_breaks_the_fence(corner, broken, tmp_path):
-    assert fences(tmp_path, BAY.replace("[300, 300]", corner))["d2"].broken == broken
+@pytest.mark.parametrize(
+    ("text", "area"),
+    [
+        pytest.param(BAY.replace("ceiling_m: 4", "ceiling_m: 14"), "zone 1", id="through a zone"),
+        pytest.param(FLAT, "zone 1", id="heights of zones do not count in the plane"),
+        pytest.param(BAY.replace("[300, 300]", "[90, 30]"), "the boundary", id="beyond the boundary"),
+    ],
+)
+def test_a_way_through_a_closed_area_is_not_written(text, area, tmp_path):
+    (tmp_path / "bay.yaml").write_text(text, encoding="utf-8")
+    mission = load(tmp_path / "bay.yaml")
+    with pytest.raises(PlanError, match=rf"closed-area: d., ., the (leg|work) .* {area}"):
+        export(mission, bay_plan(), "geojson")
 
 
 def test_zones_of_others_are_none(tmp_path):
@@ -45,5 +54,7 @@ def test_zones_of_others_are_none(tmp_path):
 
 
 def test_touching_a_zone_is_not_entering_it(tmp_path):
-    beside = BAY.replace("[60, 20], [90, 20], [90, 60], [60, 60]", "[10, 5], [20, 30], [5, 20]")
-    assert fences(tmp_path, beside)["rover"].broken == ()  # its way begins at a corner and goes along the side
+    zone = "[60, 20], [90, 20], [90, 60], [60, 60]], ceiling_m: 4"
+    beside = BAY.replace(zone, "[10, 5], [20, 30], [5, 20]], forbidden_to: [ground]")
+    at = "id: rover, position: [10, 5, 0], speed_mps: 1"
+    assert fences(tmp_path, beside.replace(f"{at}, radius_m: 0.3", at))["rover"].passed == ()  # along a side of it

@@ -320,18 +320,18 @@ def chain(tmp_path, monkeypatch):
 
 
 def test_check_names_them(chain, capsys):
-    assert run(["check", chain]) == 0
+    assert run(["check", chain]) == 3
     out, err = capsys.readouterr()
     assert err == ""
     words = [line.split() for line in out.splitlines() if line.strip()]
-    assert " ".join(words[0]) == "chain: 1 robot, 3 tasks; no errors"
-    assert " ".join(words[1]) == "2 tasks that can never be done"
+    assert " ".join(words[0]) == "chain: 1 robot, 3 tasks; 2 of 3 tasks can never be done"
+    assert " ".join(words[1]) == "2 tasks that can never be done, by reason: prerequisite 1, skill 1"
     assert ["2", "r_0", "skill", "lacks", "camera"] in words
     assert ["3", "r_0", "prerequisite", "2", "comes", "before", "it", "and", "can", "never", "be", "done"] in words
 
 
 def test_check_names_them_in_json(chain, capsys):
-    assert run(["check", chain, "--format", "json"]) == 0
+    assert run(["check", chain, "--format", "json"]) == 3
     out, err = capsys.readouterr()
     assert err == ""
     data = json.loads(out)
@@ -355,11 +355,27 @@ def test_check_names_them_in_json(chain, capsys):
     }
 
 
+def test_rows_are_grouped_by_reason(tmp_path, capsys):
+    tasks = [f"{{id: s{k}, position: [{k}, 0], requires: [camera]}}" for k in range(30)]
+    tasks += [f"{{id: l{k}, position: [{k + 1}, 0], deadline_s: {k / 100}}}" for k in range(20)]
+    robots = "[{id: a, position: [-1, 0]}, {id: b, position: [-1, 0]}]"
+    text = f"schema: muster/1\nname: many\nrobots: {robots}\ntasks: [{', '.join(tasks)}]"
+    (tmp_path / "many.yaml").write_text(text)
+    assert run(["check", str(tmp_path / "many.yaml")]) == 3
+    out = capsys.readouterr().out
+    assert "many: 2 robots, 50 tasks; 50 of 50 tasks can never be done" in out
+    assert "by reason: skill 30, deadline 20" in " ".join(out.split())
+    rows = [line.split() for line in out.splitlines()]
+    assert sum("lacks camera" in line for line in out.splitlines()) == 1  # for all 30 tasks and both robots
+    assert sum(row[:1] == ["..."] for row in rows) == 1
+    assert "and 8 more rows; --format json has all" in " ".join(out.split())
+
+
 @pytest.mark.parametrize("verb", [["check"], ["solve", "--iterations", "5"], ["solve", "-a", "greedy"]])
 @pytest.mark.parametrize("form", ["table", "json"])
 def test_require_complete(verb, form, chain, capsys):
     asked = [*verb, chain, "--format", form]
-    assert run(asked) == 0
+    assert run(asked) == (3 if verb == ["check"] else 0)
     without = capsys.readouterr().out
     assert run([*asked, "--require-complete"]) == 3
     out, err = capsys.readouterr()

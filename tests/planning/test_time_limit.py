@@ -11,7 +11,7 @@ from muster.allocation.auction_terms import Terms
 from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_of
-from muster.allocation.stop import Stop
+from muster.allocation.stop import PATIENCE, Stop
 from muster.cli.main import run
 from muster.mission.clock import SystemClock, VirtualClock
 from muster.mission.model import Mission, Robot, Task
@@ -46,7 +46,7 @@ def mission(*, team=False):
 )
 def test_an_allocator_that_runs_out_of_time_says_so(name, team):
     problem = Problem.compile(mission(team=team))
-    some, whole = Stop(time_limit=12.0, clock=Ticking()), Stop()
+    some, whole = Stop(time_limit=12.0 / PATIENCE, clock=Ticking()), Stop()
     plan = allocator_of(name).solve(problem, some)
     assert plan.cut_short
     assert not plan.complete
@@ -57,7 +57,7 @@ def test_an_allocator_that_runs_out_of_time_says_so(name, team):
 
 @pytest.mark.parametrize(("name", "team"), [("auction", True), ("combinatorial-auction", False)])
 def test_the_book_of_an_auction_that_was_cut_short_has_its_bids(name, team):
-    limit = 70.0 if team else 12.0
+    limit = (70.0 if team else 12.0) / PATIENCE
     plan = allocator_of(name).solve(Problem.compile(mission(team=team)), Stop(time_limit=limit, clock=Ticking()))
     bids = []
     plan.book.for_each_bid(bids.append)
@@ -129,10 +129,28 @@ def test_what_keeps_its_time_limit_says_nothing_of_it(capsys):
     assert capsys.readouterr().err == ""
 
 
-def test_a_plan_without_time_is_judged_and_cut_short():
-    solution = answer(Request(mission=mission(), allocator="auction", time_limit=0.0))
+def test_an_interrupted_plan_is_judged_and_cut_short():
+    interrupt = Stop()
+    interrupt.interrupt()
+    solution = answer(Request(mission=mission(), allocator="auction"), interrupt=interrupt)
     assert solution.plan.cut_short
+    assert not solution.plan.complete
     assert solution.verdict.valid
+
+
+@pytest.mark.parametrize(
+    ("name", "team"),
+    [
+        *((name, False) for name in (*CONSTRUCTIVE, "search", "market", "genetic", "greedy+hill-climbing")),
+        *((name, True) for name in ("greedy", "auction", "search", "genetic", "greedy+hill-climbing")),
+    ],
+)
+def test_a_first_plan_is_worth_ten_times_the_limit(name, team):
+    """The limit itself passes at the third look at the clock."""
+    allocator, problem = allocator_of(name), Problem.compile(mission(team=team))
+    stop = Stop(time_limit=3.0, clock=Ticking(), first_plan_s=1e6)
+    plan = allocator.solve(problem, stop)
+    assert (plan.complete, plan.cut_short) == (True, False)
 
 
 def test_a_quick_bound_without_time_holds_and_says_that_it_was_cut_short():

@@ -37,7 +37,9 @@ def test_a_leg_goes_around():
 
 
 def test_straight_lines_count_where_the_rules_say_so():
-    assert judge(mission(Task(id="a", position=(30, 20)), travel="euclidean"), "a").total_cost == 20
+    assert judge(mission(Task(id="a", position=(10, 40)), travel="euclidean"), "a").total_cost == 20
+    verdict = judge(mission(Task(id="a", position=(30, 20)), travel="euclidean"), "a")
+    assert found(verdict) == [("closed-area", "r", "a")]
 
 
 def test_a_leg_goes_from_exit_to_entry():
@@ -70,7 +72,7 @@ def judge_length(question, robot):
 def test_a_blocked_task_is_unreachable(place):
     tasks = (Task(id="a", position=place, actuation_cost=2), Task(id="b", position=(10, 21)))
     verdict = judge(mission(*tasks, robot={"radius_m": 1.0}), "a", "b")
-    assert found(verdict) == [("unreachable", "r", "a"), ("unreachable", "r", "b")]
+    assert found(verdict) == [("closed-area", "r", "a"), ("unreachable", "r", "b")]
     assert verdict.total_cost == 2
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import Field, dataclass, fields
 from typing import Any, Protocol
 
@@ -93,7 +94,8 @@ class Allocator:
 
     def outcome(self, problem: Problem, stop: Stop, seed: int, params: Any, start: Routes | None) -> Outcome:
         """What the algorithm arrives at from the routes of `start`; its routes are checked."""
-        returned = self.algorithm(problem, stop, seed, params, start)
+        with nullcontext() if self.anytime else stop.first_plan():
+            returned = self.algorithm(problem, stop, seed, params, start)
         if isinstance(returned, Outcome):
             if stop.best is not None:  # an algorithm that ran out of time may not have noted its last plan
                 stop.improved(*problem.value(returned.routes))

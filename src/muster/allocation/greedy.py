@@ -22,21 +22,23 @@ class Parameters:
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:
     """Algorithm 1; with a start plan it goes on from its routes. With the objective `total`: MinCost (3.27)."""
-    if problem.core.is_timed:
-        routes = append_units(problem, stop, start)
-        stop.improved(*problem.value(routes))
-        return Outcome(routes)
+    with stop.first_plan():
+        routes = append_units(problem, stop, start) if problem.core.is_timed else _append_tasks(problem, stop, start)
+    stop.improved(*problem.value(routes))
+    return Outcome(routes)
+
+
+def _append_tasks(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
     greedy = core.Greedy(problem.core, balanced=problem.objective != "total")
     for robot, route in enumerate(start or ()):
         for task in route:
             greedy.assign(robot, task)
     while (matching := greedy.select()) is not None:  # steps 2 to 5
-        if stop.ends_first_plans():
+        if stop.due():
             stop.cut()
             break
         greedy.assign(matching.robot, matching.task)  # steps 6 to 8
-    stop.improved(*problem.value(greedy.routes))
-    return Outcome(greedy.routes)
+    return greedy.routes
 
 
 def completed(problem: Problem, start: Routes | None = None) -> Routes:

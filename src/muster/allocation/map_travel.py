@@ -71,7 +71,14 @@ class MapTravel:
         table = np.array([self.lengths(k, exits, threads) for k, exits in enumerate(self.exits)])
         classes = self.geometry.classes
         legs = tuple({j: m for j, m in row.items() if math.isfinite(sum(m))} for row in self.legs)
-        return Measured(table, classes, np.where(np.isinf(self.costs), 0.0, self.costs), classes, legs, over_map=True)
+        return Measured(
+            table,
+            classes,
+            np.where(np.isinf(self.costs), 0.0, self.costs),
+            classes,
+            legs,
+            over_map=not self.robot_paths.straight,
+        )
 
     def lengths(self, k: int, exits: Floats, threads: int) -> Floats:
         """(q, p) metres for class k from exits (q, 3) to the entry of each place; inf where there is no way.

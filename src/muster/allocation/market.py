@@ -75,10 +75,11 @@ def trade(
 ) -> Allocation:
     """Lines 8 to 23; the best allocation."""
     random = Random(seed)
-    auctioneer = Auctioneer(problem, params, start, on_round, stop)
-    before = _allocation(problem, auctioneer)
-    if not auctioneer.sell(stop):
-        stop.cut()
+    with stop.first_plan():
+        auctioneer = Auctioneer(problem, params, start, on_round, stop)
+        before = _allocation(problem, auctioneer)
+        if not auctioneer.sell(stop):
+            stop.cut()
     current = _allocation(problem, auctioneer)
     best = min(before, current, key=_rank)
     stop.improved(-best.rank[0], best.rank[1])

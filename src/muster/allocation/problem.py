@@ -33,6 +33,7 @@ from muster.mission.supported_features import require_supported
 from muster.mission.value_types import shown
 from muster.motion.actions import duration_of
 from muster.motion.leg_times import LegTimes
+from muster.motion.map_world import body_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
@@ -119,7 +120,7 @@ class Problem:
         stations = range(n + 2 * m, n + 2 * m + len(self.stations))
         places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots), *stations]
         known = None
-        if self.known is not None or self.mission.travel_rule == "map":
+        if self.known is not None or self.has_paths:
             known = self.measured.part(robots, places, tasks)
         return replace(
             self,
@@ -399,7 +400,7 @@ class Problem:
         if self.known is not None:
             return self.known
         geometry, none = self._task_geometry, np.empty(0, dtype=np.int32)
-        if self.mission.travel_rule == "map":
+        if self.has_paths:
             return self._over_map.measured(os.cpu_count() or 1)
         if self.mission.travel_rule == "matrix":
             table, classes = travel_table(self.mission, self.robots, self.tasks)
@@ -411,7 +412,22 @@ class Problem:
 
     @cached_property
     def _task_geometry(self) -> TaskGeometry:
-        return TaskGeometry.of(self.robots, self.tasks, by_body=self.mission.travel_rule == "map")
+        return TaskGeometry.of(self.robots, self.tasks, by_body=self.has_paths)
+
+    @cached_property
+    def has_paths(self) -> bool:
+        """Whether legs are paths over the map: shortest ones, or straight ones that closed areas may cross."""
+        if not self.mission.has_straight_legs_among_areas:
+            return self.mission.travel_rule == "map"
+        return not all(self.robot_paths.is_open(body_of(robot), self._all_points) for robot in self.robots)
+
+    @cached_property
+    def _all_points(self) -> Floats:
+        """(k, 3) metres, map frame: where legs and the work on tasks begin and end."""
+        geometry = TaskGeometry.of(self.robots, self.tasks, by_body=False)
+        passed = [(*point, 0.0)[:3] for doing in geometry.moving.values() for point in doing.points]
+        places = [self._with_robots(geometry.entries), self._with_robots(geometry.exits), np.array(passed, np.float64)]
+        return np.concatenate([part.reshape(-1, 3) for part in places])
 
     @cached_property
     def robot_paths(self) -> RobotPaths:
@@ -429,14 +445,13 @@ class Problem:
         """Travel between the places by paths over the map, whatever the mission's rule."""
         from muster.allocation.map_travel import MapTravel
 
-        by_body = self.mission.travel_rule == "map"
-        geometry = self._task_geometry if by_body else TaskGeometry.of(self.robots, self.tasks, by_body=True)
+        geometry = self._task_geometry if self.has_paths else TaskGeometry.of(self.robots, self.tasks, by_body=True)
         exits, entries = self._with_robots(geometry.exits), self._with_robots(geometry.entries)
         return MapTravel.of(robot_paths, self.robots, geometry, exits, entries)
 
     def no_way_to(self, i: int, j: int) -> str:
         """Why robot i has no path to task j, or along its way points."""
-        if self.mission.travel_rule != "map" or self.known is not None:
+        if self.known is not None or not self.has_paths:
             return "there is no way to it"
         return self._over_map.why_not(i, self.start(i), j)
 

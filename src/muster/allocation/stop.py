@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from muster.mission.clock import Clock, SystemClock
@@ -10,11 +11,18 @@ from muster.mission.errors import ParameterError
 
 DEFAULT_TIME_LIMIT_S = 5.0
 _OVERTIME, _OVERTIME_S = 0.05, 0.1  # share of a time limit, and seconds, in which what was found is put together
+PATIENCE = 10.0
+"""How many times the limit a first plan may take: a part of one is worth less than the time."""
 
 
 def usual_time_limit(anytime: bool, time_limit: float | None, iterations: int | None) -> float | None:
     """The time limit of a run: as given; the default for an anytime allocator that nothing else stops."""
     return DEFAULT_TIME_LIMIT_S if anytime and time_limit is None and iterations is None else time_limit
+
+
+def patience_s(time_limit: float | None) -> float | None:
+    """The seconds that a first plan may take under a time limit."""
+    return None if time_limit is None else max(PATIENCE * time_limit, time_limit + _OVERTIME_S)
 
 
 @dataclass(frozen=True)
@@ -59,6 +67,8 @@ class Stop:
         called when the best plan improves, and every now and then between.
     whole
         of which this is a part: it ends with it.
+    first_plan_s
+        seconds that a first plan may take; None: `PATIENCE` times the limit.
     began_s
         by the clock, when the time began that the limit and `elapsed_s` are of; None: now.
     """
@@ -73,6 +83,7 @@ class Stop:
         clock: Clock | None = None,
         on_progress: Callable[[Progress], None] | None = None,
         whole: Stop | None = None,
+        first_plan_s: float | None = None,
         began_s: float | None = None,
     ) -> None:
         if iterations is not None and not (isinstance(iterations, int) and iterations >= 0):
@@ -81,6 +92,8 @@ class Stop:
             raise ParameterError(f"time_limit: {time_limit}; expected seconds, at least 0")
         self._iterations = iterations
         self._time_limit = time_limit
+        self._first_plan_s = patience_s(time_limit) if first_plan_s is None else first_plan_s
+        self._makes_first_plan = False
         self._clock = clock or SystemClock()
         self._on_progress = on_progress
         self._begin = self._clock.now() if began_s is None else began_s
@@ -122,16 +135,22 @@ class Stop:
         limit = self._time_limit
         return self.hurried or (limit is not None and self.elapsed_s > limit * (1 + _OVERTIME) + _OVERTIME_S)
 
-    def ends_first_plans(self) -> bool:
-        """Whether a first plan is not worth waiting for either: it was interrupted, or the time limit passed by far."""
-        return self.interrupted or self.overdue
+    @contextmanager
+    def first_plan(self) -> Iterator[None]:
+        """While the context is open, be due only when a first plan has taken too long, or on an interruption."""
+        before, self._makes_first_plan = self._makes_first_plan, True
+        try:
+            yield
+        finally:
+            self._makes_first_plan = before
 
     def due(self) -> bool:
         """Whether time is up or the algorithm was interrupted."""
         now = self._clock.now()
         if self._on_progress is not None and now - self._reported > self._REPORT_EVERY_S:
             self._report(now)
-        return self.interrupted or (self._time_limit is not None and now - self._begin >= self._time_limit)
+        limit_s = self._first_plan_s if self._makes_first_plan else self._time_limit
+        return self.interrupted or (limit_s is not None and now - self._begin >= limit_s)
 
     def iterations(self) -> Iterator[int]:
         """Count iterations until it is time to stop."""

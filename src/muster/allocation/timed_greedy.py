@@ -50,7 +50,7 @@ def _select(
     """The matching of the least debit; of equal ones that of the first unit. None if it is time to stop, too."""
     chosen, least = None, math.inf
     for unit in roster.ready():
-        if stop.ends_first_plans():
+        if stop.due():
             stop.cut()
             return None
         insertion = None if unit in refused else roster.best(unit, robots)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,6 +10,8 @@ import numpy.typing as npt
 
 from muster.mission.errors import Finding, NotSupportedError
 from muster.mission.model import Mission, Robot, Task
+from muster.motion.map_world import World, body_of
+from muster.motion.straight_ways import StraightWays
 
 Floats = npt.NDArray[np.float64]
 
@@ -23,21 +26,32 @@ def travel_table(
     Returns
     -------
     table
-        (classes, n + 2m, n + 2m) metres between tasks, starts and ends of robots, inf where there is no way.
+        (classes, n + 2m, n + 2m) metres between tasks, starts and ends of robots, inf where there is no way,
+        and to tasks and stations in areas that are closed to a robot.
     classes
         (m,) index of each robot's table.
     """
-    types = sorted({robot.type or "" for robot in robots})
+    chart = mission.map
+    has_areas = chart is not None and bool(chart.boundary or chart.zones)
+    keys = [(robot.type or "", body_of(robot) if has_areas else None) for robot in robots]
+    kinds = sorted(set(keys), key=lambda key: (key[0], (key[1].kind, key[1].radius_m) if key[1] else ()))
     starts = [robot.id for robot in robots]
     stations = [station.id for station in mission.stations]
     names = [*(task.id for task in tasks), *starts, *starts, *stations]  # a robot ends, if anywhere, where it started
+    work = {task.id: task.position for task in tasks} | {one.id: one.position for one in mission.stations}
+    world = World.of_travel(mission) if has_areas else None
     tables = []
-    for kind in types:
+    for kind, body in kinds:
         given = mission.travel_tables[kind]
         index = {place: k for k, place in enumerate(given.places)}
         rows = [index[name] for name in names]
-        tables.append(np.array(given.metres, dtype=np.float64)[np.ix_(rows, rows)])
-    return np.array(tables), np.array([types.index(robot.type or "") for robot in robots], dtype=np.int32)
+        table = np.array(given.metres, dtype=np.float64)[np.ix_(rows, rows)]
+        if world is not None and body is not None:
+            ways = StraightWays(world, body)
+            closed = [k for k, name in enumerate(names) if name in work and not ways.clear(np.array([work[name]]))]
+            table[:, closed] = math.inf
+        tables.append(table)
+    return np.array(tables), np.array([kinds.index(key) for key in keys], dtype=np.int32)
 
 
 def straight_table(mission: Mission, exits: Floats, entries: Floats) -> Floats:

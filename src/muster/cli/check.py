@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.backend import Backend, server_option
-from muster.cli.exits import BAD_INPUT, DONE, INCOMPLETE
+from muster.cli.exit_codes import Ending, exit_code_if
+from muster.cli.exits import BAD_INPUT
 from muster.cli.options import (
     MissionFile,
     format_option,
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from muster.allocation.conflicts import Together
+    from muster.mission.plan import Unassigned
     from muster.motion.actions.unseen_places import Unseen
     from muster.planning.explaining import Possible
     from muster.planning.explaining.crossings import BlockedWay
@@ -103,27 +105,36 @@ def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[st
         _print_blocked(found.blocked)
         if len(lost) < len(mission.tasks):
             _print_together(all_others, "all other tasks" if lost else "all tasks")
-    if errors:
-        return BAD_INPUT
     incomplete = lost or all_others.proven or found.blocked
-    return INCOMPLETE if incomplete and require_complete else DONE
+    return exit_code_if(
+        (Ending.REFUSED, errors),
+        (Ending.IMPOSSIBLE, _for_ever(mission, lost)),
+        (Ending.LEFT_OUT, incomplete and require_complete),
+    )
+
+
+def _for_ever(mission: Mission, lost: Sequence[Unassigned]) -> list[Unassigned]:
+    """Return the tasks that stay impossible whatever doors events open."""
+    if not any(event.door_opens for event in mission.events):
+        return list(lost)
+    return [item for item in lost if all(reason.reason != "unreachable" for reason in item.reasons)]
 
 
 def _print_checked(mission: Mission, found: Possible, errors: int) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.impossible_table import print_impossible
     from muster.planning.explaining.phrases import shortfall_lines
 
     lost = found.impossible
     robots, tasks = counted(len(mission.robots), "robot"), counted(len(mission.tasks), "task")
     stations = f", {counted(len(mission.stations), 'station')}" if mission.stations else ""
-    click.echo(f"{mission.name}: {robots}, {tasks}{stations}; {counted(errors, 'error') if errors else 'no errors'}")
+    wrong = [counted(errors, "error")] if errors else []
+    wrong += [f"{len(lost)} of {counted(len(mission.tasks), 'task')} can never be done"] if lost else []
+    click.echo(f"{mission.name}: {robots}, {tasks}{stations}; {', '.join(wrong) or 'no errors'}")
     for short in found.together.shortfalls:
         for line in shortfall_lines(short):
             click.echo(line)
     if lost:
-        rows = [(item.task, r.robot, r.reason, r.detail) for item in lost for r in item.reasons]
-        title = f"{counted(len(lost), 'task')} that can never be done"
-        print_table(("task", "robot", "reason", "detail"), rows, title=title)
+        print_impossible(lost)
         if opened := sorted({event.door_opens for event in mission.events if event.door_opens}):
             click.echo(f"with doors as they are at first; events open {', '.join(opened)}")
 

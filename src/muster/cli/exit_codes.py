@@ -11,11 +11,6 @@ from enum import Enum
 import click
 
 from muster.cli import exits
-from muster.mission.errors import MusterError
-
-
-class CutShortError(MusterError):
-    """A plan that was cut short is not carried out."""
 
 
 class Ending(Enum):
@@ -62,13 +57,13 @@ class Ending(Enum):
     CUT_SHORT = (
         exits.INCOMPLETE,
         "the time limit cut the plan short, and `--accept-partial` was not given",
-        "`solve`, `auction`, `simulate`, `fly`, `ros`, `ros2`",
+        "`solve`, `simulate`, `export`, `fly`, `ros`, `ros2`",
         "cut short",
         "plan with `cut_short`; 409 to a run of it",
     )
     IMPOSSIBLE = (
         exits.INCOMPLETE,
-        "a task can never be done",
+        "tasks can never be done",
         "`check`",
         "can never be done",
         "`impossible` in the answer",

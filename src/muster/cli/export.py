@@ -12,8 +12,16 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.backend import Backend, server_option
-from muster.cli.exits import DONE
-from muster.cli.options import Finite, MissionFile, ignore_option, load_plan, mission_argument, quiet_option
+from muster.cli.exit_codes import Ending, exit_code_if
+from muster.cli.options import (
+    Finite,
+    MissionFile,
+    accept_partial_option,
+    ignore_option,
+    load_plan,
+    mission_argument,
+    quiet_option,
+)
 from muster.cli.outputs import require_folder, require_writable
 from muster.exchange.export_request import (
     FIRMWARES,
@@ -97,6 +105,7 @@ def _format(_: click.Context, __: click.Parameter, value: str) -> str:
 )
 @click.option("--per-robot", is_flag=True, help="sheets, ics: a file for each robot, into a folder.")
 @ignore_option
+@accept_partial_option
 @quiet_option
 @server_option()
 def command(
@@ -107,6 +116,7 @@ def command(
     form: str,
     output: Path | None,
     altitudes: tuple[str, ...],
+    accept_partial: bool,
     quiet: bool,
     verbose: bool,
     **options: Any,
@@ -134,8 +144,9 @@ def command(
     else:
         _write_file(files, output, form)
     for message in () if quiet else files.messages:
-        click.echo(message, err=True)
-    return DONE
+        if message != given.cut_short_line:  # which is said where the plan is read
+            click.echo(message, err=True)
+    return exit_code_if((Ending.CUT_SHORT, given.cut_short and not accept_partial))
 
 
 _SUFFIXES = {"qgc": ".plan", "sheets": ".pdf", "ics": ".ics"}

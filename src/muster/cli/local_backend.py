@@ -91,5 +91,6 @@ class LocalBackend:
 
         with ctrl_c_halts() as halt:
             on_event = None if on_line is None else report
-            outcome = simulate(mission, plan, record=record, on_event=on_event, halt=halt, **how)
+            # What is accepted of a plan is the verb's to check.
+            outcome = simulate(mission, plan, accept_partial=True, record=record, on_event=on_event, halt=halt, **how)
         return outcome, outcome.mission_time_s if halt.is_set() else None

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exit_codes import CutShortError, Ending, Invocation, exit_code
-from muster.mission.errors import MusterError
+from muster.cli.exit_codes import Ending, Invocation, exit_code
+from muster.mission.errors import CutShortError, MusterError
 from muster.mission.value_types import shown
 
 if TYPE_CHECKING:

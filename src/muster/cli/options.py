@@ -176,6 +176,8 @@ def say_of_plan(
     if verbose:
         amount = f"{len(plan.routes)} routes, {sum(len(route.tasks) for route in plan.routes)} tasks"
         click.echo(f"read {file}: plan, {amount}", err=True)
+    if plan.cut_short and not quiet:
+        click.echo(f"warning: {file}: {plan.cut_short_line}", err=True)
     held = [rule for rule in plan.ignored if rule not in ignore]
     if held and not quiet:
         expected = f"--ignore {','.join((*ignore, *held))}, or these rules hold"
@@ -263,7 +265,9 @@ def require_complete_option(verb: Verb) -> Verb:
 def accept_partial_option(verb: Verb) -> Verb:
     """--accept-partial."""
     return click.option(
-        "--accept-partial", is_flag=True, help="Also with a plan that the time limit cut short, which leaves tasks out."
+        "--accept-partial",
+        is_flag=True,
+        help="Accept a plan that the time limit cut short; else it is not carried out, and the exit code is 3.",
     )(verb)
 
 

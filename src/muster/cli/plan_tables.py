@@ -31,6 +31,8 @@ def print_plan(plan: Plan, verdict: Verdict) -> None:
     if plan.book is not None:
         messages = "" if plan.book.messages is None else f", {plan.book.messages} messages"
         click.echo(f"rounds            {plan.book.rounds}{messages}")
+    if plan.cut_short:
+        click.echo(f"cut short         {plan.cut_short_line}")
     if plan.unassigned:
         left_out = [item.task for item in plan.unassigned]
         click.echo(f"left out          {sequence(left_out)}  (`muster explain` says why)")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.cli.exit_codes import CutShortError, Ending, exit_code_if, note_ending
+from muster.cli.exit_codes import Ending, exit_code_if, note_ending
 from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
 from muster.cli.options import (
     Finite,
@@ -176,10 +176,9 @@ def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> P
 
 def require_whole(plan: Plan, options: RealRunOptions) -> Plan:
     """Return a plan; raise `CutShortError` if planning was cut short, and that is not accepted."""
-    if plan.cut_short and not options.accept_partial:
-        counts = f"{plan.tasks_completed} of {plan.tasks_total} tasks are planned"
-        expected = "more time (--time-limit), or --accept-partial"
-        raise CutShortError(f"planning was cut short: {counts}; nothing was started; expected {expected}")
+    from muster.verification.required import require_whole as required
+
+    required(plan, accept_partial=options.accept_partial)
     return plan
 
 
@@ -237,6 +236,7 @@ def carried_out(
                 plan,
                 fleet,
                 seed=options.planning.seed,
+                accept_partial=True,  # or the verb has refused the plan
                 planning=options.planning,
                 ignore=options.planning.ignore,
                 traffic=options.traffic,

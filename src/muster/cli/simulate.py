@@ -14,13 +14,14 @@ from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
 from muster.cli.drone_options import IN_THIS_PROCESS, conditions_of, drone_options
 from muster.cli.duty_options import duty_options, standing_of
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
 from muster.cli.localisation_options import localise_of, pose_options
 from muster.cli.options import (
     Finite,
     MissionFile,
+    accept_partial_option,
     avoidance_option,
     format_option,
     mission_argument,
@@ -43,6 +44,7 @@ from muster.mission.plan_reader import read_plan
 from muster.motion.laws import LAWS
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
+from muster.verification.required import require_whole
 
 if TYPE_CHECKING:
     from muster import Negotiation
@@ -127,6 +129,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
 @foxglove_option
 @method_options
 @require_complete_option
+@accept_partial_option
 @format_option
 @quiet_option
 @server_option(*_IN_THIS_PROCESS)
@@ -168,6 +171,7 @@ def command(
     transport: str,
     foxglove: int | None,
     require_complete: bool,
+    accept_partial: bool,
     form: str,
     quiet: bool,
     verbose: bool,
@@ -202,6 +206,8 @@ def command(
         planned = _judged(loaded, planned, plan, options.ignore, quiet=quiet)
     else:
         planned = _plan(backend, request_of(options, loaded, start, fixed), quiet=quiet)
+    if isinstance(planned, Plan):
+        require_whole(planned, accept_partial=accept_partial)
     footage = footage_of(loaded) if film is not None or still is not None else None
     rules = {} if negotiate else {"ignore": options.ignore, "planning": options, "standing": standing}
     with kept_record(record, html, plot, gantt) as file, shown_live(loaded, foxglove, quiet=quiet) as observers:
@@ -236,8 +242,9 @@ def command(
         draw_footage(footage, film, film_speed, still, quiet=quiet)
     if interrupted_s is not None:
         click.echo(f"interrupted at {interrupted_s:.1f} s of the mission", err=True)
-        return INTERRUPTED
-    return INCOMPLETE if require_complete and report.tasks_lost else DONE
+    return exit_code_if(
+        (Ending.INTERRUPTED, interrupted_s is not None), (Ending.LEFT_OUT, require_complete and report.tasks_lost)
+    )
 
 
 def _check_together(negotiate: bool) -> None:

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.backend import Backend, server_option
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
+from muster.cli.exit_codes import Ending, exit_code_if
+from muster.cli.exits import INTERRUPTED
 from muster.cli.options import (
     MissionFile,
+    accept_partial_option,
     format_option,
     mission_argument,
     quiet_option,
@@ -37,6 +39,7 @@ _OVERRUN, _OVERRUN_S = 0.1, 0.2  # of a time limit, and seconds, about which not
 @mission_argument
 @planning_options()
 @require_complete_option
+@accept_partial_option
 @format_option
 @click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the plan.")
 @click.option("--book", type=_FILE, metavar="FILE", help="Write every bid of an auction (.csv).")
@@ -51,6 +54,7 @@ def command(
     start: Path | None,
     fixed: Path | None,
     require_complete: bool,
+    accept_partial: bool,
     form: str,
     output: Path | None,
     book: Path | None,
@@ -82,16 +86,22 @@ def command(
         _warn_of_unseen(loaded, solution.plan)
     if book is not None and not write_book(solution.plan, book, quiet):
         return INTERRUPTED
+    plan = solution.plan
+    if plan.cut_short and not quiet:
+        click.echo(f"{plan.cut_short_line}; expected more time, or --accept-partial", err=True)
+    endings = (
+        (Ending.INTERRUPTED, interrupt.interrupted),
+        (Ending.CUT_SHORT, plan.cut_short and not accept_partial),
+        (Ending.LEFT_OUT, require_complete and not plan.complete),
+    )
     if interrupt.interrupted:
         if not quiet:
             click.echo("interrupted: this is the best plan so far", err=True)
-        return INTERRUPTED
-    if solution.plan.cut_short and not quiet:
-        click.echo("time limit: planning was cut short; it did not come to all tasks that are left out", err=True)
+        return exit_code_if(*endings)
     if options.time_limit is not None and not quiet:
-        _say_overrun(interrupt.elapsed_s, options.time_limit, solution.plan)
+        _say_overrun(interrupt.elapsed_s, options.time_limit, plan)
     _say_why(solution, quiet=quiet, verbose=verbose)
-    return INCOMPLETE if require_complete and not solution.plan.complete else DONE
+    return exit_code_if(*endings)
 
 
 def _warn_of_unseen(mission: Mission, plan: Plan) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 from muster.exchange.altitudes import altitudes_of, at_work, height_notes, raised, raised_team
@@ -17,6 +18,7 @@ from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
 from muster.exchange.itinerary import Itinerary, Passage, itineraries
 from muster.exchange.kml import kml_text
+from muster.exchange.open_ways import require_open_itineraries
 from muster.exchange.qgc_writer import PlanFiles
 from muster.exchange.spreadsheet import csv_text
 from muster.exchange.thinning import thinned
@@ -27,6 +29,7 @@ from muster.mission.sol_files import sol_text
 from muster.motion.map_world import body_of
 from muster.motion.robot_paths import RobotPaths
 from muster.verification import Verdict
+from muster.verification.required import require_geometry
 
 
 def exported(mission: Mission, verdict: Verdict, form: str, options: ExportOptions, plan: Plan | None = None) -> Files:
@@ -48,7 +51,9 @@ def exported(mission: Mission, verdict: Verdict, form: str, options: ExportOptio
     """
     write = FORMATS.named(form)
     made = write(mission, verdict, options, plan) if form in OPTIONS_OF else write(mission, verdict)
-    return made if isinstance(made, Files) else Files({f"plan.{form}": made})
+    files = made if isinstance(made, Files) else Files({f"plan.{form}": made})
+    cut_short = () if plan is None or not plan.cut_short else (plan.cut_short_line,)
+    return replace(files, messages=(*cut_short, *files.messages)) if cut_short else files
 
 
 def csv_file(mission: Mission, verdict: Verdict) -> str:
@@ -90,9 +95,11 @@ def _features(
 ) -> tuple[PlanFeatures, tuple[str, ...]]:
     """The features of a plan, drones at their heights, and messages on these."""
     earth = Earth.of(mission, f"--to {form}")
+    require_geometry(mission, f"--to {form}")
     options = options or ExportOptions()
     altitudes = altitudes_of(mission, options)
     team, notes = raised_team(mission, verdict, altitudes, options)
+    require_open_itineraries(mission, team)
     return features_of(mission, verdict, team, earth, layered=altitudes), notes
 
 
@@ -110,12 +117,14 @@ def plan_files(
     """
     options = options or ExportOptions()
     earth = Earth.of(mission, "--to qgc")
+    require_geometry(mission, "--to qgc")
     robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
     altitudes = altitudes_of(mission, options)
     straight = [_thinned(i, robot_paths, options.tolerance) for i in itineraries(mission, verdict, robot_paths)]
     whole = at_work(mission, straight)
     _require_heights(mission, whole, altitudes)
     team = [raised(itinerary, altitudes) for itinerary in whole]
+    require_open_itineraries(mission, team)
     busy = [itinerary for itinerary in team if len(itinerary.passages) > 1]
     files = dict(zip(file_names([i.robot.id for i in busy], ".plan"), busy, strict=True))
     plans = PlanFiles(mission, earth, team, options.firmware)
@@ -140,9 +149,6 @@ def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
     name, fence = itinerary.robot.id, Fence.of(plans.mission, itinerary)
     for k in fence.passed:
         yield f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
-    for broken in fence.broken:
-        how = "does not stay in" if broken == "the boundary" else "leads through"
-        yield f"warning: {name}: its way {how} {broken}; its fence will stop it"
     if stations := dict.fromkeys(passage.station for passage in itinerary.passages if passage.station is not None):
         yield f"{name}: holds at {', '.join(stations)} for its service; whether it lands there is up to you"
     if any(crosses(plans.earth.spots([*corners, corners[0]])) for corners, _ in fence.polygons):

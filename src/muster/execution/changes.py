@@ -6,12 +6,13 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from muster.execution.goods_beside import fetching_place
 from muster.execution.goods_ledger import GoodsLedger, as_amount
 from muster.execution.robot_energy import RobotEnergy
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.stations import AT_STATION, Stations
 from muster.execution.task_ledger import Ledger, moved, robot_as_it_holds
-from muster.execution.task_motion import place
+from muster.execution.task_motion import Way, place, straight
 from muster.execution.team_work import break_off
 from muster.execution.travel import Travel
 from muster.mission.doors import Doors
@@ -56,6 +57,8 @@ class Changes:
         how robots are reached; a robot that joins has its port here by then.
     stations, goods
         of the executor.
+    way
+        the ways that robots go.
     on_doors
         receives the ids of the doors that are closed, when one closes or opens.
     """
@@ -67,6 +70,7 @@ class Changes:
     travel: Travel
     stations: Stations
     goods: GoodsLedger
+    way: Way = straight
     on_doors: Callable[[Collection[str]], None] = lambda closed: None
     doors: Doors = field(init=False)
 
@@ -142,11 +146,12 @@ class Changes:
                 yield Change("work_broken_off", {"task": task, "robot": state.robot.id})
 
     def _let_lie(self, state: RobotState) -> Iterator[Change]:
-        """What a robot that fails has on board lies where it is: tasks that took it on are to be done again there."""
-        at = state.position[: self.mission.dimensions]
+        """What a robot that fails has on board lies where it is: tasks that took it on are done again beside it."""
         for item in self.goods.fall(state.robot.id):
             if item.task is None or item.task not in self.ledger.ends_s:
                 continue
+            beside = fetching_place(state, self.ledger.tasks[item.task], self.crew.values(), self.way)
+            at = beside[: self.mission.dimensions]
             self.ledger.reopen(lying(self.ledger.tasks[item.task], at, item.amounts))
             state.done = [name for name in state.done if name != item.task]
             state.stops = [name for name in state.stops if name != item.task]
@@ -321,11 +326,12 @@ def new_robot_state(
 def lying(task: Task, at: Point, amounts: Mapping[str, float]) -> Task:
     """A task that took goods on board which now lie elsewhere: they are to be taken on there.
 
-    What its work had to wait for, and who was to do it together with whom, was kept when it was done first.
+    What its work had to wait for, by when it was to be done, and who was to do it together with whom, was kept when it
+    was done first. Its time windows hold for the work that is to be done now.
     """
     has_geometry = task.action is not None and task.action.has_geometry
     there = moved(replace(task, entry=None, exit=None, action=None if has_geometry else task.action), at)
-    without: dict[str, Any] = {"prerequisites": (), "lags": {}, "window_s": (), "deadline_s": None, "starts_with": ()}
+    without: dict[str, Any] = {"prerequisites": (), "lags": {}, "deadline_s": None, "starts_with": ()}
     return replace(there, load=as_amount(amounts), same_robot_as=(), other_robot_than=(), **without)
 
 

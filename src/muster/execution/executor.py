@@ -132,7 +132,7 @@ class Executor:
         self._insertion = Insertion(self._travel)
         self._observer = NoObserver() if observer is None else observer
         self._changes = Changes(
-            mission, self.ledger, self.crew, ports, self._travel, self.stations, self.goods, on_doors
+            mission, self.ledger, self.crew, ports, self._travel, self.stations, self.goods, way, on_doors
         )
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)

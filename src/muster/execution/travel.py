@@ -78,7 +78,7 @@ def travel_of(mission: Mission, robot_paths: RobotPaths | None = None) -> Travel
     MissionError, MissingExtraError
         as `RobotPaths.of`.
     """
-    if mission.travel_rule == "map":
+    if mission.has_ways_by_map:
         return OverMap(RobotPaths.of(mission) if robot_paths is None else robot_paths)
     return ByTable(mission.travel_tables) if mission.travel_rule == "matrix" else Straight()
 
@@ -91,7 +91,7 @@ def way_of(mission: Mission, robot_paths: RobotPaths | None = None) -> Way:
     MissionError, MissingExtraError
         as `RobotPaths.of`.
     """
-    if mission.travel_rule != "map":
+    if not mission.has_ways_by_map:
         return straight
     over = RobotPaths.of(mission) if robot_paths is None else robot_paths
 

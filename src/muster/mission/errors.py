@@ -5,6 +5,7 @@
     │   ├── MissionError      a mission, from a file or built in Python
     │   └── PlanError         a plan file
     ├── NotSupportedError     the mission is right, but asks for what this version cannot do
+    ├── CutShortError         a plan that planning did not finish is not carried out unless that is accepted
     ├── ParameterError        a parameter of an algorithm or function is out of its range
     ├── PluginError           a package that extends Muster cannot be used
     ├── TransformError        the tree of frames cannot say where a frame is
@@ -73,6 +74,10 @@ class PlanError(InputError):
 
 class NotSupportedError(InputError):
     """The mission is right, but asks for what this version of Muster cannot do."""
+
+
+class CutShortError(MusterError):
+    """A plan was cut short by its time limit, and is not carried out unless that is accepted."""
 
 
 class ParameterError(MusterError, ValueError):

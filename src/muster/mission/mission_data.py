@@ -74,6 +74,17 @@ class MissionData(Checked):
         return self.rules.travel or ("euclidean" if self.map is None else "map")
 
     @property
+    def has_straight_legs_among_areas(self) -> bool:
+        """Whether legs are straight, and a boundary or zones of the map close some of them."""
+        chart = self.map
+        return self.travel_rule == "euclidean" and chart is not None and bool(chart.boundary or chart.zones)
+
+    @property
+    def has_ways_by_map(self) -> bool:
+        """Whether the map decides which ways there are: shortest paths, or straight legs that it closes."""
+        return self.travel_rule == "map" or self.has_straight_legs_among_areas
+
+    @property
     def has_goods(self) -> bool:
         """Whether a task takes something on board or puts it down."""
         return any(task.load is not None or task.delivers is not None for task in self.tasks)

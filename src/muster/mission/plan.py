@@ -110,7 +110,8 @@ class Plan:
     Figures are None in a plan from elsewhere that does not state them. The times with and without traffic are a
     forecast of when all robots have ended their routes, ways home included, where they pass in turn; None where they
     do not. `cut_short` says that planning was ended before it had looked at every task that is left out, so that the
-    plan is a part of one; files have it only where it is true. Of the figures, `elapsed_s` and the seconds in `history` are times; all others are the same whenever mission, allocator, parameters and seed are.
+    plan is a part of one; files have it only where it is true. Of the figures, `elapsed_s` and the seconds in `history`
+    are times; all others are the same whenever mission, allocator, parameters and seed are.
 
     Raises
     ------
@@ -152,6 +153,15 @@ class Plan:
             return self.tasks_completed == self.tasks_total
         return not self.unassigned
 
+    @property
+    def cut_short_line(self) -> str:
+        """What there is to say of a plan that was cut short; empty of others."""
+        if not self.cut_short:
+            return ""
+        done = len({task for route in self.routes for task in route.tasks if task not in route.stations})
+        of_all = "" if self.tasks_total is None else f" of {self.tasks_total}"
+        return f"planning was cut short: {done}{of_all} tasks are planned, and not all others were looked at"
+
     def as_dict(self) -> dict[str, Any]:
         """The plan as its file holds it."""
         data: dict[str, Any] = {"schema": PLAN_SCHEMA}
@@ -184,7 +194,8 @@ class Plan:
     def __repr__(self) -> str:
         done = len({task for route in self.routes for task in route.tasks if task not in route.stations})
         value = "" if self.objective_value is None else f", {self.objective} {self.objective_value:.2f}"
-        return f"<Plan of {self.mission or 'a mission'} by {self.allocator or 'hand'}: {done} tasks done{value}>"
+        cut = ", cut short" if self.cut_short else ""
+        return f"<Plan of {self.mission or 'a mission'} by {self.allocator or 'hand'}{cut}: {done} tasks done{value}>"
 
     def _repr_html_(self) -> str:
         routes = [(route.robot, " ".join(route.order), route.usage) for route in self.routes]

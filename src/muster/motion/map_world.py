@@ -19,7 +19,7 @@ import numpy as np
 
 from muster.mission.consistency import positions
 from muster.mission.errors import MissionError, ParameterError
-from muster.mission.model import Map, Mission, Robot, Zone
+from muster.mission.model import Map, Mission, Point, Robot, Zone
 from muster.mission.records import findings
 from muster.mission.value_types import Fault
 from muster.motion.free_space import GridSpace, PolygonSpace, Prism, PrismSpace, Space
@@ -33,6 +33,9 @@ from muster.motion.maps.raster import in_cells, touched
 
 if TYPE_CHECKING:
     import shapely
+
+
+_FAR_M, _FAR = 1000.0, 10.0  # m, and of the extent: beyond all places, where there is no boundary
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,8 @@ class World:
         the zones.
     closed
         the ids of the zones that are closed, of those that have one.
+    is_unbounded
+        whether the boundary is none of the mission's, but far away from all there is.
     """
 
     dimensions: int
@@ -93,6 +98,7 @@ class World:
     boundary: shapely.Polygon | None
     areas: tuple[Area, ...]
     closed: frozenset[str] = frozenset()
+    is_unbounded: bool = False
     _made: dict[object, object] = field(default_factory=dict, init=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -126,9 +132,28 @@ class World:
         areas = _areas(mission.map, faults)
         if faults:
             raise MissionError(findings(faults, mission.source))
-        lowest = min((place[2] for _, place in positions(mission) if len(place) == 3), default=0.0)
-        closed = frozenset(area.zone.id for area in areas if area.zone.id and not area.zone.open)
-        return cls(mission.dimensions, min(0.0, lowest), image, boundary, areas, closed)
+        return cls(*_extent(mission), image, boundary, areas, _closed(areas))
+
+    @classmethod
+    def of_travel(cls, mission: Mission) -> World:
+        """What a mission's rule of travel keeps robots out of: straight legs pass the walls of an image, but no zones.
+
+        Raises
+        ------
+        MissionError, MissingExtraError, ParameterError
+            as `World.of`.
+        """
+        if mission.map is None or mission.map.boundary is not None or mission.travel_rule == "map":
+            return cls.of(mission)
+        require_map_extra()
+        faults: list[Fault] = []
+        areas = _areas(mission.map, faults)
+        if faults:
+            raise MissionError(findings(faults, mission.source))
+        corners = [place[:2] for _, place in positions(mission)] + [
+            c for zone in mission.map.zones for c in zone.polygon
+        ]
+        return cls(*_extent(mission), None, _far_around(corners), areas, _closed(areas), is_unbounded=True)
 
     def with_closed(self, closed: Collection[str]) -> World:
         """The world when these of its zones that have an id are closed, and the others of them open."""
@@ -244,6 +269,28 @@ class World:
 
 def _prism(area: Area, radius_m: float) -> Prism:
     return Prism(grown(area.polygon, radius_m), area.floor_m - radius_m, area.ceiling_m + radius_m)
+
+
+def _extent(mission: Mission) -> tuple[int, float]:
+    """The dimensions of a mission, and where its ground is."""
+    lowest = min((place[2] for _, place in positions(mission) if len(place) == 3), default=0.0)
+    return mission.dimensions, min(0.0, lowest)
+
+
+def _closed(areas: Iterable[Area]) -> frozenset[str]:
+    """The ids of the doors that are closed before any event."""
+    return frozenset(area.zone.id for area in areas if area.zone.id and not area.zone.open)
+
+
+def _far_around(corners: Iterable[Point]) -> shapely.Polygon:
+    """A box around places that no robot gets to the sides of."""
+    import shapely
+
+    points = np.array(list(corners), dtype=np.float64)
+    (west, south), (east, north) = points.min(axis=0), points.max(axis=0)
+    margin = _FAR_M + _FAR * max(east - west, north - south)
+    box: shapely.Polygon = shapely.box(west - margin, south - margin, east + margin, north + margin)
+    return box
 
 
 def _areas(chart: Map, faults: list[Fault]) -> tuple[Area, ...]:

@@ -1,4 +1,4 @@
-"""The shortest paths of a mission's robots over its map, as they are driven and as they are paid for."""
+"""The paths of a mission's robots over its map, as they are driven and as they are paid for: shortest or straight."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from muster.motion.map_world import Body, World
 from muster.motion.path import NoPath, Path
 from muster.motion.paths import PathFinder
 from muster.motion.smoothing import Smoothed, smoothed
+from muster.motion.straight_ways import StraightWays
 from muster.motion.unreachable_places import checked_world, why_blocked
 
 Floats = npt.NDArray[np.float64]
@@ -25,7 +26,7 @@ _MOST_LEGS = 100_000  # that are kept: a standing fleet is asked for new ones fo
 
 @dataclass(eq=False)
 class RobotPaths:
-    """Shortest paths for each body over one map, whose doors close and open.
+    """Paths for each body over one map, whose doors close and open.
 
     Along a path in the plane the height changes evenly.
 
@@ -33,10 +34,13 @@ class RobotPaths:
     ----------
     world
         the map.
+    straight
+        whether paths are straight, and there is none where a closed area is in the way; else they are the shortest.
     """
 
     world: World
-    _finders: dict[Body, PathFinder] = field(default_factory=dict, init=False, repr=False)
+    straight: bool = False
+    _finders: dict[Body, PathFinder | StraightWays] = field(default_factory=dict, init=False, repr=False)
     _legs: dict[tuple[Body, Point, Point], float] = field(default_factory=dict, init=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -45,16 +49,17 @@ class RobotPaths:
 
     @classmethod
     def of(cls, mission: Mission) -> RobotPaths:
-        """The paths over the map of a mission.
+        """The paths over the map of a mission, by its rule of travel.
 
         Raises
         ------
         MissionError
-            for a map that is wrong, and for robots that start or end where they cannot stand.
+            for a map that is wrong; with shortest paths, for robots that start or end where they cannot stand.
         MissingExtraError
             if the extra `map` is not installed.
         """
-        return cls(checked_world(mission))
+        straight = mission.has_straight_legs_among_areas
+        return cls(World.of_travel(mission), straight=True) if straight else cls(checked_world(mission))
 
     def close(self, closed: Collection[str]) -> None:
         """From now on these doors are closed, and the others open."""
@@ -63,14 +68,14 @@ class RobotPaths:
         self._legs.clear()
 
     def path(self, body: Body, start: Sequence[float], goal: Sequence[float]) -> Path | NoPath:
-        """The shortest path between two points of the map frame, or the reason why there is none."""
+        """The path between two points of the map frame, or the reason why there is none."""
         found = self._finder(body).path(start, goal)
         if isinstance(found, NoPath):
-            return self._told(found, body, tuple(start), tuple(goal))
+            return found if self.straight else self._told(found, body, tuple(start), tuple(goal))
         return with_heights(found, start, goal)
 
     def leg_m(self, body: Body, start: Point, goal: Point) -> float:
-        """The length of the shortest path, metres; inf where there is none. Cached: actions ask for legs repeatedly."""
+        """The length of the path, metres; inf where there is none. Cached: actions ask for legs repeatedly."""
         leg = (body, start, goal)
         if leg not in self._legs:
             if len(self._legs) >= _MOST_LEGS:
@@ -86,6 +91,11 @@ class RobotPaths:
     def clear(self, body: Body, points: npt.ArrayLike) -> bool:
         """Whether a body can move straight from each point of the map frame, (k, d) metres, to the next."""
         return self._finder(body).clear(np.array(points, dtype=np.float64))
+
+    def is_open(self, body: Body, points: Floats) -> bool:
+        """Whether no closed area can cross a straight leg between any of the points (k, 3)."""
+        finder = self._finder(body)
+        return isinstance(finder, StraightWays) and finder.is_open(points)
 
     def stands(self, body: Body, place: Sequence[float]) -> bool:
         """Whether a body can stand at a place, of which the map's coordinates count."""
@@ -103,13 +113,14 @@ class RobotPaths:
     def lengths(self, body: Body, exits: Floats, entries: Floats, threads: int) -> Floats:
         """The lengths (n, m), metres, from exits (n, 3) to entries (m, 3); inf where there is no path."""
         metres = self._finder(body).lengths(exits, entries, threads=threads)
-        if isinstance(self._space(body), PrismSpace):
+        if self.straight or isinstance(self._space(body), PrismSpace):
             return metres
         return np.hypot(metres, exits[:, None, 2] - entries[None, :, 2])
 
-    def _finder(self, body: Body) -> PathFinder:
+    def _finder(self, body: Body) -> PathFinder | StraightWays:
         if body not in self._finders:
-            self._finders[body] = PathFinder(self._space(body))
+            straight = self.straight
+            self._finders[body] = StraightWays(self.world, body) if straight else PathFinder(self._space(body))
         return self._finders[body]
 
     def _space(self, body: Body) -> Space:

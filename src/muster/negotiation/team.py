@@ -266,8 +266,8 @@ def timeouts_for(robots: int) -> Timeouts:
 
 
 def _with_measured_travel(setup: TeamSetup) -> TeamSetup:
-    """The setup with the travel measured on a map, so that it need not be measured again."""
+    """The setup with the travel measured over a map, so that it need not be measured again."""
     problem = setup.problem
-    if problem.mission.travel_rule != "map":
+    if not problem.has_paths:
         return setup
     return replace(setup, problem=replace(problem, known=problem.measured, mapped=problem.robot_paths))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from muster.allocation.stop import Stop
+from muster.allocation.stop import Stop, patience_s
 
 _JUDGED_S = 4e-5  # a task, to put the plan together, judge and write it
 _IN_CACHE = 30_000  # tasks; more outgrow the caches of processors, and each takes twice as long
@@ -66,6 +66,11 @@ class Budget:
     def algorithm_s(self) -> float | None:
         """For the algorithm."""
         return self._share(_SEARCHED_SHARE if self.proof_follows else 1.0)
+
+    @property
+    def first_plan_s(self) -> float | None:
+        """For the first plan of the algorithm, which is worth waiting for."""
+        return patience_s(self.limit_s)
 
     @property
     def proof_s(self) -> float | None:

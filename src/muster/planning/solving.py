@@ -83,8 +83,14 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
     budget = Budget(limit, whole, len(problem.tasks), pace.slowness, proof_follows)
     quick = _quick_bound(request, problem, budget)
     report = None if on_progress is None else _with_bound(request, problem, on_progress, quick)
-    stop = Stop(iterations=request.iterations, time_limit=budget.algorithm_s, on_progress=report, whole=whole)
     shared = _shared_passages(request)
+    stop = Stop(
+        iterations=request.iterations,
+        time_limit=budget.algorithm_s,
+        on_progress=report,
+        whole=whole,
+        first_plan_s=budget.first_plan_s,
+    )
     if shared is not None and allocator.anytime:
         plan = _spread(request, allocator, params, problem, shared, stop, report)
     else:

@@ -28,6 +28,7 @@ def carry_out(
     fleet: Fleet,
     *,
     seed: int = 0,
+    accept_partial: bool = False,
     planning: PlanningOptions | None = None,
     ignore: str | Collection[str] = (),
     standing: Standing | None = None,
@@ -47,6 +48,8 @@ def carry_out(
         the robots, behind a bridge of `muster.bridges`; stays open.
     seed
         of planning again.
+    accept_partial
+        whether a plan is carried out that was cut short.
     planning
         options with which the tasks left are planned again: allocator, parameters, `rewire`.
     ignore
@@ -77,13 +80,19 @@ def carry_out(
 
     Raises
     ------
+    CutShortError
+        if the plan was cut short, and that is not accepted.
+    PlanError
+        if a route enters an area that is closed to its robot.
     ParameterError
         if the plan names robots or tasks that the mission does not have, a robot has no port, or the mission's time is
         over.
     """
     from muster.running.live import carry_out_live
+    from muster.verification.required import require_whole
 
     require_mission(mission)
+    require_whole(plan, accept_partial=accept_partial)
     remarks: list[str] = []
     with recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
         report = carry_out_live(

@@ -38,6 +38,7 @@ from muster.running.replanning import planning_of
 from muster.running.traffic_choice import manager_for
 from muster.running.wall_time import MissionStart, has_time_limits, require_time_left
 from muster.traffic.names import DEFAULT
+from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Report
@@ -185,9 +186,11 @@ class Live:
         mission, begin_s = self.start.mission, self.start.seconds(clock)
         if past is None:
             require_time_left(mission, begin_s)
+            require_open_ways(mission, plan)  # later each robot stands anywhere, and a leg is checked when it is sent
         else:
             begin_s = max(begin_s, past.happened_until_s(begin_s))
-        robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+        require_geometry(mission, "a run of real robots")
+        robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
         self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)

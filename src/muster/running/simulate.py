@@ -15,6 +15,7 @@ from muster.mission.value_types import shown
 from muster.planning.request import require_mission
 from muster.running.recorded import recorded
 from muster.running.simulation_options import SimulationOptions
+from muster.verification.required import require_whole
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
@@ -27,6 +28,7 @@ def simulate(
     plan: Plan | Negotiation,
     *,
     seed: int = 0,
+    accept_partial: bool = False,
     record: str | Path | None = None,
     film: str | Path | Footage | None = None,
     observers: Sequence[Recorder] = (),
@@ -41,6 +43,8 @@ def simulate(
         centre, and time passes as in reality.
     seed
         of the world and of planning again.
+    accept_partial
+        whether a plan is carried out that was cut short.
     record
         a file (.mcap) for the record of the run; needs the extra `record`.
     film
@@ -57,6 +61,10 @@ def simulate(
 
     Raises
     ------
+    CutShortError
+        if the plan was cut short, and that is not accepted.
+    PlanError
+        if a route enters an area that is closed to its robot.
     ParameterError
         if the plan names robots or tasks that the mission does not have; if a film of another world is asked for; if a
         negotiation is to keep time windows, deadlines, shifts, lags, teams, relations or lateness.
@@ -65,8 +73,10 @@ def simulate(
     MissingExtraError
         if an extra is missing: a negotiation needs `net`, the physics world `physics`.
     """
-    require_known(how, (*SimulationOptions.__annotations__, "seed", "record", "film", "observers"))
+    require_known(how, (*SimulationOptions.__annotations__, "seed", "accept_partial", "record", "film", "observers"))
     require_mission(mission)
+    if isinstance(plan, Plan):
+        require_whole(plan, accept_partial=accept_partial)
     carry_out = _runner(mission, plan)
     if film is not None:
         footage = _footage(mission, film)

@@ -38,6 +38,7 @@ from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
 from muster.traffic.names import DEFAULT
 from muster.verification import verify
+from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
     from typing import Unpack
@@ -130,7 +131,9 @@ class Simulation:
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
     ) -> None:
-        robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
+        require_open_ways(mission, plan)
+        require_geometry(mission, "a simulated run")
+        robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         travel = travel_of(mission, robot_paths)
         manager = manager_for(
             traffic,

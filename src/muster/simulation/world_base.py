@@ -137,7 +137,7 @@ class WorldBase(SimulatedWorld, ABC):
     ) -> None:
         require_law(law)
         _require(seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
-        self._map = World.of(mission) if mission.map is not None and mission.travel_rule == "map" else None
+        self._map = World.of_travel(mission) if mission.has_ways_by_map else None
         self._dimensions = mission.dimensions
         self._lowest_m = _lowest(mission)
         self._dt_s = dt_s

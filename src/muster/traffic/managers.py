@@ -60,9 +60,9 @@ def _shared_roadmap(
 ) -> MissionRoadmap | None:
     if not may_reserve(RESERVE if even_if_wide else name, mission):
         return None
-    mapped = mission.travel_rule == "map"
+    mapped = mission.has_ways_by_map
     if mapped and world is None:
-        world = World.of(mission)
+        world = World.of_travel(mission)
     shared = MissionRoadmap.of(mission, world if mapped else None, margin_m=margin_m)
     if name != AUTO or mission.lanes is not None:
         return shared

@@ -66,8 +66,8 @@ class MissionRoadmap:
             )
         places = list(dict.fromkeys(place[:2] for place in _places(mission, sharing)))
         space = None
-        if mission.map is not None and mission.travel_rule == "map":
-            world = world or World.of(mission)
+        if mission.map is not None and mission.has_ways_by_map:
+            world = world or World.of_travel(mission)
             space = world.with_closed(()).free_space(widest.radius_m, widest.kind, three_d=False)
             assert isinstance(space, GridSpace | PolygonSpace)
         finder = None if space is None else PathFinder(space)

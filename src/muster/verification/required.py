@@ -1,14 +1,17 @@
-"""Refuses inadmissible plans before they are given to robots or other programs."""
+"""The gate that plans pass before anything is carried out or written: what must hold whoever made them."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
-from muster.mission.errors import Finding, PlanError
+from muster.mission.errors import CutShortError, Finding, NotSupportedError, PlanError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.verification.closed_areas import ClosedAreas
+from muster.verification.closed_legs import closed_legs
 from muster.verification.judge import verify
-from muster.verification.verdict import Verdict
+from muster.verification.known_routes import known_routes
+from muster.verification.verdict import Verdict, Violation
 
 
 def require_admissible(mission: Mission, plan: Plan, file: str, ignore: Collection[str] = ()) -> Verdict:
@@ -22,10 +25,65 @@ def require_admissible(mission: Mission, plan: Plan, file: str, ignore: Collecti
         if it breaks one.
     """
     verdict = verify(mission, plan, ignore, plan.objective)
-    if not verdict.valid:
-        first, *others = verdict.violations
+    _refuse(mission, verdict.violations, file)
+    return verdict
+
+
+def require_open_ways(mission: Mission, plan: Plan, file: str = "<plan>") -> None:
+    """Raise unless every leg and all work of a plan keeps out of the areas that are closed to its robot.
+
+    Nothing that moves robots, simulated ones included, begins with another plan; the rest of the rules is for
+    `require_admissible` to check.
+
+    Raises
+    ------
+    PlanError
+        if a route enters one.
+    MissionError, MissingExtraError
+        if the map is wrong, or Shapely is absent.
+    """
+    areas, (routes, _) = ClosedAreas(mission), known_routes(mission, plan, teams=True)
+    robots = {robot.id: robot for robot in mission.robots}
+    found = [one for name, stops in routes.items() for one in closed_legs(mission, areas, robots[name], stops)]
+    _refuse(mission, found, file)
+
+
+def require_whole(plan: Plan, *, accept_partial: bool = False) -> None:
+    """Raise for a plan that planning did not finish, unless a part of one is accepted.
+
+    Raises
+    ------
+    CutShortError
+        if the plan was cut short.
+    """
+    if plan.cut_short and not accept_partial:
+        expected = "more time (--time-limit, time_limit), or that a part is accepted (--accept-partial, accept_partial)"
+        raise CutShortError(f"{plan.cut_short_line}; nothing was started; expected {expected}")
+
+
+def require_geometry(mission: Mission, what: str) -> None:
+    """Raise for a mission whose legs are numbers of a table, which nothing can be driven or drawn along.
+
+    Parameters
+    ----------
+    what
+        needs the geometry of legs: `simulate`.
+
+    Raises
+    ------
+    NotSupportedError
+        if travel is by a table.
+    """
+    if mission.travel_rule == "matrix":
+        expected = f"euclidean or map: {what} needs the ways between places, and a travel table has their lengths alone"
+        raise NotSupportedError([Finding(mission.source.file, None, "rules.travel", "matrix", expected)])
+
+
+def _refuse(mission: Mission, violations: Sequence[Violation], file: str) -> None:
+    """Raise for the first of a plan's violations, if there are any."""
+    if violations:
+        first, *others = violations
         more = f" and {len(others)} more" if others else ""
         parts = ", ".join(part for part in (first.robot, first.task, first.detail) if part)
         expected = f"an admissible plan of mission {mission.name}; muster verify says what is wrong"
         raise PlanError([Finding(file, None, first.kind, f"{parts}{more}", expected)])
-    return verdict

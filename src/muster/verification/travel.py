@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from muster.mission.model import Mission, Point, Robot, Rules, Station, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
+from muster.verification.closed_areas import ClosedAreas
 from muster.verification.map_paths import MapPaths
 
 
@@ -83,6 +84,8 @@ class Travel:
     def __init__(self, mission: Mission) -> None:
         self._paths = MapPaths(mission, _points(mission)) if mission.travel_rule == "map" else None
         self._by_table = mission.travel_rule == "matrix"
+        self.areas = ClosedAreas(mission)
+        self._has_closed_legs = mission.has_straight_legs_among_areas
         self._tables = mission.travel_tables
         self._index = {kind: {place: k for k, place in enumerate(table.places)} for kind, table in self._tables.items()}
 
@@ -93,8 +96,13 @@ class Travel:
 
     @property
     def is_straight(self) -> bool:
-        """Whether each leg is the straight line between its ends."""
-        return self._paths is None and not self._by_table
+        """Whether each leg is the straight line between its ends, which is open."""
+        return self._paths is None and not self._by_table and not self._has_closed_legs
+
+    @property
+    def may_need_detours(self) -> bool:
+        """Whether a place without a leg from another may be reached by way of a third."""
+        return self._by_table or self._has_closed_legs
 
     @property
     def is_tabled(self) -> bool:
@@ -105,7 +113,13 @@ class Travel:
         """Return the length of the leg from the exit of `start` to the entry of `end`; None if there is no way."""
         if self._paths is not None:
             return self._paths.metres(robot, start.exit, end.entry)
-        length = self._tabled(robot, start, end) if self._by_table else math.dist(start.exit, end.entry)
+        if not self._is_open(robot, start.exit, end.entry):
+            return None
+        if self._by_table:
+            is_closed = end.id != robot.id and self.areas.obstacle(robot, end.entry, end.entry) is not None
+            length = math.inf if is_closed else self._tabled(robot, start, end)
+        else:
+            length = math.dist(start.exit, end.entry)
         return length if math.isfinite(length) else None
 
     def work_metres(self, robot: Robot, task: Task) -> float | None:
@@ -115,13 +129,14 @@ class Travel:
         """
         doing = doing_at(robot, task)
         if doing is None:
-            if self._paths is None or (place := place_of_task(task)).entry == place.exit:
-                return task.actuation_cost
+            place = place_of_task(task)
+            if self._paths is None or place.entry == place.exit:
+                return task.actuation_cost if self._is_open(robot, place.entry, place.exit) else None
             return None if self._paths.metres(robot, place.entry, place.exit) is None else task.actuation_cost
         if isinstance(doing, Impossible):
             return 0.0
         if self._paths is None:
-            return doing.cost_m
+            return doing.cost_m if all(self._is_open(robot, *leg) for leg in doing.legs) else None
         return None if math.inf in (lengths := self.leg_metres(robot, doing)) else math.fsum(lengths)
 
     def leg_metres(self, robot: Robot, doing: TaskMotion) -> list[float]:
@@ -130,6 +145,10 @@ class Travel:
             return [math.dist(start, end) for start, end in doing.legs]
         lengths = (self._paths.metres(robot, start, end) for start, end in doing.legs)
         return [math.inf if length is None else length for length in lengths]
+
+    def _is_open(self, robot: Robot, start: Point, end: Point) -> bool:
+        """Whether no closed area is in the way of a straight leg."""
+        return not self._has_closed_legs or self.areas.obstacle(robot, start, end) is None
 
     def _tabled(self, robot: Robot, start: Place, end: Place) -> float:
         assert robot.type is not None  # a mission with travel tables has one for each robot's type

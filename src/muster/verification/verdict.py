@@ -26,6 +26,7 @@ KINDS = (
     "repeated-task",
     *IGNORABLE,
     "action",
+    "closed-area",
     "unreachable",
     "deadlock",
     "unassigned",

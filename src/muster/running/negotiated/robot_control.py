@@ -92,7 +92,7 @@ class RobotControl:
         speed: float = 1.0,
     ) -> None:
         mission = problem.mission.at_once()
-        robot_paths = problem.robot_paths if mission.travel_rule == "map" else None
+        robot_paths = problem.robot_paths if mission.has_ways_by_map else None
         self._travel = travel_of(mission, robot_paths)
         self._negotiator = negotiator
         self._executor = Executor(

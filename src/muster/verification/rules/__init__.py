@@ -16,6 +16,7 @@ from muster.verification.measure import MeasuredRoute
 from muster.verification.rules.action import Action
 from muster.verification.rules.battery import Battery
 from muster.verification.rules.capacity import Capacity
+from muster.verification.rules.closed_area import ClosedArea
 from muster.verification.rules.deadline import Deadline
 from muster.verification.rules.load import Load
 from muster.verification.rules.lock import Lock
@@ -61,6 +62,7 @@ RULES: tuple[Rule, ...] = (
     Team(),
     Relation(),
     Prerequisite(),
+    ClosedArea(),
     Unreachable(),
     Capacity(),
     Load(),

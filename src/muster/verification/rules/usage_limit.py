@@ -23,4 +23,4 @@ def keeps_within(case: Case, route: MeasuredRoute, task: Task, limit: float) -> 
     if usage <= limit:
         return None if case.is_timed else True
     has_detours = len(route.steps) < len(route.stops)
-    return None if has_detours or (case.travel.is_tabled and case.is_paired(task)) else False
+    return None if has_detours or (case.travel.may_need_detours and case.is_paired(task)) else False

@@ -54,6 +54,7 @@ def figures_of(plan: Mapping[str, Any], verdict: Mapping[str, Any] | None = None
         ("Ends after", _number(judged.get("makespan_s", plan.get("makespan_s")), "s")),
         ("With traffic", _number(plan.get("time_with_traffic_s"), "s")),
         ("At stations", _at_stations(judged, unit)),
+        ("Cut short", "planning did not come to all tasks that are left out" if plan.get("cut_short") else ""),
         ("Equality", _number(plan.get("equality_index"), "")),
     ]
     if verdict is not None:
