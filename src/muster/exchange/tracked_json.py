@@ -41,17 +41,21 @@ class Tracked(dict[str, Any]):
             self.doubled = [pair for k, pair in enumerate(pairs) if last[pair[0]] != k]
 
     def __getitem__(self, key: str) -> Any:
-        value = super().__getitem__(key)
-        self.fates.setdefault(key, _READ)
-        return value
+        self._take(key)
+        return super().__getitem__(key)
 
     def get(self, key: str, default: Any = None) -> Any:
         """Return the value of a member, and mark the member as read."""
-        return self[key] if key in self else default
+        self._take(key)
+        return super().get(key, default)
 
     def peek(self, key: str) -> Any:
         """Return the value of a member without marking it as read."""
         return super().get(key)
+
+    def _take(self, key: str) -> None:
+        if key in self:
+            self.fates.setdefault(key, _READ)
 
     def say(self, fate: Fate, *keys: str) -> None:
         """Say what becomes of members; of all that are there, if none is named."""
@@ -91,7 +95,7 @@ def enter_json(book: LedgerBook, root: Any, fate_of: FateOf = lambda _, __: None
         within: list[tuple[Any, str, str, Fate | None]] = []
         if isinstance(value, Tracked):
             kind = value.label or kind
-            members = [(key, member, _AGAIN) for key, member in value.doubled]
+            members: list[tuple[str, Any, Fate | None]] = [(key, member, _AGAIN) for key, member in value.doubled]
             members += [(key, member, None) for key, member in value.items()]
             for key, member, again in members:
                 own_kind, own_where = f"{kind}.{key}".lstrip("."), f"{where}.{key}".lstrip(".")

@@ -1,7 +1,7 @@
 """The ledger of an import: every element of a source file ends as read, passed over because ..., or refused.
 
-An element is a member of a JSON object, an element or attribute of XML, a cell of a table that is not empty, a column of
-a database row that is not null, a line of an instance file. A reader enumerates the whole source once, without knowing
+An element is a member of a JSON object, an element or attribute of XML, a cell of a table that is not empty, a column
+of a database row that is not null, a line of an instance file. A reader enumerates the whole source once, without knowing
 what it reads, and marks what it takes as it takes it. What nobody took is passed over, so nothing can be left out.
 """
 

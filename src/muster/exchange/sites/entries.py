@@ -135,7 +135,9 @@ def _told_unread(layer: Layer, unread: Mapping[str, Sequence[str]], roles: list[
     names = [heading for heading in layer.headings if heading in unread]
     known = [key for role in roles for key in keys_of(role)]
     near = {
-        name: [] if name in _OF_PLANS else get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR)
+        name: []
+        if name in _OF_PLANS or len(unread[name]) < len(roles)
+        else get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR)
         for name in names[:_MOST_NAMED]
     }
     told = [

@@ -102,7 +102,7 @@ class _Document:
         )
 
     def add_others(self, database: sqlite3.Connection, read: Sequence[str]) -> None:
-        """Add the tables that hold neither features nor attributes; those of SQLite and GeoPackage say how it is read."""
+        """Add the tables that hold neither features nor attributes; not those that say how it is read."""
         found = database.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name").fetchall()
         for (name,) in found:
             if name in read or name.startswith(_OF_FORMAT):
