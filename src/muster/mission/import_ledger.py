@@ -16,10 +16,14 @@ How = Literal["read", "passed over", "refused"]
 
 
 class Fate(NamedTuple):
-    """The end of an element: how it ended, and what it was read as, or why it was not read."""
+    """The end of an element: how it ended, and what it was read as, or why it was not read.
+
+    What is minor says nothing that could be missed: it is empty, or stands elsewhere too.
+    """
 
     how: How
     said: str
+    minor: bool = False
 
 
 def read_as(what: str) -> Fate:
@@ -27,13 +31,13 @@ def read_as(what: str) -> Fate:
     return Fate("read", what)
 
 
-def passed_over(because: str) -> Fate:
+def passed_over(because: str, *, minor: bool = False) -> Fate:
     """Return the fate of an element that is not read, with the reason."""
-    return Fate("passed over", because)
+    return Fate("passed over", because, minor)
 
 
 UNKNOWN = passed_over("has no meaning here")
-EMPTY = passed_over("is empty")
+EMPTY = passed_over("is empty", minor=True)
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,7 @@ class LedgerRow:
         the source file.
     kind
         what the elements are in the terms of the file: `properties.height`, `<ele>`, `DO_SET_ROI`.
-    how, said
+    how, said, minor
         their fate.
     count
         the number of elements.
@@ -60,6 +64,7 @@ class LedgerRow:
     said: str
     count: int
     first: str = ""
+    minor: bool = False
 
     def as_dict(self) -> dict[str, Any]:
         """Return the row as JSON has it."""
@@ -145,7 +150,7 @@ class LedgerBook:
         """Return what was gathered."""
         return Ledger(
             tuple(
-                LedgerRow(self._file, kind, fate.how, fate.said, count, self._first[kind, fate])
+                LedgerRow(self._file, kind, fate.how, fate.said, count, self._first[kind, fate], fate.minor)
                 for (kind, fate), count in self._counts.items()
                 if count
             )
@@ -214,12 +219,12 @@ class Source:
 
 
 def summary_lines(ledger: Ledger, most: int = 8) -> Iterator[str]:
-    """Yield for each file one line on what was not read, its kinds grouped by the reason."""
+    """Yield for each file and reason one line on what was not read and is not minor."""
     for file in ledger.files:
-        reasons: dict[Fate, dict[str, int]] = {}
+        reasons: dict[tuple[str, str], dict[str, int]] = {}
         for row in ledger.not_read:
-            if row.file == file and row.said != EMPTY.said:
-                reasons.setdefault(Fate(row.how, row.said), {})[row.kind] = row.count
+            if row.file == file and not row.minor:
+                reasons.setdefault((row.how, row.said), {})[row.kind] = row.count
         for (how, because), kinds in reasons.items():
             told = [kind if count == 1 else f"{kind} ({count:,})" for kind, count in list(kinds.items())[:most]]
             more = f", and {len(kinds) - most} more" if len(kinds) > most else ""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from muster.library import mission_names, mission_path
 from muster.mission.errors import Finding, MissionError, ParameterError
+from muster.mission.import_ledger import Ledger
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 
@@ -56,10 +57,15 @@ def load(
 
 @dataclass(frozen=True)
 class Noted:
-    """A mission, and what its reader has chosen or not read, one line each."""
+    """A mission, and what its reader has chosen or not read, one line each.
+
+    The ledger has the fate of every element of the files; it is empty for missions of Muster's own form, of which every
+    key is read or refused.
+    """
 
     mission: Mission
     notes: tuple[str, ...] = ()
+    ledger: Ledger = Ledger()
 
 
 def load_noted(
@@ -93,9 +99,10 @@ def load_noted(
     if callable(form):
         return Noted(form(path, salesmen))
     if suffix == ".plan" or path.is_dir():
-        from muster.exchange.qgc_reader import read_plan_files
+        from muster.exchange.qgc_reader import read_flight_plans
 
-        return Noted(read_plan_files(path))
+        flights = read_flight_plans(path)
+        return Noted(flights.mission, flights.notes, flights.ledger)
     if suffix not in _OTHERS and suffix not in _SUFFIXES:
         from muster.exchange.sites.readers import unknown_file
 
@@ -111,7 +118,7 @@ def _site(path: Path, robots: str | Path | None, suitability: Path | None, colum
 
     team, of_robots = team_of(robots)
     found = read_site([path], SiteOptions(columns=columns), robots=of_robots, team=team, suitability=suitability)
-    return Noted(found.mission, found.notes)
+    return Noted(found.mission, found.notes, found.ledger)
 
 
 def team_of(robots: str | Path | None) -> tuple[Mission | None, Path | None]:
