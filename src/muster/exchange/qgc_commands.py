@@ -74,7 +74,7 @@ PASSED_OVER = {
     **dict.fromkeys((112, 114), _WAITS),
     **dict.fromkeys((217, 510, 511, 512, 2510, 2511), _LOG),
 }
-"""The commands that are passed over, with the reason: none of them changes where, how fast or how high a vehicle moves."""
+"""The commands that are passed over, with the reason: none changes where, how fast or how high a vehicle moves."""
 
 _PARAMS = {
     qgc.NAV_WAYPOINT: ("hold", "acceptance radius", "pass radius", "yaw"),

@@ -22,9 +22,9 @@ _FRAMES = (*_RELATIVE, qgc.FRAME_GLOBAL, qgc.FRAME_GLOBAL_INT)
 MOST_STOPS = 5_000
 """That jumps come to."""
 _NOTHING = passed_over("is 0, and says nothing", minor=True)
-_ANEW = passed_over("is not read: Muster plans ways anew, and stops at every stop")
-_CLIMBS = passed_over("is not read: Muster climbs from home on the way to the first task")
-_LANDS = passed_over("is not read: Muster lands as the autopilot does")
+_ANEW = passed_over("is planned anew: Muster stops at every stop")
+_CLIMBS = passed_over("belongs to take-off: Muster climbs from home on the way to the first task")
+_LANDS = passed_over("belongs to landing: Muster leaves it to the autopilot")
 _ENDS = (*LANDINGS, qgc.NAV_RETURN_TO_LAUNCH)
 _JUMPS = "a jump to an item before it, a whole number of times"
 

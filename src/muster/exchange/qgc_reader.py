@@ -78,7 +78,8 @@ class _Document:
         for command in self.commands.values():
             for k, value in enumerate(command.params):
                 if value is not None:
-                    kind = f"{name_of(command.command)} {param_of(command.command, k)}"
+                    kind = name_of(command.command)
+                    kind += "" if command.whole else f" {param_of(command.command, k)}"
                     book.add(kind, command.fate(k), command.names[k])
 
     def _fate(self, item: Tracked, _: str) -> Fate | None:
@@ -202,8 +203,8 @@ class _Reading:
         """The slowest speed of a flight: of those that items set, and that of the plan where none is set at first."""
         speeds = list(flight.speeds)
         if flight.late or not speeds:
-            for key in vehicle.speeds:
-                speeds.append(self._fields.positive(mission, key, "metres a second above 0", f"mission.{key}"))
+            expected = "metres a second above 0"
+            speeds += [self._fields.positive(mission, key, expected, f"mission.{key}") for key in vehicle.speeds]
         else:
             mission.say(passed_over("is not read, as the first command sets a speed", minor=True), *vehicle.speeds)
         others = [key for key in ("hoverSpeed", "cruiseSpeed") if key not in vehicle.speeds]

@@ -88,7 +88,10 @@ FateOf = Callable[[Tracked, str], Fate | None]
 
 
 def enter_json(book: LedgerBook, root: Any, fate_of: FateOf = lambda _, __: None) -> None:
-    """Give the ledger each member of each object of a document, however deep it is nested."""
+    """Give the ledger each member of each object of a document, however deep it is nested.
+
+    What is within a member that is passed over is counted with that member.
+    """
     rest: list[tuple[Any, str, str, Fate | None]] = [(root, "", "", None)]
     while rest:
         value, kind, where, inherited = rest.pop()
@@ -98,8 +101,11 @@ def enter_json(book: LedgerBook, root: Any, fate_of: FateOf = lambda _, __: None
             members: list[tuple[str, Any, Fate | None]] = [(key, member, _AGAIN) for key, member in value.doubled]
             members += [(key, member, None) for key, member in value.items()]
             for key, member, again in members:
-                own_kind, own_where = f"{kind}.{key}".lstrip("."), f"{where}.{key}".lstrip(".")
-                fate = inherited or again or fate_of(value, key) or value.fates.get(key) or _untaken(member)
+                own_where = f"{where}.{key}".lstrip(".")
+                said = inherited or again or fate_of(value, key)
+                within_lost = inherited is not None or (said is not None and said.how != "read" and value.label)
+                own_kind = kind if within_lost else f"{kind}.{key}".lstrip(".")
+                fate = said or value.fates.get(key) or _untaken(member)
                 book.add(own_kind, fate, own_where)
                 if isinstance(member, list | Tracked):
                     within.append((member, own_kind, own_where, None if fate.how == "read" else fate))

@@ -1,8 +1,8 @@
 """The ledger of an import: every element of a source file ends as read, passed over because ..., or refused.
 
 An element is a member of a JSON object, an element or attribute of XML, a cell of a table that is not empty, a column
-of a database row that is not null, a line of an instance file. A reader enumerates the whole source once, without knowing
-what it reads, and marks what it takes as it takes it. What nobody took is passed over, so nothing can be left out.
+of a database row that is not null, a line of an instance file. A reader marks what it takes as it takes it; then the
+whole source is enumerated, without knowing what was read. What nobody took is passed over, so nothing is left out.
 """
 
 from __future__ import annotations
@@ -12,18 +12,22 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
+from muster.mission.errors import Finding
+
 How = Literal["read", "passed over", "refused"]
 
 
 class Fate(NamedTuple):
     """The end of an element: how it ended, and what it was read as, or why it was not read.
 
-    What is minor says nothing that could be missed: it is empty, or stands elsewhere too.
+    What is `minor` says nothing that could be missed: it is empty, or stands elsewhere too. What is `noted` stands in a
+    note of the reader as well.
     """
 
     how: How
     said: str
     minor: bool = False
+    noted: bool = False
 
 
 def read_as(what: str) -> Fate:
@@ -31,9 +35,9 @@ def read_as(what: str) -> Fate:
     return Fate("read", what)
 
 
-def passed_over(because: str, *, minor: bool = False) -> Fate:
+def passed_over(because: str, *, minor: bool = False, noted: bool = False) -> Fate:
     """Return the fate of an element that is not read, with the reason."""
-    return Fate("passed over", because, minor)
+    return Fate("passed over", because, minor, noted)
 
 
 UNKNOWN = passed_over("has no meaning here")
@@ -50,7 +54,7 @@ class LedgerRow:
         the source file.
     kind
         what the elements are in the terms of the file: `properties.height`, `<ele>`, `DO_SET_ROI`.
-    how, said, minor
+    how, said, minor, noted
         their fate.
     count
         the number of elements.
@@ -65,6 +69,7 @@ class LedgerRow:
     count: int
     first: str = ""
     minor: bool = False
+    noted: bool = False
 
     def as_dict(self) -> dict[str, Any]:
         """Return the row as JSON has it."""
@@ -150,7 +155,7 @@ class LedgerBook:
         """Return what was gathered."""
         return Ledger(
             tuple(
-                LedgerRow(self._file, kind, fate.how, fate.said, count, self._first[kind, fate], fate.minor)
+                LedgerRow(self._file, kind, fate.how, fate.said, count, self._first[kind, fate], fate.minor, fate.noted)
                 for (kind, fate), count in self._counts.items()
                 if count
             )
@@ -185,16 +190,16 @@ class Source:
 
     def pass_over(self, because: str) -> None:
         """Mark the feature as one of which nothing is made, unless something is made of another part of it."""
-        self._dropped = self._dropped or passed_over(because)
+        self._dropped = self._dropped or passed_over(because, noted=True)
 
     def drop(self, because: str) -> None:
         """Mark the feature as one of which nothing is made after all."""
         self._kept = False
-        self._dropped = passed_over(because)
+        self._dropped = passed_over(because, noted=True)
 
     def lose(self, because: str, *headings: str) -> None:
         """Mark values that were read as passed over after all."""
-        self._fates = {**(self._fates or {}), **dict.fromkeys(headings, passed_over(because))}
+        self._fates = {**(self._fates or {}), **dict.fromkeys(headings, passed_over(because, noted=True))}
 
     @property
     def key(self) -> int:
@@ -219,16 +224,27 @@ class Source:
 
 
 def summary_lines(ledger: Ledger, most: int = 8) -> Iterator[str]:
-    """Yield for each file and reason one line on what was not read and is not minor."""
+    """Yield for each file and reason one line on what was not read, is not minor, and no note of a reader says."""
     for file in ledger.files:
         reasons: dict[tuple[str, str], dict[str, int]] = {}
         for row in ledger.not_read:
-            if row.file == file and not row.minor:
+            if row.file == file and not row.minor and not row.noted:
                 reasons.setdefault((row.how, row.said), {})[row.kind] = row.count
         for (how, because), kinds in reasons.items():
             told = [kind if count == 1 else f"{kind} ({count:,})" for kind, count in list(kinds.items())[:most]]
             more = f", and {len(kinds) - most} more" if len(kinds) > most else ""
-            yield f"{file}: {how}: {', '.join(told)}{more}: {because}"
+            yield f"{file}: {how}: {', '.join(told)}{more}: it {because}"
+
+
+def refusals(findings: Iterable[Finding]) -> Ledger:
+    """Return the ledger of files that are refused: what is wrong with them, as nothing of them is read."""
+    rows: Counter[tuple[str, str, str]] = Counter()
+    first: dict[tuple[str, str, str], str] = {}
+    for finding in findings:
+        key = finding.file, finding.field or "file", f"expected {finding.expected}"
+        rows[key] += 1
+        first.setdefault(key, "" if finding.line is None else f"line {finding.line}")
+    return Ledger(tuple(LedgerRow(*key[:2], "refused", key[2], n, first[key]) for key, n in rows.items()))
 
 
 def joined(ledgers: Iterable[Ledger]) -> Ledger:

@@ -21,7 +21,7 @@ from muster.mission.errors import MissingExtraError
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, Source, passed_over, read_as
 
 _WHAT = "a GeoPackage"
-_KEY, _GEOMETRY = passed_over("is the number of the row"), read_as("a geometry")
+_KEY, _GEOMETRY = passed_over("is the number of the row", minor=True), read_as("a geometry")
 _BYTES, _OTHER = passed_over("holds bytes"), passed_over("holds neither features nor attributes")
 _OF_FORMAT = ("gpkg_", "rtree_", "sqlite_")
 _STEPS, _MOST_WORK = 1_000_000, 2_000

@@ -30,7 +30,7 @@ def read_gpx_layers(path: Path) -> Sequence[Layer]:
     lines = [feature for _, features in drawn for feature in features]
     lost = tuple(titled(one) for one, features in drawn if not features)
     for one, features in drawn:
-        one.take(read_as("a line") if features else passed_over("has less than two points"))
+        one.take(read_as("a line") if features else passed_over("has less than two points", noted=True))
     layers = [layer_of(file, "", features, document) for features in (points, lines) if features]
     return [*layers, Layer(file, "", (), (), lost, document=document)] if lost else layers
 

@@ -53,7 +53,7 @@ def _layers(data: bytes, file: str, others: Sequence[str] = ()) -> list[Layer]:
         if not features:
             lost.append(mark)
     for element in lost:
-        element.fate = passed_over(_WITHOUT_SHAPE)
+        element.fate = passed_over(_WITHOUT_SHAPE, noted=True)
     layers = [layer_of(file, folder, features, document) for folder, features in groups.items() if features]
     return [*layers, Layer(file, "", (), (), tuple(map(titled, lost)), document=document)] if lost else layers
 

@@ -61,8 +61,8 @@ class TableDocument:
             book.add(f"{self._name}heading", _HEADING if heading in read else _UNUSED, f"row {number}")
 
 
-_TITLE = passed_over("stands above the headings")
-_HEADING, _UNUSED = read_as("a heading"), passed_over("heads nothing that is read")
+_TITLE = passed_over("stands above the headings", noted=True)
+_HEADING, _UNUSED = read_as("a heading"), passed_over("heads nothing that is read", noted=True)
 
 
 def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "", separator: str = "") -> Layer:

@@ -69,7 +69,9 @@ class ValueFates:
     def _fates(self, drawn: bool, of_role: Sequence[str]) -> Mapping[str, Fate]:
         if self._role == "route":
             return dict.fromkeys((*(c.heading for c in self._columns.by_key.values()), *self._columns.unread), _ROUTE)
-        fates = {heading: passed_over(f"means nothing for a {self._role}") for heading in self._columns.unread}
+        fates = {
+            heading: passed_over(f"means nothing for a {self._role}", noted=True) for heading in self._columns.unread
+        }
         for key, column in self._columns.by_key.items():
             beside = drawn and key in (*OF_PLACES, "wkt")
             fates[column.heading] = _BESIDE_GEOMETRY if beside else read_as(key)
@@ -80,5 +82,5 @@ class ValueFates:
         return fates
 
 
-_ROUTE = passed_over(_PLAN)
+_ROUTE = passed_over(_PLAN, noted=True)
 _UNREAD = passed_over("")

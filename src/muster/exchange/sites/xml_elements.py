@@ -16,7 +16,7 @@ from muster.exchange.sites.file_sizes import DEEPEST_XML, require_few
 from muster.mission.import_ledger import UNKNOWN, Fate, LedgerBook, Source, passed_over, read_as
 
 _READ = read_as("itself")
-_LOOKS = passed_over("says how things look")
+_LOOKS = passed_over("says how things look", minor=True)
 _TEXT = passed_over("is a text for people")
 _NOT_THE_MAP = passed_over("is not the map")
 _NONE: Mapping[str, str] = {}
@@ -99,12 +99,16 @@ class XmlDocument:
         self._root, self._others = root, others
 
     def enter(self, book: LedgerBook) -> None:
-        """Give the ledger every element and attribute, however deep it is nested."""
+        """Give the ledger every element and attribute, however deep it is nested.
+
+        What is within an element that is passed over is counted with that element.
+        """
         for name in self._others:
             book.add("file in the archive", _NOT_THE_MAP, name)
         rest: list[tuple[Element, str, Fate | None]] = [(self._root, "", None)]
         while rest:
             element, parent, inherited = rest.pop()
+            within = inherited is not None and inherited.how != "read"
             if inherited is None and element.whole is not None:
                 inherited = element.whole.whole
             if inherited is None and element.value is not None:
@@ -113,16 +117,19 @@ class XmlDocument:
                 parent = parent if heading == HEIGHT else f"{_PROPERTY}{heading}"
             fate = inherited or element.fate or _REASONS.get(element.name, UNKNOWN)
             where = f"line {element.line}"
-            kind = parent if parent.startswith(_PROPERTY) else f"{parent}<{element.name}>"
+            kind = parent if within or parent.startswith(_PROPERTY) else f"{parent}<{element.name}>"
             book.add(kind, fate, where)
             if fate.how != "read":
                 inherited = fate
             for name in element.attributes:
                 own = inherited or (_READ if name in element.taken else UNKNOWN)
-                book.add(kind if kind.startswith(_PROPERTY) else f"{kind} {name}", own, where)
+                book.add(kind if inherited or kind.startswith(_PROPERTY) else f"{kind} {name}", own, where)
             around = "" if element.name in _GROUPS else f"<{element.name}> "
             around = kind if kind.startswith(_PROPERTY) else around
-            rest += [(child, around, inherited) for child in reversed(element.children)]
+            rest += [
+                (child, kind if inherited and inherited.how != "read" else around, inherited)
+                for child in reversed(element.children)
+            ]
 
 
 _PROPERTY = "property "
