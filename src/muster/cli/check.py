@@ -21,7 +21,6 @@ from muster.cli.tables import sequence
 from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError, NotSupportedError
 from muster.mission.ignorable_rules import ignored_rules
-from muster.mission.import_ledger import refusals
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import Unassigned, json_text
 
@@ -81,8 +80,7 @@ def _refused(form: str, error: MissionError | NotSupportedError) -> int:
 
     if form == "json":
         errors = [finding.as_dict() for finding in error.findings]
-        told = {"errors": errors, **Possible().as_dict(), "ledger": refusals(error.findings).as_dict()}
-        click.echo(json_text(told), nl=False)
+        click.echo(json_text({"errors": errors, **Possible().as_dict()}), nl=False)
     else:
         click.echo(str(error), err=True)
     return BAD_INPUT
@@ -95,7 +93,8 @@ def _checked(form: str, noted: Noted, found: Possible, ignore: Collection[str], 
     mission, lost, all_others = noted.mission, found.impossible, found.together
     errors = unseen_findings(mission, found.unseen)
     if form == "json":
-        told = {"errors": [error.as_dict() for error in errors], **found.as_dict(), "ledger": noted.ledger.as_dict()}
+        told = {"errors": [error.as_dict() for error in errors], **found.as_dict()}
+        told |= {"ledger": noted.ledger.as_dict()} if noted.ledger.rows else {}
         click.echo(json_text(told), nl=False)
     else:
         _print_checked(mission, lost, len(errors))

@@ -12,8 +12,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
-from muster.mission.errors import Finding
-
 How = Literal["read", "passed over", "refused"]
 
 
@@ -234,17 +232,6 @@ def summary_lines(ledger: Ledger, most: int = 8) -> Iterator[str]:
             told = [kind if count == 1 else f"{kind} ({count:,})" for kind, count in list(kinds.items())[:most]]
             more = f", and {len(kinds) - most} more" if len(kinds) > most else ""
             yield f"{file}: {how}: {', '.join(told)}{more}: it {because}"
-
-
-def refusals(findings: Iterable[Finding]) -> Ledger:
-    """Return the ledger of files that are refused: what is wrong with them, as nothing of them is read."""
-    rows: Counter[tuple[str, str, str]] = Counter()
-    first: dict[tuple[str, str, str], str] = {}
-    for finding in findings:
-        key = finding.file, finding.field or "file", f"expected {finding.expected}"
-        rows[key] += 1
-        first.setdefault(key, "" if finding.line is None else f"line {finding.line}")
-    return Ledger(tuple(LedgerRow(*key[:2], "refused", key[2], n, first[key]) for key, n in rows.items()))
 
 
 def joined(ledgers: Iterable[Ledger]) -> Ledger:

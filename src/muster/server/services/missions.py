@@ -244,13 +244,13 @@ class Missions:
 
     async def _converted(
         self, name: str, files: Mapping[str, bytes], options: Mapping[str, Any]
-    ) -> tuple[str, dict[str, bytes], str, dict[str, Any]]:
+    ) -> tuple[str, dict[str, bytes], str, dict[str, Any] | None]:
         """The mission that a worker makes of files, those of them that it goes on to need, its notes and its ledger."""
         check_sizes("", files)
         packed = {file: base64.b64encode(content).decode("ascii") for file, content in files.items()}
         made = await self._pool.run("convert", {"name": name, "files": packed, **options})
         needed = {file: files[file] for file in made["needs"]}
-        return made["text"], needed, "\n".join(made["notes"]), made["ledger"]
+        return made["text"], needed, "\n".join(made["notes"]), made.get("ledger")
 
     async def _create(
         self,

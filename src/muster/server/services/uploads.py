@@ -10,7 +10,7 @@ from typing import Any
 
 from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError, ParameterError
-from muster.mission.text_files import LARGEST_FILE
+from muster.mission.text_files import LARGEST_FILE as LARGEST_FILES
 from muster.mission.value_types import shown
 
 LONGEST_TEXT = 16 * 2**20
@@ -33,8 +33,8 @@ def check_sizes(text: str, files: Mapping[str, bytes]) -> None:
     if len(files) > MOST_FILES:
         raise ParameterError(f"a mission with {len(files)} files; expected at most {MOST_FILES}")
     size = sum(len(data) for data in files.values())
-    if size > LARGEST_FILE:
-        raise ParameterError(f"a mission with files of {size} bytes; expected at most {LARGEST_FILE}")
+    if size > LARGEST_FILES:
+        raise ParameterError(f"a mission with files of {size} bytes; expected at most {LARGEST_FILES}")
     for name in files:
         require_file_name(name)
 
