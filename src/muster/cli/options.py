@@ -72,7 +72,7 @@ class MissionFile:
         flags = {name: getattr(self, name) for name in ("robots", "suitability", "salesmen")}
         found = load_noted(self.name, **flags, depot=self.depot, columns=pairs_of("--column", self.columns) or None)
         loaded = found.mission
-        for note in () if click.get_current_context().params.get("quiet") else found.notes:
+        for note in () if click.get_current_context().params.get("quiet") else found.said:
             click.echo(note, err=True)
         if verbose:
             amount = f"{len(loaded.robots)} robots, {len(loaded.tasks)} tasks"

@@ -17,7 +17,7 @@ from muster.exchange.sites.features import Document
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.geodesy import wgs84_to_enu
-from muster.mission.import_ledger import Ledger, LedgerBook, joined, summary_lines
+from muster.mission.import_ledger import Ledger, LedgerBook, joined
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.source import Source
 
@@ -94,7 +94,7 @@ def mission_of(path: Path, files: Sequence[FlownFile]) -> ReadFlights:
     notes = [note for file in files for note in file.notes]
     if chart is not None and not any(fence.inside for fence in fences):
         notes.append(f"{path}: no fence to stay in: a rectangle 50 m around everything is taken for the boundary")
-    return ReadFlights(mission_from(data, Source(str(path)), []), (*notes, *summary_lines(ledger)), ledger)
+    return ReadFlights(mission_from(data, Source(str(path)), []), tuple(notes), ledger)
 
 
 def _ledger(file: FlownFile) -> Ledger:

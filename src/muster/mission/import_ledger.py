@@ -229,7 +229,9 @@ def summary_lines(ledger: Ledger, most: int = 8) -> Iterator[str]:
             if row.file == file and not row.minor and not row.noted:
                 reasons.setdefault((row.how, row.said), {})[row.kind] = row.count
         for (how, because), kinds in reasons.items():
-            told = [kind if count == 1 else f"{kind} ({count:,})" for kind, count in list(kinds.items())[:most]]
+            told = [
+                kind if count == 1 else f"{kind} ({count:,} elements)" for kind, count in list(kinds.items())[:most]
+            ]
             more = f", and {len(kinds) - most} more" if len(kinds) > most else ""
             yield f"{file}: {how}: {', '.join(told)}{more}: it {because}"
 

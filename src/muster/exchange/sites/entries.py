@@ -9,7 +9,7 @@ from typing import Any
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
 from muster.exchange.sites.headings import Columns, columns_of
-from muster.exchange.sites.keys import AT_POINTS, keys_of
+from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
 from muster.exchange.sites.roles import Roles, is_no_fly, names_role
 from muster.exchange.sites.shapes import from_text
 from muster.exchange.sites.value_fates import IN_DEGREES, IN_METRES, OF_PLACES, ValueFates
@@ -107,6 +107,8 @@ def entries_of(
             found += _entry(role, feature, columns, findings)
         for heading in fates.unread(members):
             unread.setdefault(heading, []).append(role)
+    filled = {heading for feature in features for heading in feature.values}
+    unread |= {heading: list(by_role) for heading in _without_meaning(layer, list(by_role)) if heading not in filled}
     found = _without_flying(layer, found, notes)
     if unread:
         notes.append(f"{layer.title}: not read: {_told_unread(layer, unread, list(by_role))}")
@@ -125,6 +127,12 @@ def _without_flying(layer: Layer, entries: list[Entry], notes: list[str]) -> lis
     if changed:
         notes.append(f"{layer.title}: no-fly zones are forbidden to robots in the air alone: {some_of(changed)}")
     return found
+
+
+def _without_meaning(layer: Layer, roles: Sequence[str]) -> set[str]:
+    """The headings of a layer that mean nothing for any of the roles."""
+    unread = [{*columns_of(layer, role, {}, []).unread} for role in roles]
+    return {heading for heading in set.intersection(*unread) if heading.casefold() != ROLE.name} if unread else set()
 
 
 def _told_unread(layer: Layer, unread: Mapping[str, Sequence[str]], roles: list[str]) -> str:

@@ -21,7 +21,7 @@ from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
-from muster.mission.import_ledger import Ledger, summary_lines
+from muster.mission.import_ledger import Ledger
 from muster.mission.model import Mission
 from muster.mission.source import Source
 from muster.mission.thesis_csv import suitability_table
@@ -103,8 +103,7 @@ def read_site(
     mission = mission_from(data, source, [], base.travel_tables if base is not None else None)
     left_out(entries, data)
     ledger = ledger_of([layer for layer, _ in found])
-    said = (*notes, *built.notes, *summary_lines(ledger))
-    return SiteMission(mission, _counts(found, builder.read), said, ledger)
+    return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes), ledger)
 
 
 def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -> tuple[list[Entry], list[str]]:

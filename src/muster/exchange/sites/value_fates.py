@@ -45,15 +45,10 @@ class ValueFates:
         return self._found[key]
 
     def unread(self, members: Sequence[Feature]) -> Iterator[str]:
-        """Yield the headings that mean nothing for the role, of features that have a value there.
-
-        A heading under which no feature of the layer has a value is not read either.
-        """
-        lost = [heading for heading in self._columns.unread if heading.casefold() != ROLE.name]
-        for heading in lost:
-            having = [feature for feature in members if heading in feature.values]
-            if not having or any(self.of(feature).get(heading, _UNREAD).how != "read" for feature in having):
-                yield heading
+        """Yield the headings that mean nothing for the role, of those under which a feature of the role has a value."""
+        lost = {heading for heading in self._columns.unread if heading.casefold() != ROLE.name}
+        found = {h for feature in members for h in lost & feature.values.keys() if self.of(feature)[h].how != "read"}
+        yield from (heading for heading in self._columns.unread if heading in found)
 
     def _role_headings(self, feature: Feature) -> Iterator[str]:
         """Yield the headings whose values say what the feature is."""
@@ -83,4 +78,3 @@ class ValueFates:
 
 
 _ROUTE = passed_over(_PLAN, noted=True)
-_UNREAD = passed_over("")

@@ -8,15 +8,15 @@ from typing import Any
 
 from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError
-from muster.mission.import_ledger import Ledger
+from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 from muster.planning.importing import read_site
-from muster.planning.loading import is_site_file, load_noted
+from muster.planning.loading import CONVERTED, is_site_file, load_noted
 from muster.server.work.missions import written_files
 
-_MISSIONS = (*YAML_SUFFIXES, ".tsp", ".atsp", ".vrp", ".txt", ".plan")
+_MISSIONS = (*YAML_SUFFIXES, *CONVERTED)
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")
 
 
@@ -45,10 +45,10 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
         beside = {key: options[key] for key in ("robots", "suitability") if key in options}
         found = read_site(name, *others, **beside)
         kept = sorted(set(files) - {name, *others, *beside.values()}) if site else []
-        return _answer(found.mission, kept, (*found.counts, *found.notes), found.ledger)
+        return _answer(found.mission, kept, (*found.counts, *found.notes, *summary_lines(found.ledger)), found.ledger)
     noted = load_noted(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
     needs = sorted(set((noted.mission.travel or {}).values()))
-    return _answer(noted.mission, needs, noted.notes, noted.ledger)
+    return _answer(noted.mission, needs, noted.said, noted.ledger)
 
 
 def _answer(mission: Mission, needs: Sequence[str], notes: Sequence[str], ledger: Ledger) -> dict[str, Any]:
