@@ -8,15 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, Ring, Shape, layer_of, refused
-from muster.exchange.sites.file_sizes import MOST_VALUES, open_archive, read_bytes, require_few, unpacked
-from muster.exchange.sites.xml_elements import Element, XmlDocument, parse_xml, titled
+from muster.exchange.sites.xml_elements import Element, XmlDocument, titled
 from muster.mission.import_ledger import EMPTY, Source, passed_over, read_as
 
-_WHAT = "KML"
-_KMZ = "KMZ: a ZIP archive with a .kml in it"
 _SHAPES: dict[str, Shape] = {"Point": "point", "LineString": "line", "LinearRing": "line", "Polygon": "area"}
 _LEAST = {"point": 1, "line": 2, "area": 3}
 _PASSED_OVER = ("NetworkLink", "GroundOverlay", "ScreenOverlay", "PhotoOverlay")
@@ -25,30 +21,13 @@ _HEIGHTS = {"relativeToGround": True, "absolute": False}
 """Modes in which a height is one, and whether it is over the ground."""
 
 
-def read_kml_layers(path: Path) -> Sequence[Layer]:
-    """The folders of a KML file; raises MissionError with the line at which it is none."""
-    return _layers(read_bytes(path), str(path))
-
-
-def read_kmz_layers(path: Path) -> Sequence[Layer]:
-    """The folders of the first KML file in an archive; raises MissionError where there is none."""
-    with open_archive(path, _KMZ) as archive:
-        names = [name for name in archive.namelist() if name.lower().endswith(".kml")]
-        if not names:
-            raise refused(str(path), None, "", "no .kml in it", _KMZ)
-        name = "doc.kml" if "doc.kml" in names else names[0]
-        others = [member for member in archive.namelist() if member != name]
-        return _layers(unpacked(archive, name, path, _KMZ), str(path), others)
-
-
-def _layers(data: bytes, file: str, others: Sequence[str] = ()) -> list[Layer]:
-    require_few(data.count(b","), "values", file, most=MOST_VALUES)
-    root = parse_xml(data, file, "kml", _WHAT)
+def kml_layers(root: Element, file: str, others: Sequence[str] = ()) -> list[Layer]:
+    """The folders of a document; `others` are the files beside it in its archive."""
     document = XmlDocument(root.take(), others)
     groups: dict[str, list[Feature]] = {}
     lost = [element for element in root.within() if element.name in _PASSED_OVER]
-    for folder, mark in _placemarks(root, ""):
-        features = list(_Placemark(mark, folder, file).features())
+    for folder, mark in placemarks(root, ""):
+        features = list(Placemark(mark, folder, file).features())
         groups.setdefault(folder, []).extend(features)
         if not features:
             lost.append(mark)
@@ -58,7 +37,7 @@ def _layers(data: bytes, file: str, others: Sequence[str] = ()) -> list[Layer]:
     return [*layers, Layer(file, "", (), (), tuple(map(titled, lost)), document=document)] if lost else layers
 
 
-def _placemarks(element: Element, folder: str) -> Iterator[tuple[str, Element]]:
+def placemarks(element: Element, folder: str) -> Iterator[tuple[str, Element]]:
     """All placemarks, each with the name of the innermost folder in which it is."""
     for child in element.children:
         if child.name == "Placemark":
@@ -66,10 +45,10 @@ def _placemarks(element: Element, folder: str) -> Iterator[tuple[str, Element]]:
         elif child.name in ("Document", "Folder"):
             child.take()
             name = " ".join(child.told("name").split()) if child.name == "Folder" else ""
-            yield from _placemarks(child, name or folder)
+            yield from placemarks(child, name or folder)
 
 
-class _Placemark:
+class Placemark:
     """Reads one placemark."""
 
     def __init__(self, mark: Element, folder: str, file: str) -> None:
@@ -80,6 +59,7 @@ class _Placemark:
         """The ids of rings that are borders of polygons."""
 
     def features(self) -> Iterator[Feature]:
+        """The features of a placemark: one for each kind of shape in it."""
         source = self._mark.whole = Source()
         if (name := self._mark.first("name")) is not None:
             name.value = source, "name"
@@ -90,7 +70,7 @@ class _Placemark:
                 element.take()
             if element.name in ("outerBoundaryIs", "innerBoundaryIs"):
                 self._borders |= {id(child) for child in element.children}
-            if element.name in _SHAPES and (found := self._piece(element)) is not None:
+            if element.name in _SHAPES and (found := self.piece(element)) is not None:
                 shape, over_ground, rings = found
                 pieces.setdefault((shape, over_ground), []).append(rings)
         for (shape, over_ground), rings_of in pieces.items():
@@ -113,7 +93,8 @@ class _Placemark:
                     element.fate = EMPTY
         return values
 
-    def _piece(self, element: Element) -> tuple[Shape, bool, tuple[Ring, ...]] | None:
+    def piece(self, element: Element) -> tuple[Shape, bool, tuple[Ring, ...]] | None:
+        """The shape of an element, whether its heights are over the ground, and its rings; None for a border."""
         element.take()
         mode = element.told("altitudeMode")
         if element.name == "Polygon":
@@ -127,6 +108,10 @@ class _Placemark:
             return None
         shape = _SHAPES[element.name]
         return shape, _HEIGHTS.get(mode, False), (self._ring(element, shape, spatial=mode in _HEIGHTS),)
+
+    def point(self, element: Element) -> Coordinate:
+        """The place of a point, without its height."""
+        return self._ring(element, "point", spatial=False)[0]
 
     def _ring(self, element: Element, shape: Shape, *, spatial: bool) -> Ring:
         told = re.sub(r"\s*,\s*", ",", element.told("coordinates")).split()
