@@ -6,15 +6,17 @@ import re
 from collections.abc import Callable, Sequence
 from pathlib import Path as FilePath
 
+from muster.mission.cordeau import looks_like_cordeau, read_cordeau
 from muster.mission.electric_vrptw import looks_like_electric_vrptw, read_electric_vrptw
 from muster.mission.li_lim import looks_like_li_lim, read_li_lim
+from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
 from muster.mission.number_rows import Row, text_rows
 from muster.mission.solomon import looks_like_solomon, read_solomon
 from muster.mission.vrplib import TYPES, read_vrplib
 
-VehicleReader = Callable[[FilePath, int | None], Mission]
-"""Reads an instance file with so many robots, or with as many as the file says."""
+VehicleReader = Callable[[FilePath, int | None, LineFates | None], Mission]
+"""Reads an instance file with so many robots, or with as many as the file says; tells what becomes of its lines."""
 
 TSPLIB = "TSPLIB"
 """In place of a reader: a file of TSPLIB, which has no robots of its own."""
@@ -25,6 +27,7 @@ WAY_POINTS = "QGC WPL"
 _LAYOUTS: tuple[tuple[Callable[[Sequence[Row]], bool], VehicleReader], ...] = (
     (looks_like_electric_vrptw, read_electric_vrptw),
     (looks_like_li_lim, read_li_lim),
+    (looks_like_cordeau, read_cordeau),
     (looks_like_solomon, read_solomon),
 )
 _OTHER_FORMS = (".yaml", ".yml", ".csv", ".plan", ".json")

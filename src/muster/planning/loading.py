@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from muster.library import mission_names, mission_path
 from muster.mission.errors import Finding, MissionError, ParameterError
 from muster.mission.import_ledger import Ledger, summary_lines
+from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
 
@@ -101,12 +102,14 @@ def load_noted(
         from muster.mission.thesis_csv import read_csv
 
         return Noted(read_csv(path, Path(str(robots)), None if suitability is None else Path(suitability)))
+    fates = LineFates()
     if form == TSPLIB:
         from muster.mission.tsplib import read_tsplib
 
-        return Noted(read_tsplib(path, salesmen or 0, "1" if depot is None else depot))
+        mission = read_tsplib(path, salesmen or 0, "1" if depot is None else depot, fates)
+        return Noted(mission, (), fates.ledger(path))
     if callable(form):
-        return Noted(form(path, salesmen))
+        return Noted(form(path, salesmen, fates), (), fates.ledger(path))
     if form == WAY_POINTS:
         from muster.exchange.wpl_reader import read_wpl
 
