@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
+from muster.exchange.sites.file_sizes import MOST_VALUES, require_few
 from muster.exchange.sites.headings import Columns, columns_of
 from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
 from muster.exchange.sites.roles import Roles, is_no_fly, names_role
@@ -191,12 +192,14 @@ def _with_shapes(layer: Layer, findings: list[Finding]) -> Iterator[Feature]:
     if "wkt" not in columns:
         yield from layer.features
         return
-    column = columns.by_key["wkt"]
+    column, places = columns.by_key["wkt"], 0
     for feature in layer.features:
         told = column.value(feature, findings) if feature.geometry is None else None
         if not isinstance(told, str):
             yield feature
             continue
+        places += told.count(",")
+        require_few(places, "places", layer.file, feature.line, most=MOST_VALUES)
         try:
             for geometry in from_text(told):
                 yield replace(feature, geometry=geometry)

@@ -118,6 +118,9 @@ class _Reading:
         items = data.get("features")
         if not isinstance(items, list):
             raise self._refused(("features",), "features", items, "a list of features")
+        if any(_is_edge(item) for item in items):
+            told, expected = "a route graph of Nav2 (startid, endid)", "the map of a site"
+            raise self._refused(("features",), "features", told, f"{expected}; lanes of a mission: {{nodes, edges}}")
         found = [
             feature
             for k, item in enumerate(items)
@@ -214,6 +217,12 @@ class _Reading:
 
     def _refused(self, at: Where, where: str, value: object, expected: str) -> Exception:
         return refused(self._file, self._line(at), where, "missing" if value is None else value, expected)
+
+
+def _is_edge(item: object) -> bool:
+    """Whether a feature is an edge of a route graph of Nav2."""
+    properties = item.peek("properties") if isinstance(item, Tracked) else None
+    return isinstance(properties, dict) and {"startid", "endid"} <= properties.keys()
 
 
 def _is_number(value: object) -> bool:
