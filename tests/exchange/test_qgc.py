@@ -173,7 +173,10 @@ def test_rovers_alone_are_a_mission_in_the_plane(files, tmp_path):
         (lambda p: p["mission"].update(plannedHomePosition=[LON, LAT, 0]), "expected a latitude from -90 to 90"),
         (lambda p: p["mission"].pop("plannedHomePosition"), "mission.plannedHomePosition: missing"),
         (lambda p: items(p)[2].update(type="ComplexItem", complexItemType="fw"), 'mission.items[2].type: "fw"'),
-        (lambda p: items(p)[2].update(command=17), "mission.items[2].command: MAV_CMD_NAV_LOITER_UNLIM (17); expected one of NAV_WAYPOINT, NAV_LOITER_TIME"),
+        (
+            lambda p: items(p)[2].update(command=17),
+            "mission.items[2].command: MAV_CMD_NAV_LOITER_UNLIM (17); expected one of NAV_WAYPOINT, NAV_LOITER_TIME",
+        ),
         (lambda p: items(p)[2].update(frame=10), "mission.items[2].frame: 10; expected one of 0, 3, 5, 6"),
         (lambda p: items(p)[2].update(params=[0] * 6), "mission.items[2].params"),
         (lambda p: items(p)[2]["params"].__setitem__(4, None), "mission.items[2].params[4:]"),
