@@ -111,7 +111,9 @@ def enter_json(book: LedgerBook, root: Any, fate_of: FateOf = lambda _, __: None
                     within.append((member, own_kind, own_where, None if fate.how == "read" else fate))
         else:
             within += [
-                (item, f"{kind}[]", f"{where}[{k}]", inherited) for k, item in enumerate(value) if _holds_objects(item)
+                (item, kind if inherited else f"{kind}[]", f"{where}[{k}]", inherited)
+                for k, item in enumerate(value)
+                if _holds_objects(item)
             ]
         rest += reversed(within)
 

@@ -32,7 +32,7 @@ def kml_layers(root: Element, file: str, others: Sequence[str] = ()) -> list[Lay
         if not features:
             lost.append(mark)
     for element in lost:
-        element.fate = passed_over(_WITHOUT_SHAPE, noted=True)
+        element.fate, element.whole = passed_over(_WITHOUT_SHAPE, noted=True), None
     layers = [layer_of(file, folder, features, document) for folder, features in groups.items() if features]
     return [*layers, Layer(file, "", (), (), tuple(map(titled, lost)), document=document)] if lost else layers
 

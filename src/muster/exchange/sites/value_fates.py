@@ -19,6 +19,10 @@ _AS_ROLE = read_as("what the feature is")
 _BESIDE_GEOMETRY = passed_over("stands beside a geometry")
 _HEIGHT = read_as("a height")
 _NO_HEIGHT = passed_over("is the height of a line or an area")
+_NAMELESS = ("zone", "boundary", "lane")
+"""Roles of what has no id in a mission; a door has one of its own."""
+_NO_ID = passed_over("is no id: zones, boundaries and lanes have none in a mission", minor=True)
+_NAME = read_as("a name, which may say what the feature is")
 _PLAN = "is of a plan: Muster plans anew"
 
 
@@ -70,6 +74,8 @@ class ValueFates:
         for key, column in self._columns.by_key.items():
             beside = drawn and key in (*OF_PLACES, "wkt")
             fates[column.heading] = _BESIDE_GEOMETRY if beside else read_as(key)
+            if key in ("id", "name") and self._role in _NAMELESS:
+                fates[column.heading] = _NO_ID if key == "id" else _NAME
             if key == ROLE.name:
                 fates[column.heading] = passed_over("is no kind of feature that Muster knows")
         fates |= dict.fromkeys(of_role, _AS_ROLE)
