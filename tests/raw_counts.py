@@ -1,8 +1,8 @@
 """How many elements a file has, counted without Muster: by json, ElementTree, csv, openpyxl and sqlite3.
 
 What an element is: a member of a JSON object, and of a plan each parameter of a command that is not null; an element
-or attribute of XML, and each other file of an archive; a cell that is not blank; a column of a row that is not null; a word
-of way points as text; a line of an instance file that is not blank.
+or attribute of XML, and each other file of an archive; a cell that is not blank; a column of a row that is not null; a
+word of way points as text; a line of an instance file that is not blank.
 """
 
 import csv
