@@ -52,7 +52,7 @@ def read_wpl(path: Path) -> ReadFlights:
     if " ".join(head.words[:2]) != WAY_POINTS or head.words[2:] not in [[version] for version in _VERSIONS]:
         raise fields.refused_as("", " ".join(head.words) or "empty", f"{WAY_POINTS} {' or '.join(_VERSIONS)}")
     require_few(len(rows), "lines", str(path), most=_MOST_LINES)
-    commands = [_command(path, row) for row in rows]
+    commands = [_command(path, row, k) for k, row in enumerate(rows)]
     if not commands:
         raise fields.refused_as("", "no items", "a line for each item")
     home = _home(commands[0]) or _takeoff(commands)
@@ -75,8 +75,8 @@ def _flown(path: Path, home: Degrees, kind: str, flight: Flight, document: _Docu
     return FlownFile(path.stem, PlanFields(path), home, kind, speed, flight, (), Fences(), tuple(notes), document)
 
 
-def _command(path: Path, row: Row) -> Command:
-    """The command of a line."""
+def _command(path: Path, row: Row, k: int) -> Command:
+    """The command of a line, which is the `k`-th from 0."""
     fields = PlanFields(path, row.line)
     values = [number(word) for word in row.words]
     wrong = next((word for word, value in zip(row.words, values, strict=True) if not isinstance(value, float)), None)
@@ -87,6 +87,8 @@ def _command(path: Path, row: Row) -> Command:
     for name, value in (("number", index), ("frame", frame), ("command", command)):
         if not math.isfinite(value) or value % 1 or value < 0:
             raise fields.refused(name, value, "a whole number of at least 0")
+    if index != k:
+        raise fields.refused("number", index, f"{k}: items in their order")
     if on != 1:
         raise fields.refused("autocontinue", on, "1: no wait for a pilot")
     names: dict[int | str, str] = dict(enumerate(_COLUMNS[4:11]))

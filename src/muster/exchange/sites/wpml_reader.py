@@ -56,7 +56,7 @@ def wpml_layers(root: Element, file: str, others: Sequence[str]) -> list[Layer]:
         if element.name in _REASONS:
             element.take(_REASONS[element.name])
     notes = []
-    speeds = sorted({e.text.strip() for e in root.within() if e.name in _SPEEDS and e.text.strip()}, key=len)
+    speeds = sorted({e.text.strip() for e in root.within() if e.name in _SPEEDS and e.text.strip()}, key=_size)
     if speeds:
         notes.append(f"its drone flies at {' and '.join(speeds)} m/s: robots say how fast they are (speed_mps)")
     folders: dict[str, list[Feature]] = {}
@@ -122,7 +122,7 @@ class _WayPoint:
         uses_global = self._mark.told("useGlobalHeight") == "1"
         found = self._folder.first("globalHeight") if own is None or uses_global else own
         if found is None:
-            raise refused(self._file, self._mark.line, f"{where}, executeHeight", "missing", "metres")
+            raise refused(self._file, self._mark.line, _at(where, "executeHeight"), "missing", "metres")
         number = self._number(found, where)
         if found is own:
             found.value = self._source, HEIGHT
@@ -134,7 +134,7 @@ class _WayPoint:
         except ValueError:
             number = float("nan")
         if not least <= number <= 1e5:
-            at = f"{where}, {element.name}".lstrip(", ")
+            at = _at(where, element.name)
             raise refused(self._file, element.line, at, element.text.strip() or "missing", "a number")
         return number
 
@@ -150,11 +150,17 @@ class _WayPoint:
                     action.fate = _CAMERA
                 elif func != "hover":
                     expected = "hover, or an action of cameras and gimbals"
-                    raise refused(self._file, action.line, f"{where}, actionActuatorFunc", func or "missing", expected)
+                    raise refused(
+                        self._file, action.line, _at(where, "actionActuatorFunc"), func or "missing", expected
+                    )
                 elif trigger not in ("", "reachPoint") or not one_point:
                     told = trigger if one_point else "hover at several way points"
                     raise refused(
-                        self._file, action.line, f"{where}, hover", told, "hover at one way point: reachPoint"
+                        self._file,
+                        action.line,
+                        _at(where, "hover"),
+                        told,
+                        "a hover at one way point, when it is reached",
                     )
                 else:
                     seconds += self._hover_time(action, where)
@@ -163,6 +169,15 @@ class _WayPoint:
     def _hover_time(self, action: Element, where: str) -> float:
         time = action.first("actionActuatorFuncParam", "hoverTime")
         if time is None:
-            raise refused(self._file, action.line, f"{where}, hoverTime", "missing", "seconds")
+            raise refused(self._file, action.line, _at(where, "hoverTime"), "missing", "seconds")
         time.value = self._source, "duration_s"
         return self._number(time, where, least=0.0)
+
+
+def _at(where: str, field: str) -> str:
+    return f"{where}, {field}" if where else field
+
+
+def _size(told: str) -> tuple[int, str]:
+    """The order of numbers as texts, shorter ones first."""
+    return len(told.partition(".")[0]), told
