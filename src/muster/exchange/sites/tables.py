@@ -62,7 +62,7 @@ class TableDocument:
 
 
 _TITLE = passed_over("stands above the headings", noted=True)
-_HEADING, _UNUSED = read_as("a heading"), passed_over("heads nothing that is read", noted=True)
+_HEADING, _UNUSED = read_as("a heading"), passed_over("heads nothing that is read", minor=True)
 
 
 def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "", separator: str = "") -> Layer:
