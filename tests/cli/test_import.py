@@ -1,9 +1,14 @@
 """`muster import`, and files of sites wherever a MISSION is."""
 
+import json
+from pathlib import Path
+
 import pytest
 from tests.exchange.sites import writers
 
 from muster import load
+
+CASES = Path(__file__).parents[1] / "data" / "cases" / "import"
 
 
 @pytest.fixture
@@ -74,3 +79,43 @@ def test_what_is_wrong_is_said_in_one_line(muster, files, arguments, message):
 def test_columns_go_with_files_of_sites_alone(muster, files):
     code, _, err = muster("check", "6T-2R", "--column", "lat=x")
     assert (code, err) == (2, "6T-2R: --column given; expected no --column with this kind of mission\n")
+
+
+def test_what_is_not_read_stands_in_a_table_at_the_end(muster, files):
+    text = writers.CSV.replace("name,lat,lon", "name,lat,lon,colour").replace("8.5417\n", "8.5417,red\n")
+    (files / "panels.csv").write_text(text, encoding="utf-8")
+    code, out, err = muster("import", "panels.csv", "robots.csv", "-o", "m.yaml")
+    assert (code, out) == (0, "")
+    assert err.splitlines()[-4:] == [
+        "not read:",
+        "  panels.csv: 12 elements read, 3 passed over",
+        "         2  colour  passed over: it means nothing for a task",
+        "next: muster check m.yaml; muster solve m.yaml",
+    ]
+
+
+def test_the_ledger_is_json_beside_the_mission(muster, files):
+    code, out, err = muster("import", "panels.csv", "robots.csv", "fences.geojson", "-o", "m.yaml", "--format", "json")
+    assert (code, err) == (0, "next: muster check m.yaml; muster solve m.yaml\n")
+    ledger = json.loads(out)["ledger"]
+    assert ledger["files"]["panels.csv"] == {"read": 12, "passed_over": 0, "refused": 0}
+    assert sum(row["count"] for row in ledger["rows"]) == ledger["read"] + ledger["passed_over"]
+    assert muster("import", "panels.csv", "robots.csv", "--format", "json")[0] == 2
+
+
+@pytest.mark.parametrize("verb", ["check", "solve", "import"])
+def test_a_plan_file_says_what_of_it_is_not_read(verb, muster, files):
+    (files / "roi.plan").write_bytes((CASES / "roi.plan").read_bytes())
+    more = {"solve": ("--iterations", "20"), "import": ("-o", "m.yaml")}
+    code, _, err = muster(verb, "roi.plan", *more.get(verb, ()))
+    assert code == 0
+    assert "DO_SET_ROI_LOCATION" in err
+    assert "IMAGE_START_CAPTURE" in err
+
+
+def test_check_has_the_ledger_in_json(muster, files):
+    (files / "roi.plan").write_bytes((CASES / "roi.plan").read_bytes())
+    ledger = json.loads(muster("check", "roi.plan", "--format", "json")[1])["ledger"]
+    kinds = {row["kind"]: (row["fate"], row.get("because")) for row in ledger["rows"]}
+    assert kinds["DO_SET_ROI_LOCATION"][0] == "passed over"
+    assert "ledger" not in json.loads(muster("check", "6T-2R", "--format", "json")[1])

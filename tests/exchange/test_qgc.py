@@ -173,7 +173,10 @@ def test_rovers_alone_are_a_mission_in_the_plane(files, tmp_path):
         (lambda p: p["mission"].update(plannedHomePosition=[LON, LAT, 0]), "expected a latitude from -90 to 90"),
         (lambda p: p["mission"].pop("plannedHomePosition"), "mission.plannedHomePosition: missing"),
         (lambda p: items(p)[2].update(type="ComplexItem", complexItemType="fw"), 'mission.items[2].type: "fw"'),
-        (lambda p: items(p)[2].update(command=17), "mission.items[2].command: 17; expected one of 16, 19"),
+        (
+            lambda p: items(p)[2].update(command=17),
+            "mission.items[2].command: MAV_CMD_NAV_LOITER_UNLIM (17); expected one of NAV_WAYPOINT, NAV_LOITER_TIME",
+        ),
         (lambda p: items(p)[2].update(frame=10), "mission.items[2].frame: 10; expected one of 0, 3, 5, 6"),
         (lambda p: items(p)[2].update(params=[0] * 6), "mission.items[2].params"),
         (lambda p: items(p)[2]["params"].__setitem__(4, None), "mission.items[2].params[4:]"),
@@ -212,8 +215,7 @@ SQUARE = {"inclusion": True, "polygon": [[LAT, LON], [LAT + 0.1, LON], [LAT, LON
     ("change", "said"),
     [
         (lambda p: p.update(geoFence=3), "geoFence: 3; expected a mapping with polygons"),
-        (fence([], circles=[{"inclusion": True}]), "geoFence.circles: "),
-        (fence([{**SQUARE, "inclusion": False}]), "geoFence.polygons: not the mission's boundary; expected one"),
+        (fence([], circles=[{"inclusion": True}]), "geoFence.circles[0].circle: missing; expected a mapping"),
         (fence([SQUARE, SQUARE]), "geoFence.polygons: not the mission's boundary; expected one polygon"),
         (fence([{**SQUARE, "inclusion": 1}]), "geoFence.polygons[0].inclusion: 1; expected true or false"),
         (fence([{"inclusion": True}]), "geoFence.polygons[0].polygon: missing; expected a list of corners"),
@@ -234,7 +236,7 @@ def test_fences_are_of_one_mission(files, tmp_path):
     fence([SQUARE])(files["d2"])
     for name in ("d1", "d2"):
         (tmp_path / f"{name}.plan").write_text(json.dumps(files[name]), encoding="utf-8")
-    with pytest.raises(MissionError, match="expected one polygon with inclusion, the same in all files"):
+    with pytest.raises(MissionError, match="expected one polygon or circle with inclusion, the same in all files"):
         load(tmp_path)
 
 

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from muster.motion.actions.unseen_places import Unseen
     from muster.planning.explaining import Possible
     from muster.planning.explaining.crossings import BlockedWay
+    from muster.planning.loading import Noted
 
 _MINIMAL = "without any one of them a plan was found that does the others"
 _NOT_MINIMAL = "some of them may already be too many: not without each of them a plan for the others was found"
@@ -68,11 +69,11 @@ def command(
     Where no plan can do all the others, name a smallest set of tasks of which one must be left out.
     """
     try:
-        loaded = mission.load(verbose=verbose)
-        found = backend.check(loaded, ignore, time_limit)
+        noted = mission.load_noted(verbose=verbose)
+        found = backend.check(noted.mission, ignore, time_limit)
     except (MissionError, NotSupportedError) as error:
         return _refused(form, error)
-    return _checked(form, loaded, found, ignore, require_complete=require_complete)
+    return _checked(form, noted, found, ignore, require_complete=require_complete)
 
 
 def _refused(form: str, error: MissionError | NotSupportedError) -> int:
@@ -87,14 +88,16 @@ def _refused(form: str, error: MissionError | NotSupportedError) -> int:
     return BAD_INPUT
 
 
-def _checked(form: str, mission: Mission, found: Possible, ignore: Collection[str], *, require_complete: bool) -> int:
+def _checked(form: str, noted: Noted, found: Possible, ignore: Collection[str], *, require_complete: bool) -> int:
     """Print which tasks can be done; returns the exit code."""
     from muster.planning.explaining import unseen_findings
 
-    lost, all_others = found.impossible, found.together
+    mission, lost, all_others = noted.mission, found.impossible, found.together
     errors = unseen_findings(mission, found.unseen)
     if form == "json":
-        click.echo(json_text({"errors": [error.as_dict() for error in errors], **found.as_dict()}), nl=False)
+        told = {"errors": [error.as_dict() for error in errors], **found.as_dict()}
+        told |= {"ledger": noted.ledger.as_dict()} if noted.ledger.rows else {}
+        click.echo(json_text(told), nl=False)
     else:
         _print_checked(mission, found, len(errors))
         _print_never_used(mission, ignored_rules(ignore))

@@ -30,6 +30,13 @@ from muster.mission.errors import ParameterError
 @click.option("--starts-at", metavar="TIME", help="When the mission begins, for clock times: 2027-03-01T08:00.")
 @click.option("--name", metavar="NAME", help="Name of the mission.  [default: that of the first file]")
 @click.option("--flat", is_flag=True, help="Leave heights out.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(("text", "json")),
+    default="text",
+    help="What is said of the files: lines, or, beside -o, JSON with the ledger of all their elements.",
+)
 @quiet_option
 def command(
     files: tuple[str, ...],
@@ -42,6 +49,7 @@ def command(
     starts_at: str | None,
     name: str | None,
     flat: bool,
+    form: str,
     quiet: bool,
     verbose: bool,
 ) -> int:
@@ -49,12 +57,16 @@ def command(
 
     FILEs are CSV, XLSX, GeoJSON, KML, KMZ, GPX and GeoPackage; one may be a mission, to which the others are added.
     Points become tasks, areas zones, lines lanes; names, a property kind, or --as say other things. Without -o the
-    mission goes to standard output.
+    mission goes to standard output. What of the files is not read stands in a table at the end.
     """
+    from muster.cli.ledger_table import ledger_lines
+    from muster.mission.plan import json_text
     from muster.mission.text_files import write_text
     from muster.mission.yaml_writer import with_files_from, yaml_text
     from muster.planning.importing import read_site
 
+    if form == "json" and output is None:
+        raise ParameterError("--format json: -o missing; expected a file for the mission beside it")
     require_writable(None, (output,), (*files, robots, suitability), ())
     found = read_site(
         *files,
@@ -67,7 +79,10 @@ def command(
         name=name,
         flat=flat,
     )
-    _say((*found.counts, *found.notes), quiet=quiet)
+    _say((*found.counts, *found.notes, *ledger_lines(found.ledger)), quiet=quiet or form == "json")
+    if form == "json":
+        told = {"counts": found.counts, "notes": found.notes, "ledger": found.ledger.as_dict()}
+        click.echo(json_text(told), nl=False)
     folder = Path() if output is None else output.parent
     text = yaml_text(with_files_from(found.mission, folder))
     if output is None:

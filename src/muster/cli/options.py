@@ -22,6 +22,7 @@ from muster.traffic.names import DEFAULT, TRAFFIC
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
+    from muster.planning.loading import Noted
     from muster.verification import Verdict
 
 
@@ -60,6 +61,10 @@ class MissionFile:
 
     def load(self, *, verbose: bool = False) -> Mission:
         """Read the mission, print what was chosen; with -v the file and the numbers of robots and tasks."""
+        return self.load_noted(verbose=verbose).mission
+
+    def load_noted(self, *, verbose: bool = False) -> Noted:
+        """Read and print as `load` does, and keep what the reader says."""
         from muster.planning.loading import load_noted
 
         if self.depot is not None and self.salesmen is None:
@@ -67,12 +72,12 @@ class MissionFile:
         flags = {name: getattr(self, name) for name in ("robots", "suitability", "salesmen")}
         found = load_noted(self.name, **flags, depot=self.depot, columns=pairs_of("--column", self.columns) or None)
         loaded = found.mission
-        for note in () if click.get_current_context().params.get("quiet") else found.notes:
+        for note in () if click.get_current_context().params.get("quiet") else found.said:
             click.echo(note, err=True)
         if verbose:
             amount = f"{len(loaded.robots)} robots, {len(loaded.tasks)} tasks"
             click.echo(f"read {loaded.source.file}: mission {loaded.name}, {amount}", err=True)
-        return loaded
+        return found
 
 
 MISSION_FLAGS = ("robots", "suitability", "salesmen", "depot", "columns")

@@ -74,7 +74,10 @@ class MissionEntry:
 
 @dataclass(frozen=True, kw_only=True)
 class MissionVersion:
-    """A mission's text as it was at one time, with the files that it names (floor plans, tables) by their names."""
+    """A mission's text as it was at one time, with the files that it names (floor plans, tables) by their names.
+
+    Where it was just made of files of other programs, `ledger` says what became of every element of these.
+    """
 
     mission: str
     version: int
@@ -83,6 +86,7 @@ class MissionVersion:
     at: datetime | None
     note: str = ""
     files: Mapping[str, bytes] = field(default_factory=dict)
+    ledger: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

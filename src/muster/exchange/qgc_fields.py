@@ -15,8 +15,8 @@ Degrees = tuple[float, float, float]
 class PlanFields:
     """The fields of one file; the first that is wrong is raised, as a `MissionError`."""
 
-    def __init__(self, file: Path) -> None:
-        self._file = file
+    def __init__(self, file: Path, line: int | None = None) -> None:
+        self.file, self._line = file, line
 
     def of(self, data: dict[str, Any], key: str, kind: type, expected: str, at: str) -> Any:
         """The value of a key, of a type."""
@@ -40,6 +40,25 @@ class PlanFields:
             raise self.refused(at, value, "a latitude from -90 to 90, then a longitude from -180 to 180")
         return lat, lon, height
 
+    def items(self, data: dict[str, Any], key: str, at: str) -> list[Any]:
+        """The list under a key; empty where there is none."""
+        found = data.get(key)
+        if found is not None and not isinstance(found, list):
+            raise self.refused(at, found, "a list")
+        return found or []
+
+    def require_version(self, data: dict[str, Any], at: str, *known: int) -> None:
+        """Raise MissionError if a part of a file says that it is of a version that is not known."""
+        version = data.get("version", known[-1])
+        if isinstance(version, bool) or version not in known:
+            raise self.refused(f"{at}.version".lstrip("."), version, " or ".join(map(str, known)))
+
+    def require_known(self, data: dict[str, Any], at: str, *known: str) -> None:
+        """Raise MissionError for a member that is not known, where an unknown one may close or open a place."""
+        for key in data:
+            if key not in known and data[key] not in (None, [], {}):
+                raise self.refused(f"{at}.{key}", data[key], f"no more than {', '.join(known)}")
+
     def corners(self, data: dict[str, Any], key: str, at: str) -> tuple[tuple[float, float], ...]:
         """The corners of a polygon, latitude and longitude each."""
         found = self.of(data, key, list, "a list of corners", at)
@@ -52,8 +71,11 @@ class PlanFields:
 
     def refused(self, field: str, value: object, expected: str) -> MissionError:
         """The error for a field that is missing, or not what was expected."""
-        told = "missing" if value is None else shown(value)
-        return MissionError([Finding(str(self._file), None, field, told, expected)])
+        return self.refused_as(field, "missing" if value is None else shown(value), expected)
+
+    def refused_as(self, field: str, told: str, expected: str) -> MissionError:
+        """The error for a field whose value is told in words."""
+        return MissionError([Finding(str(self.file), self._line, field, told, expected)])
 
 
 def is_number(value: Any) -> TypeGuard[float]:

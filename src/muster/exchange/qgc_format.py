@@ -11,9 +11,11 @@ NAV_LOITER_TIME = 19
 NAV_RETURN_TO_LAUNCH = 20
 NAV_LAND = 21
 NAV_TAKEOFF = 22
-NAV_LAST = 95
-"""Commands up to this one say where to go; those after it do something there."""
+NAV_VTOL_TAKEOFF = 84
+NAV_VTOL_LAND = 85
+NAV_DELAY = 93
 CONDITION_YAW = 115
+DO_JUMP = 177
 DO_CHANGE_SPEED = 178
 
 SET_TRIGGER_DISTANCE = 206
@@ -26,11 +28,13 @@ FRAME_GLOBAL_RELATIVE_ALT_INT = 6
 
 QUADROTOR = 2
 GROUND_ROVER = 10
-SURFACE_BOAT = 11
 
 FIRMWARE = {"px4": 12, "ardupilot": 3}
 
 RELATIVE_TO_HOME = 1
 """AltitudeMode, and globalPlanAltitudeMode: heights above home."""
+AIR_SPEED = 0
 GROUND_SPEED = 1
+CLIMB_SPEED = 2
+DESCENT_SPEED = 3
 """First parameter of DO_CHANGE_SPEED."""

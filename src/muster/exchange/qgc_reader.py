@@ -1,66 +1,44 @@
 """QGroundControl plan files as a mission: one robot a file, every way point a task, the first home the origin.
 
 A way point's hold is the task's duration, a survey an area to cover. The order of way points is not kept, since Muster
-plans it anew. Way points of take-off, landing and return to launch give the end position. Fences become the map.
+plans it anew; rounds of a jump follow each other. Way points of take-off, landing and return to launch give the end
+position. Fences become the map.
 """
 
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from muster.exchange import qgc_format as qgc
-from muster.exchange.qgc_fences import Corner, Fences, map_of
-from muster.exchange.qgc_fields import Degrees, PlanFields, is_number
+from muster.exchange.flight_missions import FlownFile, ReadFlights, mission_of
+from muster.exchange.qgc_commands import name_of, param_of
+from muster.exchange.qgc_fences import read_fences
+from muster.exchange.qgc_fields import Degrees, PlanFields
+from muster.exchange.qgc_flight import Command, Flight, flight_of, require_near
 from muster.exchange.qgc_survey_reader import Survey, read_survey
+from muster.exchange.qgc_vehicles import EXPECTED, VEHICLES, Vehicle, told_vehicle
+from muster.exchange.sites.file_sizes import require_moderate_json
+from muster.exchange.tracked_json import Tracked, enter_json, parse_tracked
 from muster.mission.errors import Finding, MissionError
-from muster.mission.from_data import mission_from
-from muster.mission.geodesy import wgs84_to_enu
-from muster.mission.model import SCHEMA, Mission
+from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, passed_over
+from muster.mission.model import Mission
 from muster.mission.plan import tie_order
-from muster.mission.source import Source
 from muster.mission.text_files import read_text
 
-_RELATIVE = (qgc.FRAME_GLOBAL_RELATIVE_ALT, qgc.FRAME_GLOBAL_RELATIVE_ALT_INT)
-_FRAMES = (*_RELATIVE, qgc.FRAME_GLOBAL, qgc.FRAME_GLOBAL_INT)
-_STOPS = (qgc.NAV_WAYPOINT, qgc.NAV_LOITER_TIME)
-_READ = (*_STOPS, qgc.NAV_TAKEOFF, qgc.NAV_LAND, qgc.NAV_RETURN_TO_LAUNCH)
-_SAME_PLACE_M = 0.01
-
-
-@dataclass(frozen=True)
-class _Vehicle:
-    """The content of one file."""
-
-    name: str
-    home: Degrees
-    ground: bool
-    speed_mps: float
-    stops: tuple[tuple[int, Degrees, float], ...]
-    """Number of the item, place, and seconds of hold."""
-    surveys: tuple[Survey, ...]
-    returns: bool
-    lands_at: Degrees | None
-    fences: Fences
-
-    @property
-    def kind(self) -> str:
-        return "ground" if self.ground else "air"
-
-    @property
-    def last_at(self) -> Degrees:
-        """Where it is after its last stop or survey."""
-        ends = {number: place for number, place, _ in self.stops}
-        ends |= {survey.number: (*survey.ends_at, self.home[2]) for survey in self.surveys if survey.ends_at}
-        return ends[max(ends)] if ends else self.home
+_TWICE = passed_over("stands in the parameters too", minor=True)
+_RALLY = passed_over("is a point to go to in an emergency: Muster's drones return or land")
+_SAID = passed_over("is said anew by what is exported", minor=True)
 
 
 def read_plan_files(path: str | Path) -> Mission:
-    """The mission of a `.plan` file, or of all `.plan` files in a folder.
+    """The mission of a `.plan` file, or of all `.plan` files in a folder; see `read_flight_plans`."""
+    return read_flight_plans(path).mission
+
+
+def read_flight_plans(path: str | Path) -> ReadFlights:
+    """The mission of a `.plan` file, or of all `.plan` files in a folder, with what became of each element.
 
     The mission is in the plane if all vehicles are rovers or boats.
 
@@ -72,29 +50,7 @@ def read_plan_files(path: str | Path) -> Mission:
         if pymap3d is not installed.
     """
     path = Path(path)
-    readings = [_Reading(file) for file in _files(path)]
-    vehicles = [reading.vehicle() for reading in readings]
-    lat, lon, alt = vehicles[0].home
-    spatial = not all(vehicle.ground for vehicle in vehicles)
-
-    def metres(place: Degrees) -> list[float]:
-        point: list[float] = wgs84_to_enu([place], vehicles[0].home)[0].tolist()
-        return point if spatial else point[:2]
-
-    def on_map(corner: Corner) -> Corner:
-        east, north, _ = wgs84_to_enu([(*corner, alt)], vehicles[0].home)[0].tolist()
-        return east, north
-
-    fences = [vehicle.fences for vehicle in vehicles]
-    chart = map_of(fences, [v.kind for v in vehicles], on_map, lambda k: readings[k].without_boundary())
-    data = {
-        "schema": SCHEMA,
-        "name": path.stem,
-        "origin_wgs84": {"lat_deg": lat, "lon_deg": lon, "alt_m": alt},
-        "robots": [_robot(vehicle, metres(vehicle.home), metres) for vehicle in vehicles],
-        "tasks": [task for vehicle in vehicles for task in _tasks(vehicle, metres)],
-    } | ({} if chart is None else {"map": chart})
-    return mission_from(data, Source(str(path)), [])
+    return mission_of(path, [_Reading(file).file() for file in _files(path)])
 
 
 def _files(path: Path) -> list[Path]:
@@ -108,39 +64,27 @@ def _files(path: Path) -> list[Path]:
     return [found[k] for k in tie_order([file.stem for file in found])]
 
 
-def _tasks(vehicle: _Vehicle, metres: Callable[[Degrees], list[float]]) -> Iterator[dict[str, Any]]:
-    stops = {
-        number: {"position": metres(place)} | ({"duration_s": hold} if hold else {})
-        for number, place, hold in vehicle.stops
-    }
-    surveys = {
-        survey.number: {"action": survey.action([metres((*at, vehicle.home[2]))[:2] for at in survey.corners])}
-        for survey in vehicle.surveys
-    }
-    for number, task in sorted((stops | surveys).items()):
-        yield {"id": f"{vehicle.name}-{number}"} | task
+class _Document:
+    """The members of a plan, and the parameters of its commands that say anything."""
 
+    def __init__(self, root: Tracked) -> None:
+        self._root = root
+        self.commands: dict[int, Command] = {}
+        """By the id of their items."""
 
-def _robot(vehicle: _Vehicle, position: list[float], metres: Callable[[Degrees], list[float]]) -> dict[str, Any]:
-    data: dict[str, Any] = {
-        "id": vehicle.name,
-        "position": position,
-        "speed_mps": vehicle.speed_mps,
-        "kind": vehicle.kind,
-    }
-    if (lens := next((survey.lens for survey in vehicle.surveys if survey.lens), None)) is not None:
-        data["camera"] = lens.camera()
-    if vehicle.returns:
-        return data | {"return_to_start": True}
-    if vehicle.lands_at is None or _over(vehicle.lands_at, vehicle.last_at):
-        return data
-    return data | {"end_position": metres(vehicle.lands_at)}
+    def enter(self, book: LedgerBook) -> None:
+        """Give the ledger every member and parameter."""
+        enter_json(book, self._root, self._fate)
+        for command in self.commands.values():
+            for k, value in enumerate(command.params):
+                if value is not None:
+                    kind = name_of(command.command)
+                    kind += "" if command.whole else f" {param_of(command.command, k)}"
+                    book.add(kind, command.fate(k), command.names[k])
 
-
-def _over(a: Degrees, b: Degrees) -> bool:
-    """Whether two places differ in height alone."""
-    (apart,) = wgs84_to_enu([(*a[:2], b[2])], b)
-    return math.hypot(*apart[:2]) < _SAME_PLACE_M
+    def _fate(self, item: Tracked, _: str) -> Fate | None:
+        command = self.commands.get(id(item))
+        return None if command is None else command.whole
 
 
 class _Reading:
@@ -151,115 +95,118 @@ class _Reading:
         self._fields = PlanFields(file)
         self._home: Degrees = (0.0, 0.0, 0.0)
 
-    def vehicle(self) -> _Vehicle:
+    def file(self) -> FlownFile:
         data = self._json()
+        self._document = _Document(data)
         if data.get("fileType") != "Plan":
             raise self._fields.refused("fileType", data.get("fileType"), '"Plan"')
-        mission = self._fields.of(data, "mission", dict, "a mapping", "mission")
+        self._fields.require_version(data, "", 1)
+        mission = self._fields.of(data, "mission", Tracked, "a mapping", "mission")
         if mission.get("version") != 2:
             raise self._fields.refused("mission.version", mission.get("version"), "2")
         self._home = self._fields.place(mission.get("plannedHomePosition"), "mission.plannedHomePosition")
         items = self._fields.of(mission, "items", list, "a list of items", "mission.items")
-        surveys = {k: survey for k, item in enumerate(items) if (survey := self._survey(k, item)) is not None}
-        commands = list(self._commands([(k, item) for k, item in enumerate(items) if k not in surveys]))
-        stops = tuple(
-            (k + 1, self._spot(item, at), self._hold(item, at)) for k, item, at in commands if item["command"] in _STOPS
-        )
-        landings = [self._spot(item, at) for _, item, at in commands if item["command"] == qgc.NAV_LAND]
-        return _Vehicle(
+        surveys = [survey for k, item in enumerate(items) if (survey := self._survey(k, item)) is not None]
+        ends = {s.number: None if s.ends_at is None else (*s.ends_at, self._home[2]) for s in surveys}
+        commands = [self._command(k, item) for k, item in enumerate(items) if k + 1 not in ends]
+        flight = flight_of(commands, ends, self._home)
+        vehicle = self._vehicle(mission)
+        data.say(_SAID, "groundStation")
+        if isinstance(rally := data.get("rallyPoints"), Tracked):
+            self._fields.require_version(rally, "rallyPoints", 1, 2)
+            rally.say(_RALLY if rally.peek("points") else EMPTY, "points")
+        mission.say(_SAID, "firmwareType", "globalPlanAltitudeMode")
+        return FlownFile(
             name=self._file.stem,
+            fields=self._fields,
             home=self._home,
-            ground=mission.get("vehicleType") in (qgc.GROUND_ROVER, qgc.SURFACE_BOAT),
-            speed_mps=self._speed(mission, items),
-            stops=stops,
-            surveys=tuple(surveys.values()),
-            returns=any(item["command"] == qgc.NAV_RETURN_TO_LAUNCH for _, item, _ in commands),
-            lands_at=landings[-1] if landings else None,
-            fences=self._fences(data.get("geoFence", {})),
+            kind=vehicle.kind,
+            speed_mps=self._speed(mission, vehicle, flight),
+            flight=flight,
+            surveys=tuple(surveys),
+            fences=read_fences(self._fields, data.get("geoFence", {}), self._home),
+            notes=self._notes(mission, vehicle, flight),
+            document=self._document,
         )
 
-    def without_boundary(self) -> MissionError:
-        """The error for a fence with no boundary, several, or another than the other files have."""
-        expected = "one polygon with inclusion, the same in all files"
-        return MissionError(
-            [Finding(str(self._file), None, "geoFence.polygons", "not the mission's boundary", expected)]
-        )
-
-    def _fences(self, data: object) -> Fences:
-        if not isinstance(data, dict):
-            raise self._fields.refused("geoFence", data, "a mapping with polygons")
-        if data.get("circles"):
-            raise self._fields.refused("geoFence.circles", data["circles"], "none: polygons alone are read")
-        rings: dict[bool, list[tuple[Corner, ...]]] = {True: [], False: []}
-        for k, polygon in enumerate(data.get("polygons") or []):
-            at = f"geoFence.polygons[{k}]"
-            inside = polygon.get("inclusion") if isinstance(polygon, dict) else polygon
-            if not isinstance(inside, bool):
-                raise self._fields.refused(f"{at}.inclusion", inside, "true or false")
-            rings[inside].append(self._fields.corners(polygon, "polygon", f"{at}.polygon"))
-        return Fences(tuple(rings[True]), tuple(rings[False]))
-
-    def _json(self) -> dict[str, Any]:
+    def _json(self) -> Tracked:
+        text = read_text(self._file)
+        require_moderate_json(text, str(self._file))
         try:
-            data = json.loads(read_text(self._file))
+            data = parse_tracked(text)
         except json.JSONDecodeError as error:
             finding = Finding(str(self._file), error.lineno, "", error.msg, "a QGroundControl plan in JSON")
             raise MissionError([finding]) from None
         except (RecursionError, ValueError) as error:
             raise self._fields.refused("", str(error), "a QGroundControl plan in JSON") from None
-        if not isinstance(data, dict):
+        if not isinstance(data, Tracked):
             raise self._fields.refused("", data, "a mapping with fileType, mission and version")
         return data
 
+    def _vehicle(self, mission: Tracked) -> Vehicle:
+        number = mission.get("vehicleType", qgc.QUADROTOR)
+        if isinstance(number, bool) or not isinstance(number, int) or number not in VEHICLES:
+            raise self._fields.refused_as("mission.vehicleType", told_vehicle(number), EXPECTED)
+        return VEHICLES[number]
+
+    def _notes(self, mission: Tracked, vehicle: Vehicle, flight: Flight) -> tuple[str, ...]:
+        found = [] if "vehicleType" in mission else ["vehicleType is missing: taken for a copter"]
+        found += [vehicle.note] if vehicle.note else []
+        speeds = sorted({*flight.speeds})
+        if len(speeds) > 1:
+            found.append(
+                f"the slowest of its speeds is taken, {speeds[0]:g} m/s of {', '.join(f'{s:g}' for s in speeds)}"
+            )
+        return tuple(f"{self._file}: {note}" for note in found)
+
     def _survey(self, k: int, item: Any) -> Survey | None:
         """The survey that an item is; None for any other."""
-        if not isinstance(item, dict) or item.get("complexItemType") != "survey":
+        if not isinstance(item, Tracked) or item.get("complexItemType") != "survey":
             return None
-        return read_survey(self._fields, item, f"mission.items[{k}]", k + 1)
+        item.label = "survey"
+        item.get("type")
+        found = read_survey(self._fields, item, f"mission.items[{k}]", k + 1)
+        for corner in found.corners:
+            require_near(self._fields, corner, self._home, f"mission.items[{k}].polygon")
+        return found
 
-    def _commands(self, items: Sequence[tuple[int, Any]]) -> Iterator[tuple[int, dict[str, Any], str]]:
-        """The items with a position: index, item, and place in the file."""
-        for k, item in items:
-            at = f"mission.items[{k}]"
-            if not isinstance(item, dict) or item.get("type") != "SimpleItem":
-                kind = item.get("complexItemType", item.get("type")) if isinstance(item, dict) else item
-                expected = '"SimpleItem", or a survey: scans and landing patterns are not read'
-                raise self._fields.refused(f"{at}.type", kind, expected)
-            command = item.get("command")
-            if not isinstance(command, int) or isinstance(command, bool):
-                raise self._fields.refused(f"{at}.command", command, "a number of MAV_CMD")
-            if command in _READ:
-                yield k, item, at
-            elif command <= qgc.NAV_LAST:
-                expected = f"one of {', '.join(map(str, _READ))}, or no navigation"
-                raise self._fields.refused(f"{at}.command", command, expected)
-
-    def _spot(self, item: dict[str, Any], at: str) -> Degrees:
-        frame = item.get("frame")
-        if frame not in _FRAMES:
-            raise self._fields.refused(f"{at}.frame", frame, f"one of {', '.join(map(str, sorted(_FRAMES)))}")
-        lat, lon, height = self._fields.place(self._params(item, at)[4:], f"{at}.params[4:]")
-        return (lat, lon, self._home[2] + height) if frame in _RELATIVE else (lat, lon, height)
-
-    def _hold(self, item: dict[str, Any], at: str) -> float:
-        hold = self._params(item, at)[0]
-        if hold is None:
-            return 0.0
-        if not is_number(hold) or hold < 0:
-            raise self._fields.refused(f"{at}.params[0]", hold, "seconds of at least 0")
-        return float(hold)
-
-    def _params(self, item: dict[str, Any], at: str) -> list[Any]:
-        params = item.get("params")
-        if not isinstance(params, list) or len(params) != 7:
+    def _command(self, k: int, item: Any) -> Command:
+        at = f"mission.items[{k}]"
+        if not isinstance(item, Tracked) or item.get("type") != "SimpleItem":
+            kind = item.get("complexItemType", item.get("type")) if isinstance(item, Tracked) else item
+            expected = '"SimpleItem", or a survey: scans and landing patterns are not read'
+            raise self._fields.refused(f"{at}.type", kind, expected)
+        number, params, sequence = item.get("command"), item.get("params"), item.get("doJumpId")
+        if not isinstance(number, int) or isinstance(number, bool):
+            raise self._fields.refused(f"{at}.command", number, "a number of MAV_CMD")
+        names = {j: f"{at}.params[{j}]" for j in range(7)}
+        others = {key: f"{at}.{key}" for key in ("command", "frame")}
+        command = Command(
+            self._fields,
+            k + 1,
+            sequence if isinstance(sequence, int) else None,
+            number,
+            item.get("frame"),
+            params if isinstance(params, list) else (),
+            names | others | {"place": f"{at}.params[4:]"},
+        )
+        if len(command.params) != 7:
             raise self._fields.refused(f"{at}.params", params, "a list of 7")
-        return params
+        if item.get("autoContinue", True) is not True:
+            raise self._fields.refused(f"{at}.autoContinue", item["autoContinue"], "true: no wait for a pilot")
+        item.label = name_of(number)
+        item.say(_TWICE, "Altitude", "AltitudeMode", "AMSLAltAboveTerrain")
+        self._document.commands[id(item)] = command
+        return command
 
-    def _speed(self, mission: dict[str, Any], items: Sequence[dict[str, Any]]) -> float:
-        """The first speed that an item sets, else that of the plan."""
-        for k, item in enumerate(items):
-            if item.get("command") == qgc.DO_CHANGE_SPEED:
-                speed = self._params(item, f"mission.items[{k}]")[1]
-                if is_number(speed) and speed > 0:
-                    return float(speed)
-        return self._fields.positive(mission, "hoverSpeed", "metres a second above 0", "mission.hoverSpeed")
+    def _speed(self, mission: Tracked, vehicle: Vehicle, flight: Flight) -> float:
+        """The slowest speed of a flight: of those that items set, and that of the plan where none is set at first."""
+        speeds = list(flight.speeds)
+        if flight.late or not speeds:
+            expected = "metres a second above 0"
+            speeds += [self._fields.positive(mission, key, expected, f"mission.{key}") for key in vehicle.speeds]
+        else:
+            mission.say(passed_over("is not read, as the first command sets a speed", minor=True), *vehicle.speeds)
+        others = [key for key in ("hoverSpeed", "cruiseSpeed") if key not in vehicle.speeds]
+        mission.say(passed_over("is the speed of another kind of vehicle", minor=True), *others)
+        return min(speeds)

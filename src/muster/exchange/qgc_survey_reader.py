@@ -12,12 +12,21 @@ from typing import Any
 
 from muster.exchange import qgc_format as qgc
 from muster.exchange.qgc_fields import PlanFields, is_number
+from muster.exchange.tracked_json import Tracked
+from muster.mission.import_ledger import passed_over
 from muster.mission.place_types import Corners
 from muster.mission.robots import MOST_PIXELS
 
 _LENS_KEYS = ("SensorWidth", "SensorHeight", "FocalLength", "ImageWidth", "ImageHeight")
 _LEAST_CORNERS = Corners().minimum
 _LEFT_OUT = {"Refly90Degrees": "a second survey for the lanes across", "FollowTerrain": "heights above home"}
+
+_OF_LANES = (
+    *("Items", "CameraShots", "TurnAroundDistance", "CameraTriggerInTurnAround", "HoverAndCapture"),
+    *("entryLocation", "flyAlternateTransects", "splitConcavePolygons", "AdjustedFootprintFrontal", "CameraName"),
+    *("FixedOrientation", "ImageDensity", "MinTriggerInterval", "ValueSetIsDistance"),
+)
+_PLANNED = passed_over("is how QGroundControl flies the lanes: Muster plans them anew", minor=True)
 
 
 @dataclass(frozen=True)
@@ -64,7 +73,7 @@ class Survey:
         return {"name": "coverage", "area": area, "height_m": self.height_m, "heading_deg": self.heading_deg} | seen
 
 
-def read_survey(fields: PlanFields, item: dict[str, Any], at: str, number: int) -> Survey:
+def read_survey(fields: PlanFields, item: Tracked, at: str, number: int) -> Survey:
     """The survey of a complex item.
 
     Raises
@@ -73,12 +82,15 @@ def read_survey(fields: PlanFields, item: dict[str, Any], at: str, number: int) 
         if a field is wrong, or says what an area to cover cannot: lanes both ways, heights above the terrain.
     """
     at_inner = f"{at}.TransectStyleComplexItem"
-    inner = fields.of(item, "TransectStyleComplexItem", dict, "a mapping", at_inner)
+    inner = fields.of(item, "TransectStyleComplexItem", Tracked, "a mapping", at_inner)
+    fields.require_version(item, at, 3, 4, 5)
+    fields.require_version(inner, at_inner, 1, 2)
     for key, instead in _LEFT_OUT.items():
         if inner.get(key):
             raise fields.refused(f"{at_inner}.{key}", inner[key], f"false, and {instead}")
     at_calc = f"{at_inner}.CameraCalc"
-    calc = fields.of(inner, "CameraCalc", dict, "a mapping", at_calc)
+    calc = fields.of(inner, "CameraCalc", Tracked, "a mapping", at_calc)
+    fields.require_version(calc, at_calc, 1, 2)
     flown = fields.corners(inner, "VisualTransectPoints", f"{at_inner}.VisualTransectPoints")
     if calc.get("DistanceMode", qgc.RELATIVE_TO_HOME) != qgc.RELATIVE_TO_HOME:
         raise fields.refused(f"{at_calc}.DistanceMode", calc["DistanceMode"], "1: heights above home")
@@ -88,6 +100,8 @@ def read_survey(fields: PlanFields, item: dict[str, Any], at: str, number: int) 
     corners = fields.corners(item, "polygon", f"{at}.polygon")
     if len(corners) < _LEAST_CORNERS:
         raise fields.refused(f"{at}.polygon", item["polygon"], f"at least {_LEAST_CORNERS} corners")
+    for part in (item, inner, calc):
+        part.say(_PLANNED, *_OF_LANES)
     return Survey(
         number=number,
         corners=corners,

@@ -39,6 +39,8 @@ class Customer:
     pickup: str = NONE
     delivery: str = NONE
     lines: Mapping[str, int] = field(default_factory=dict)
+    only: tuple[str, ...] | None = None
+    """The robots that may serve it; None where all may."""
 
     def wrong(self, file: str, name: str, value: float | str, expected: str) -> Finding:
         """What to say of a value that is wrong."""
@@ -48,7 +50,10 @@ class Customer:
 
 @dataclass(frozen=True, kw_only=True)
 class Instance:
-    """One depot, customers, and equal vehicles; `robot` and `mission` hold further keys."""
+    """A depot, customers, and vehicles; `robot` and `mission` hold further keys.
+
+    Vehicles are equal, unless `own` has the keys of each in which it differs. `depots` are those beside the first.
+    """
 
     path: FilePath
     name: str
@@ -59,6 +64,8 @@ class Instance:
     robot: Mapping[str, Any] = field(default_factory=dict)
     mission: Mapping[str, Any] = field(default_factory=dict)
     tables: Mapping[str, TravelTable] = field(default_factory=dict)
+    own: Sequence[Mapping[str, Any]] = ()
+    depots: Sequence[Customer] = ()
 
 
 def instance_mission(instance: Instance) -> Mission:
@@ -80,7 +87,8 @@ def instance_mission(instance: Instance) -> Mission:
         start["available_from_s"], start["available_until_s"] = depot.window
     data: dict[str, Any] = {"schema": SCHEMA, "name": f"{instance.name}-{instance.vehicles}", **instance.mission}
     data["rules"] = {"objective": "total", "return_to_start": True, **instance.mission.get("rules", {})}
-    data["robots"] = [{"id": name, **start} for name in robot_ids(instance.vehicles)]
+    own = instance.own or [{}] * instance.vehicles
+    data["robots"] = [{"id": name, **start, **of} for name, of in zip(robot_ids(instance.vehicles), own, strict=True)]
     data["tasks"] = [_task(customer) for customer in customers]
     places: dict[Path, Place] = {("tasks", k): (file, customer.line) for k, customer in enumerate(customers)}
     places[("robots",)] = (file, depot.line)
@@ -125,6 +133,8 @@ def _task(customer: Customer) -> dict[str, Any]:
         task["duration_s"] = customer.service
     if customer.window is not None:
         task["window_s"] = list(customer.window)
+    if customer.only is not None:
+        task["only_robots"] = list(customer.only)
     if customer.pickup != NONE:
         task["delivers"] = customer.pickup
     elif customer.demand:
@@ -134,13 +144,16 @@ def _task(customer: Customer) -> dict[str, Any]:
 
 def _wrong_customers(instance: Instance) -> Iterator[Finding]:
     file, first = str(instance.path), dict[str, Customer]()
-    for one in (instance.depot, *instance.customers):
+    depots = (instance.depot, *instance.depots)
+    for one in (*depots, *instance.customers):
         if one.id in first:
             yield one.wrong(file, "number", one.id, "a number of its own")
         first.setdefault(one.id, one)
-    for one in (instance.depot, *instance.customers):
+    for one in (*depots, *instance.customers):
         yield from _wrong_times(file, one)
-        if one is instance.depot:
+        if one.only == ():
+            yield one.wrong(file, "allowed clients", f"no vehicle for customer {one.id}", "at least one")
+        if any(one is depot for depot in depots):
             if one.demand:
                 yield one.wrong(file, DEMAND, one.demand, "0: this is the depot")
         elif one.pickup == NONE:

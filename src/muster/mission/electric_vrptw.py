@@ -14,6 +14,7 @@ from typing import Any
 
 from muster.mission.customer_missions import Customer, Instance, fleet, instance_mission
 from muster.mission.errors import Finding, MissionError
+from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
 from muster.mission.number_rows import Row, read_row, row_numbers, text_rows
 from muster.mission.text_files import read_text
@@ -37,7 +38,7 @@ def looks_like_electric_vrptw(rows: Sequence[Row]) -> bool:
     return bool(rows) and rows[0].words[:2] == ["StringID", "Type"]
 
 
-def read_electric_vrptw(path: FilePath, salesmen: int | None = None) -> Mission:
+def read_electric_vrptw(path: FilePath, salesmen: int | None = None, fates: LineFates | None = None) -> Mission:
     """Read an instance with `salesmen` robots, or as many as it has customers.
 
     Raises
@@ -45,7 +46,10 @@ def read_electric_vrptw(path: FilePath, salesmen: int | None = None) -> Mission:
     MissionError
         with file, line, field, value, what was expected.
     """
-    rows = text_rows(read_text(path))[1:]
+    head, *rows = text_rows(read_text(path))
+    fates = fates or LineFates()
+    fates.read("columns", [head])
+    fates.read("line", rows)
     figures = _figures(path, [row for row in rows if row.words[0] in _FIGURES])
     places = _places(path, [row for row in rows if row.words[0] not in _FIGURES])
     if len(places[_DEPOT]) != 1:

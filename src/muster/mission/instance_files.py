@@ -6,22 +6,28 @@ import re
 from collections.abc import Callable, Sequence
 from pathlib import Path as FilePath
 
+from muster.mission.cordeau import looks_like_cordeau, read_cordeau
 from muster.mission.electric_vrptw import looks_like_electric_vrptw, read_electric_vrptw
 from muster.mission.li_lim import looks_like_li_lim, read_li_lim
+from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
 from muster.mission.number_rows import Row, text_rows
 from muster.mission.solomon import looks_like_solomon, read_solomon
 from muster.mission.vrplib import TYPES, read_vrplib
 
-VehicleReader = Callable[[FilePath, int | None], Mission]
-"""Reads an instance file with so many robots, or with as many as the file says."""
+VehicleReader = Callable[[FilePath, int | None, LineFates | None], Mission]
+"""Reads an instance file with so many robots, or with as many as the file says; tells what becomes of its lines."""
 
 TSPLIB = "TSPLIB"
 """In place of a reader: a file of TSPLIB, which has no robots of its own."""
 
+WAY_POINTS = "QGC WPL"
+"""In place of a reader: way points as text, which are read elsewhere."""
+
 _LAYOUTS: tuple[tuple[Callable[[Sequence[Row]], bool], VehicleReader], ...] = (
     (looks_like_electric_vrptw, read_electric_vrptw),
     (looks_like_li_lim, read_li_lim),
+    (looks_like_cordeau, read_cordeau),
     (looks_like_solomon, read_solomon),
 )
 _OTHER_FORMS = (".yaml", ".yml", ".csv", ".plan", ".json")
@@ -30,11 +36,13 @@ _FIRST_BYTES = 8192
 
 
 def instance_form(path: FilePath) -> VehicleReader | str | None:
-    """The reader of a file, or TSPLIB; None for a file of another form. What decides are its first lines."""
+    """The reader of a file, TSPLIB or WAY_POINTS; None for a file of another form. What decides are its first lines."""
     suffix = path.suffix.lower()
     if suffix in _OTHER_FORMS or not path.is_file():
         return TSPLIB if suffix in (".tsp", ".atsp") else None
     text = _first_lines(path)
+    if text.startswith(WAY_POINTS) or suffix in (".waypoints", ".wpl"):
+        return WAY_POINTS
     kind = _TYPE.search(text)
     if suffix == ".vrp" or (kind is not None and kind[1] in TYPES):
         return read_vrplib

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 
 from muster.mission.errors import Finding, MissionError
+from muster.mission.import_ledger import passed_over
+from muster.mission.line_fates import LineFates
 from muster.mission.number_rows import Row, row_numbers
 from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 
 _END = "_SECTION"
+_REMARK = "#"
+_TEXTS = ("COMMENT", "NAME")
+"""Keywords that say nothing of the mission, and may stand several times."""
+_A_TEXT, _AT_END = passed_over("is a text for people", minor=True), passed_over("stands after EOF")
+_UNREAD = passed_over("is not read")
 _FIRST_BYTES = 8192
 
 
@@ -25,10 +32,23 @@ class KeywordFile:
     sections: Mapping[str, list[Row]]
     titles: Mapping[str, int]
     """The line of each section's title."""
+    fates: LineFates = field(default_factory=LineFates, compare=False)
 
     def value(self, keyword: str) -> str | None:
-        """The value of a keyword of the head; None where it is absent."""
-        return self.head[keyword][1] if keyword in self.head else None
+        """The value of a keyword of the head, which is marked as read; None where it is absent."""
+        if keyword not in self.head:
+            return None
+        line, value = self.head[keyword]
+        self.fates.say(line, keyword)
+        return value
+
+    def rows(self, title: str) -> list[Row]:
+        """The rows of a section, which are marked as read; none where it is absent."""
+        if title not in self.sections:
+            return []
+        self.fates.say(self.titles[title], title)
+        self.fates.read(title, self.sections[title])
+        return self.sections[title]
 
     def line(self, keyword: str) -> int | None:
         """The line of a keyword or of a section's title."""
@@ -49,6 +69,7 @@ class KeywordFile:
         if keyword not in self.head:
             return None
         line, text = self.head[keyword]
+        self.fates.say(line, keyword)
         value = row_numbers([text])
         if value is None or not value[0] > above:
             raise MissionError(
@@ -80,8 +101,8 @@ def is_keyword_file(path: FilePath) -> bool:
         return False
 
 
-def read_keyword_file(path: FilePath, what: str = "TSPLIB") -> KeywordFile:
-    """Read the head and the sections of a file.
+def read_keyword_file(path: FilePath, what: str = "TSPLIB", fates: LineFates | None = None) -> KeywordFile:
+    """Read the head and the sections of a file; `fates` takes what becomes of its lines.
 
     Raises
     ------
@@ -92,26 +113,42 @@ def read_keyword_file(path: FilePath, what: str = "TSPLIB") -> KeywordFile:
     sections: dict[str, list[Row]] = {}
     titles: dict[str, int] = {}
     rows: list[Row] | None = None
+    title_of_rows = ""
+    fates, ended = fates or LineFates(), False
     for line, text in enumerate(read_text(path).splitlines(), 1):
         words = text.split()
-        if not words or words == ["EOF"]:
+        if not words:
+            continue
+        if ended or words[0].startswith(_REMARK):
+            fates.say(line, "line" if ended else "remark", _AT_END if ended else _A_TEXT)
+            continue
+        if words == ["EOF"]:
+            ended = True
+            fates.say(line, "EOF")
             continue
         title = text.strip().rstrip(" :").upper()
         if title.endswith(_END) and len(title.split()) == 1:
             if title in titles:
                 raise _refusal(path, line, title, "for the second time", "each section once")
             titles[title] = line
+            title_of_rows = title
+            fates.say(line, title, _UNREAD)
             rows = sections[title] = []
         elif ":" in text:
-            keyword, _, value = text.partition(":")
-            head[keyword.strip().upper()] = (line, value.strip())
+            name, _, value = text.partition(":")
+            keyword = name.strip().upper()
+            if keyword in head and keyword not in _TEXTS:
+                raise _refusal(path, line, keyword, "for the second time", "each keyword once")
+            fates.say(line, keyword, _A_TEXT if keyword in _TEXTS else _UNREAD)
+            head.setdefault(keyword, (line, value.strip()))
         elif rows is not None and (words[0][0].isdigit() or words[0][0] in "+-."):
             rows.append(Row(line, words))
+            fates.say(line, title_of_rows, _UNREAD)
         elif rows is None and words[0].isdigit():
             raise _refusal(path, line, "NODE_COORD_SECTION", "missing", "this line before the first node")
         else:
             raise _refusal(path, line, "", shown(text.strip()), f"{what}: KEYWORD : value, or a node")
-    return KeywordFile(path, head, sections, titles)
+    return KeywordFile(path, head, sections, titles, fates)
 
 
 def _refusal(path: FilePath, line: int, field: str, value: str, expected: str) -> MissionError:

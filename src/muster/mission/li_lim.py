@@ -10,8 +10,9 @@ from pathlib import Path as FilePath
 
 from muster.mission.customer_missions import Customer, Instance, fleet, instance_mission
 from muster.mission.errors import Finding, MissionError
+from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.number_rows import Row, is_whole, read_row, row_numbers, text_rows
+from muster.mission.number_rows import Row, is_whole, node_number, read_row, row_numbers, text_rows
 from muster.mission.text_files import read_text
 
 _HEAD = ("number of vehicles", "capacity", "speed")
@@ -24,7 +25,7 @@ def looks_like_li_lim(rows: Sequence[Row]) -> bool:
     return sizes == [len(_HEAD), len(_COLUMNS)] and all(row_numbers(row.words) is not None for row in rows[:1])
 
 
-def read_li_lim(path: FilePath, salesmen: int | None = None) -> Mission:
+def read_li_lim(path: FilePath, salesmen: int | None = None, fates: LineFates | None = None) -> Mission:
     """Read an instance with as many robots as it has vehicles, or `salesmen`.
 
     Raises
@@ -33,6 +34,9 @@ def read_li_lim(path: FilePath, salesmen: int | None = None) -> Mission:
         with file, line, field, value, what was expected.
     """
     head, *table = text_rows(read_text(path))
+    fates = fates or LineFates()
+    fates.read("vehicles", [head])
+    fates.read("customer", table)
     vehicles, capacity, speed = read_row(path, head, _HEAD)
     for name, value in (("capacity", capacity), ("speed", speed)):
         if value <= 0:
@@ -53,7 +57,7 @@ def read_li_lim(path: FilePath, salesmen: int | None = None) -> Mission:
 
 def _customer(path: FilePath, row: Row) -> Customer:
     _, x, y, demand, ready, due, service, _, _ = read_row(path, row, _COLUMNS)
-    number, pickup, delivery = row.words[0], *row.words[-2:]
+    number, pickup, delivery = map(node_number, (row.words[0], *row.words[-2:]))
     for name, word in (("customer", number), ("pickup", pickup), ("delivery", delivery)):
         if not is_whole(word):
             raise MissionError([Finding(str(path), row.line, name, word, "the number of a customer, or 0")])

@@ -45,6 +45,11 @@ def text_rows(text: str) -> list[Row]:
     return [Row(line, words) for line, words in ((k, t.split()) for k, t in enumerate(text.splitlines(), 1)) if words]
 
 
+def node_number(word: str) -> str:
+    """The number of a node as other lines may name it: without zeros before it; any other word as it is."""
+    return str(int(word)) if is_whole(word) else word
+
+
 def is_whole(word: str) -> bool:
     """Whether a word is a whole number of at least 0, in digits."""
     return word.isascii() and word.isdigit() and len(word) < 16

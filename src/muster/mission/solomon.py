@@ -7,8 +7,9 @@ from pathlib import Path as FilePath
 
 from muster.mission.customer_missions import Customer, Instance, fleet, instance_mission
 from muster.mission.errors import Finding, MissionError
+from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.number_rows import Row, is_whole, read_row, text_rows
+from muster.mission.number_rows import Row, is_whole, node_number, read_row, text_rows
 from muster.mission.text_files import read_text
 
 _COLUMNS = ("customer", "x", "y", "demand", "ready time", "due date", "service time")
@@ -20,7 +21,7 @@ def looks_like_solomon(rows: Sequence[Row]) -> bool:
     return any(_is_title(row, *_TITLES) for row in rows[:8])
 
 
-def read_solomon(path: FilePath, salesmen: int | None = None) -> Mission:
+def read_solomon(path: FilePath, salesmen: int | None = None, fates: LineFates | None = None) -> Mission:
     """Read an instance with as many robots as it has vehicles, or `salesmen`.
 
     Raises
@@ -29,14 +30,21 @@ def read_solomon(path: FilePath, salesmen: int | None = None) -> Mission:
         with file, line, field, value, what was expected.
     """
     rows = text_rows(read_text(path))
+    fates = fates or LineFates()
+    fates.read("title", [row for row in rows if _is_title(row, *_TITLES)])
+    fates.read("name", rows[:1])
     name = path.stem if not rows or _is_title(rows[0], *_TITLES) else " ".join(rows[0].words)
     number = _after(path, rows, "VEHICLE", "a line with the number of vehicles and their capacity")[:1]
     if not number:
         raise MissionError([Finding(str(path), None, "VEHICLE", "no numbers", "number of vehicles, capacity")])
+    fates.read("vehicles", number)
     vehicles, capacity = read_row(path, number[0], ("number of vehicles", "capacity"), "VEHICLE")
     if capacity <= 0:
         raise MissionError([Finding(str(path), number[0].line, "CAPACITY", f"{capacity:g}", "a number above 0")])
     table = _after(path, rows, "CUSTOMER", f"lines of {', '.join(_COLUMNS)}")
+    fates.read("customer", table)
+    after_titles = [row for k, row in enumerate(rows) if k and _is_title(rows[k - 1], *_TITLES)]
+    fates.read("columns", [row for row in after_titles if row not in (*table, *number)])
     customers = [_customer(path, row) for row in table]
     if not customers:
         raise MissionError([Finding(str(path), None, "CUSTOMER", "no customers", f"lines of {', '.join(_COLUMNS)}")])
@@ -72,4 +80,4 @@ def _customer(path: FilePath, row: Row) -> Customer:
     _, x, y, demand, ready, due, service = read_row(path, row, _COLUMNS, "CUSTOMER")
     if not is_whole(row.words[0]):
         raise MissionError([Finding(str(path), row.line, "CUSTOMER", row.words[0], "the number of a customer")])
-    return Customer(row.line, row.words[0], (x, y), demand, (ready, due), service)
+    return Customer(row.line, node_number(row.words[0]), (x, y), demand, (ready, due), service)

@@ -6,17 +6,31 @@ from pathlib import Path
 
 from muster.mission.errors import Finding, MissionError
 
+LARGEST_FILE = 32 * 2**20
+"""Bytes of an input file, and of all files that are uploaded with one mission."""
+
 
 def read_text(path: Path) -> str:
     """The text of an input file; what stands in the way is a MissionError, not an OSError."""
+    data = bytes_of(path)
     try:
-        data = path.read_bytes()
         return data.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         line = 1 + data.count(b"\n", 0, error.start)
         raise MissionError(
             [Finding(str(path), line, "", f"byte {error.start} is not UTF-8", "a text in UTF-8")]
         ) from None
+
+
+def bytes_of(path: Path) -> bytes:
+    """The bytes of an input file of bounded size; what stands in the way is a MissionError."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+        if len(data) <= LARGEST_FILE:
+            return data
+        told, most = f"more than {LARGEST_FILE // 2**20} MiB", f"at most {LARGEST_FILE // 2**20} MiB"
+        raise MissionError([Finding(str(path), None, "", told, most)])
     except OSError as error:
         raise MissionError([Finding(str(path), None, "", error.strerror or str(error), "a file to read")]) from None
     except ValueError as error:

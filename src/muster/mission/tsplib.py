@@ -13,7 +13,9 @@ from typing import Any
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.keyword_files import KeywordFile, read_keyword_file
+from muster.mission.line_fates import LineFates
 from muster.mission.model import SCHEMA, Mission
+from muster.mission.number_rows import node_number
 from muster.mission.site import TravelTable
 from muster.mission.source import Place, Source
 from muster.mission.value_types import Path, shown
@@ -25,7 +27,7 @@ TABLED_TYPE = "vehicle"
 _TYPES = ("TSP", "ATSP")
 
 
-def read_tsplib(path: FilePath, salesmen: int, depot: str = "1") -> Mission:
+def read_tsplib(path: FilePath, salesmen: int, depot: str = "1", fates: LineFates | None = None) -> Mission:
     """Read a TSPLIB instance as a mission of `salesmen` robots `r_0`, `r_1`, ... that start and end at `depot`.
 
     Raises
@@ -33,7 +35,7 @@ def read_tsplib(path: FilePath, salesmen: int, depot: str = "1") -> Mission:
     MissionError
         with every finding: file, line, field, value, what was expected.
     """
-    file = read_keyword_file(path)
+    file, depot = read_keyword_file(path, fates=fates), node_number(depot)
     found = [] if file.value("TYPE") in _TYPES else [file.wrong("TYPE", " or ".join(_TYPES))]
     graph: WeightedNodes | None = None
     try:

@@ -6,6 +6,8 @@ where times or a longest distance are given: published plans of such instances a
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -23,22 +25,24 @@ from muster.mission.customer_missions import (
 )
 from muster.mission.errors import Finding, MissionError
 from muster.mission.keyword_files import KeywordFile, read_keyword_file
+from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.number_rows import is_whole, read_row
+from muster.mission.number_rows import Row, is_whole, node_number, read_row
 from muster.mission.tsplib import tabled
 from muster.mission.value_types import shown
+from muster.mission.vrplib_fleet import FLEET_SECTIONS, NEEDED, OwnVehicle, own_vehicles, robots_for
 from muster.mission.weighted_nodes import NODE_SECTIONS, WeightedNodes, weighted_nodes
 
-TYPES = ("CVRP", "VRP", "DCVRP", "DVRP", "VRPTW", "CVRPTW", "PDPTW")
+TYPES = ("CVRP", "VRP", "DCVRP", "DVRP", "VRPTW", "CVRPTW", "PDPTW", "MDVRP", "MDCVRP", "MDVRPTW", *NEEDED)
 _DEMAND, _DEPOT = "DEMAND_SECTION", "DEPOT_SECTION"
 _WINDOW, _SERVICE, _PAIRS = "TIME_WINDOW_SECTION", "SERVICE_TIME_SECTION", "PICKUP_AND_DELIVERY_SECTION"
-_SECTIONS = (*NODE_SECTIONS, _DEMAND, _DEPOT, _WINDOW, _SERVICE, _PAIRS)
+_SECTIONS = (*NODE_SECTIONS, _DEMAND, _DEPOT, _WINDOW, _SERVICE, _PAIRS, *FLEET_SECTIONS)
 _FIELDS = {DEMAND: _DEMAND, READY: _WINDOW, DUE: _WINDOW, SERVICE: _SERVICE}
 """The sections that tell of a customer's demand and times."""
 _PAIR = ("number", "demand", "earliest", "latest", "service time", "pickup", "delivery")
 
 
-def read_vrplib(path: FilePath, salesmen: int | None = None) -> Mission:
+def read_vrplib(path: FilePath, salesmen: int | None = None, fates: LineFates | None = None) -> Mission:
     """Read an instance with `salesmen` robots, or VEHICLES of the file; without both with `enough_vehicles`.
 
     Raises
@@ -46,62 +50,103 @@ def read_vrplib(path: FilePath, salesmen: int | None = None) -> Mission:
     MissionError
         with file, line, field, value, what was expected.
     """
-    file = read_keyword_file(path, "VRPLIB")
+    file = read_keyword_file(path, "VRPLIB", fates)
     if file.value("TYPE") not in TYPES:
         raise MissionError([file.wrong("TYPE", " or ".join(TYPES))])
     file.require_known_sections(_SECTIONS)
     limit = file.number("DISTANCE")
     timed = any(name in file.sections for name in (_WINDOW, _SERVICE, _PAIRS)) or "SERVICE_TIME" in file.head
-    graph = weighted_nodes(file, exact=timed or limit is not None)
-    everyone = _customers(file, graph)
-    depot = everyone[_depot(file, graph)]
-    customers = [customer for customer in everyone.values() if customer is not depot]
-    capacity = file.number("CAPACITY")
-    if capacity is None and any(customer.demand for customer in customers):
-        raise MissionError([file.wrong("CAPACITY", "what a vehicle carries")])
     in_file = file.number("VEHICLES")
-    count = enough_vehicles(customers, capacity) if in_file is None else in_file
-    vehicles = fleet(path, file.line("VEHICLES"), "VEHICLES", count, salesmen)
-    kind, travel, tables = tabled(file, graph, robot_ids(vehicles), depot.id)
+    own = own_vehicles(file, None if in_file is None else fleet(path, file.line("VEHICLES"), "VEHICLES", in_file, None))
+    graph = weighted_nodes(file, exact=timed or limit is not None or bool(own))
+    depots = _depots(file, graph, own)
+    everyone = _customers(file, graph, depots)
+    customers = [customer for name, customer in everyone.items() if name not in depots]
+    capacity = None if any(vehicle.capacity for vehicle in own) else file.number("CAPACITY")
+    if capacity is None and any(customer.demand for customer in customers) and not any(v.capacity for v in own):
+        raise MissionError([file.wrong("CAPACITY", "what a vehicle carries")])
+    if own and salesmen is not None and salesmen != len(own):
+        told = f"{len(own)}, as each vehicle of the file has values of its own"
+        raise MissionError([Finding(str(path), None, "salesmen", str(salesmen), told)])
+    count: float = enough_vehicles(customers, capacity) if in_file is None else in_file
+    vehicles = fleet(path, file.line("VEHICLES"), "VEHICLES", len(own) or count, salesmen)
+    robots = robot_ids(vehicles)
+    if own:
+        customers = [replace(one, only=robots_for(one.id, own, robots)) for one in customers]
+    kind, travel, tables = tabled(file, graph, robots, depots[0])
+    timed_customers = any(customer.window is not None for customer in customers)
     return instance_mission(
         Instance(
             path=path,
             name=file.value("NAME") or path.stem,
-            depot=depot,
+            depot=everyone[depots[0]],
             customers=customers,
             vehicles=vehicles,
             capacity=capacity,
-            robot=kind | _limits(limit, customers),
+            robot=kind | _limits(limit, timed=timed_customers),
             mission=travel,
             tables=tables,
+            own=[_robot(file, vehicle, everyone, timed=timed_customers) for vehicle in own],
+            depots=[everyone[name] for name in depots[1:]],
         )
     )
 
 
-def _limits(limit: float | None, customers: list[Customer]) -> dict[str, Any]:
+def _limits(limit: float | None, *, timed: bool) -> dict[str, Any]:
     """DISTANCE as a limit of robots: the service on the way counts [christofides1979], waiting does not."""
     if limit is None:
         return {}
-    if any(customer.window is not None for customer in customers):
-        return {"work_capacity": limit}
-    return {"available_until_s": limit}
+    return {"work_capacity": limit} if timed else {"available_until_s": limit}
 
 
-def _depot(file: KeywordFile, graph: WeightedNodes) -> str:
-    """The number of the depot's node; the first one where the file names none."""
-    rows = [row for row in file.sections.get(_DEPOT, ()) if row.words != ["-1"]]
+def _robot(file: KeywordFile, vehicle: OwnVehicle, everyone: Mapping[str, Customer], *, timed: bool) -> dict[str, Any]:
+    """The keys of a robot that a vehicle of its own has beside the common ones."""
+    found: dict[str, Any] = {}
+    if vehicle.depot is not None:
+        depot = everyone[vehicle.depot]
+        found["position"] = depot.position
+        if depot.window is not None:
+            found["available_from_s"], found["available_until_s"] = depot.window
+    if vehicle.capacity is not None:
+        found["load_capacity"] = vehicle.capacity
+    if vehicle.distance is not None:
+        found["work_capacity"] = vehicle.distance
+    if vehicle.duration is not None and timed:
+        section = "VEHICLES_MAX_DURATION_SECTION"
+        expected = "no longest duration beside time windows: a robot's hours are those of the clock"
+        raise MissionError([Finding(str(file.path), file.line(section), section, f"{vehicle.duration:g}", expected)])
+    if vehicle.duration is not None:
+        found["available_until_s"] = vehicle.duration
+    return found
+
+
+def _depots(file: KeywordFile, graph: WeightedNodes, own: Sequence[OwnVehicle]) -> list[str]:
+    """The numbers of the depots' nodes; the first node where the file names none."""
+    rows = [row for row in file.rows(_DEPOT) if list(row.words) != ["-1"]]
+    nodes = {node.id for node in graph.nodes}
     if not rows:
-        return graph.nodes[0].id
-    name = rows[0].words[0]
-    if len(rows) > 1 or len(rows[0].words) > 1:
-        at = rows[-1]
-        raise MissionError([Finding(str(file.path), at.line, _DEPOT, shown(" ".join(at.words)), "one depot, then -1")])
-    if name not in [node.id for node in graph.nodes]:
-        raise MissionError([Finding(str(file.path), rows[0].line, _DEPOT, shown(name), "the number of a node")])
-    return name
+        rows = [Row(0, [graph.nodes[0].id])]
+    for row in rows:
+        name = node_number(row.words[0])
+        if name not in nodes or len(row.words) > 1:
+            told = shown(" ".join(row.words))
+            raise MissionError([Finding(str(file.path), row.line, _DEPOT, told, "the number of a node")])
+    depots = [node_number(row.words[0]) for row in rows]
+    used = [vehicle.depot for vehicle in own if vehicle.depot is not None]
+    if len(depots) > 1 and not used:
+        expected = "one depot, then -1; or a VEHICLES_DEPOT_SECTION that says whose each of them is"
+        raise MissionError([Finding(str(file.path), rows[-1].line, _DEPOT, shown(depots[-1]), expected)])
+    wrong = next((name for name in used if name not in depots), None)
+    if wrong is not None:
+        at = file.line("VEHICLES_DEPOT_SECTION")
+        raise MissionError([Finding(str(file.path), at, "VEHICLES_DEPOT_SECTION", shown(wrong), "a depot of the file")])
+    if len(depots) > 1 and graph.weights is not None:
+        expected = "EUC_2D or EXACT_2D with several depots"
+        raise MissionError([file.wrong("EDGE_WEIGHT_TYPE", expected)])
+    return depots
 
 
-def _customers(file: KeywordFile, graph: WeightedNodes) -> dict[str, Customer]:
+def _customers(file: KeywordFile, graph: WeightedNodes, depots: Sequence[str]) -> dict[str, Customer]:
     """All nodes with what they ask for, by number."""
     if _PAIRS in file.sections:
         return _pairs(file, graph)
@@ -109,8 +154,7 @@ def _customers(file: KeywordFile, graph: WeightedNodes) -> dict[str, Customer]:
     windows = _by_node(file, graph, _WINDOW, ("number", "earliest", "latest"))
     services = _by_node(file, graph, _SERVICE, ("number", "service time"))
     for_all = file.number("SERVICE_TIME", above=-1e-9) or 0.0
-    depot = _depot(file, graph)
-    lines = {title: {row.words[0]: row.line for row in rows} for title, rows in file.sections.items()}
+    lines = {title: {node_number(row.words[0]): row.line for row in rows} for title, rows in file.sections.items()}
     found = {}
     for node in graph.nodes:
         window = windows.get(node.id)
@@ -120,19 +164,19 @@ def _customers(file: KeywordFile, graph: WeightedNodes) -> dict[str, Customer]:
             position=node.position,
             demand=demands[node.id][0] if _DEMAND in file.sections else 0.0,
             window=None if window is None else (window[0], window[1]),
-            service=services[node.id][0] if services else for_all if node.id != depot else 0.0,
+            service=services[node.id][0] if services else for_all if node.id not in depots else 0.0,
             lines={name: lines[section][node.id] for name, section in _FIELDS.items() if section in lines},
         )
     return found
 
 
 def _pairs(file: KeywordFile, graph: WeightedNodes) -> dict[str, Customer]:
-    rows = {row.words[0]: row for row in file.sections[_PAIRS]}
+    rows = {node_number(row.words[0]): row for row in file.rows(_PAIRS)}
     numbers = _by_node(file, graph, _PAIRS, _PAIR)
     found = {}
     for node in graph.nodes:
         values = numbers[node.id]
-        pickup, delivery = rows[node.id].words[-2:]
+        pickup, delivery = map(node_number, rows[node.id].words[-2:])
         window = values[1], values[2]
         found[node.id] = Customer(
             rows[node.id].line, node.id, node.position, values[0], window, values[3], pickup, delivery
@@ -146,9 +190,9 @@ def _by_node(file: KeywordFile, graph: WeightedNodes, section: str, columns: tup
         return {}
     ids = {node.id for node in graph.nodes}
     found: dict[str, list[float]] = {}
-    for row in file.sections[section]:
+    for row in file.rows(section):
         values = read_row(file.path, row, columns, section)
-        name = row.words[0]
+        name = node_number(row.words[0])
         if not is_whole(name) or name not in ids:
             raise MissionError([Finding(str(file.path), row.line, section, shown(name), "the number of a node")])
         if name in found:

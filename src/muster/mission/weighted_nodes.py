@@ -11,14 +11,16 @@ import numpy as np
 from muster.mission.edge_weights import COORDINATES, EXPLICIT, LAYOUTS, Floats, matrix_of, numbers_in, weights_of
 from muster.mission.errors import Finding, MissionError
 from muster.mission.keyword_files import KeywordFile
-from muster.mission.number_rows import is_whole, read_row, row_numbers
+from muster.mission.number_rows import is_whole, node_number, read_row, row_numbers
 from muster.mission.site import Point, TravelTable
 from muster.mission.value_types import shown
 
 NODE_SECTIONS = ("NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "DISPLAY_DATA_SECTION")
 _MOST_TABLED = 5_000
 _COLUMNS = ("number", "x", "y", "z")
-_TYPES = (*COORDINATES, EXPLICIT)
+_EXACT = "EXACT_2D"
+"""The distance itself, in any type of file."""
+_TYPES = (*COORDINATES, _EXACT, EXPLICIT)
 
 
 @dataclass(frozen=True)
@@ -72,9 +74,9 @@ def weighted_nodes(file: KeywordFile, *, exact: bool) -> WeightedNodes:
         raise MissionError([file.wrong("EDGE_WEIGHT_TYPE", " or ".join(_TYPES))])
     if kind == EXPLICIT:
         return _explicit(file)
-    nodes = _places(file, "NODE_COORD_SECTION", COORDINATES[kind])
+    nodes = _places(file, "NODE_COORD_SECTION", 2 if kind == _EXACT else COORDINATES[kind])
     _require_dimension(file, len(nodes))
-    if exact and kind == "EUC_2D":
+    if kind == _EXACT or (exact and kind == "EUC_2D"):
         return WeightedNodes(nodes, None)
     _require_room(file, len(nodes))
     weights = weights_of(kind, np.array([node.position for node in nodes]))
@@ -116,7 +118,7 @@ def _on_circle(angle: float, radius: float) -> Point:
 
 def _matrix_numbers(file: KeywordFile, count: int, what: str) -> Floats:
     found: list[float] = []
-    for row in file.sections["EDGE_WEIGHT_SECTION"]:
+    for row in file.rows("EDGE_WEIGHT_SECTION"):
         values = row_numbers(row.words)
         if values is None or min(values) < 0:
             wrong = next(word for word in row.words if (one := row_numbers([word])) is None or one[0] < 0)
@@ -133,8 +135,8 @@ def _places(file: KeywordFile, section: str, coordinates: int) -> list[Node]:
     columns = _COLUMNS[: coordinates + 1]
     nodes: list[Node] = []
     seen: set[str] = set()
-    for row in file.sections.get(section, ()):
-        name = row.words[0]
+    for row in file.rows(section):
+        name = node_number(row.words[0])
         values = read_row(file.path, row, columns, section)
         if not is_whole(name):
             raise MissionError([Finding(str(file.path), row.line, section, shown(name), "the number of a node")])

@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 
 from muster.mission.errors import Finding, MissionError
+from muster.mission.foreign_files import foreign_form
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
 from muster.mission.json_reader import JsonPlaces, json_data
@@ -59,6 +60,8 @@ def parse_yaml(
     `robots` gives those of a mission that names none, by the number of coordinates of a position.
     """
     data, source, faults = parse_data(text, path, "a mission: schema, robots, tasks")
+    if (foreign := foreign_form(data)) is not None:
+        raise MissionError([Finding(str(path), None, "", *foreign)])
     if robots is not None and not data.get("robots"):
         data["robots"] = list(robots(_dimensions(data.get("tasks"))))
     if "schema" not in data:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster.mission.errors import ParameterError
-from muster.planning.loading import is_site_file, load, team_of
+from muster.planning.loading import is_site_file, load_noted, team_of
 
 if TYPE_CHECKING:
     from muster.exchange.sites.site_files import SiteMission
@@ -54,7 +55,7 @@ def read_site(
 
     Returns
     -------
-    The mission, and what was read, chosen and not read.
+    The mission, and what was read, chosen and not read; `ledger` has the fate of every element of the files.
 
     Raises
     ------
@@ -85,11 +86,15 @@ def read_site(
         name=name,
         flat=flat,
     )
-    return read(
+    base = load_noted(missions[0]) if missions else None
+    found = read(
         site,
         options,
         robots=robots_file,
-        base=load(missions[0]) if missions else None,
+        base=None if base is None else base.mission,
         team=team,
         suitability=None if suitability is None else Path(suitability),
     )
+    if base is None:
+        return found
+    return replace(found, notes=(*base.notes, *found.notes), ledger=base.ledger + found.ledger)

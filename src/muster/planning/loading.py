@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from muster.library import mission_names, mission_path
 from muster.mission.errors import Finding, MissionError, ParameterError
+from muster.mission.import_ledger import Ledger, summary_lines
+from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
+
+if TYPE_CHECKING:
+    from muster.exchange.flight_missions import ReadFlights
 
 
 def load(
@@ -26,7 +32,7 @@ def load(
     Files of sites are tables (CSV, XLSX), maps (GeoJSON, KML, KMZ, GeoPackage) and tracks (GPX); `read_site` reads
     several, and says what was chosen. Instance files are those of TSPLIB and VRPLIB, of Solomon [solomon1987], Gehring
     and Homberger [gehring1999], Li and Lim [li2001], and Schneider, Stenger and Goeke [schneider2014]. They are known
-    by their first lines.
+    by their first lines, as way points in text are (`QGC WPL 110`).
 
     Parameters
     ----------
@@ -56,10 +62,20 @@ def load(
 
 @dataclass(frozen=True)
 class Noted:
-    """A mission, and what its reader has chosen or not read, one line each."""
+    """A mission, and what its reader has chosen or not read, one line each.
+
+    The ledger has the fate of every element of the files; it is empty for missions of Muster's own form, of which every
+    key is read or refused.
+    """
 
     mission: Mission
     notes: tuple[str, ...] = ()
+    ledger: Ledger = Ledger()
+
+    @property
+    def said(self) -> tuple[str, ...]:
+        """All there is to say of how the mission was read: the notes, and what of the ledger no note says."""
+        return *self.notes, *summary_lines(self.ledger)
 
 
 def load_noted(
@@ -72,7 +88,7 @@ def load_noted(
     columns: Mapping[str, str] | None = None,
 ) -> Noted:
     """Read a mission as `load` does, with what there is to say of how."""
-    from muster.mission.instance_files import TSPLIB, instance_form
+    from muster.mission.instance_files import TSPLIB, WAY_POINTS, instance_form
 
     path = _found(path_or_name)
     suffix, is_site = path.suffix.lower(), _is_site(path)
@@ -86,16 +102,22 @@ def load_noted(
         from muster.mission.thesis_csv import read_csv
 
         return Noted(read_csv(path, Path(str(robots)), None if suitability is None else Path(suitability)))
+    fates = LineFates()
     if form == TSPLIB:
         from muster.mission.tsplib import read_tsplib
 
-        return Noted(read_tsplib(path, salesmen or 0, "1" if depot is None else depot))
+        mission = read_tsplib(path, salesmen or 0, "1" if depot is None else depot, fates)
+        return Noted(mission, (), fates.ledger(path))
     if callable(form):
-        return Noted(form(path, salesmen))
-    if suffix == ".plan" or path.is_dir():
-        from muster.exchange.qgc_reader import read_plan_files
+        return Noted(form(path, salesmen, fates), (), fates.ledger(path))
+    if form == WAY_POINTS:
+        from muster.exchange.wpl_reader import read_wpl
 
-        return Noted(read_plan_files(path))
+        return _of_flights(read_wpl(path))
+    if suffix == ".plan" or path.is_dir():
+        from muster.exchange.qgc_reader import read_flight_plans
+
+        return _of_flights(read_flight_plans(path))
     if suffix not in _OTHERS and suffix not in _SUFFIXES:
         from muster.exchange.sites.readers import unknown_file
 
@@ -105,13 +127,17 @@ def load_noted(
     return Noted(read_yaml(path))
 
 
+def _of_flights(found: ReadFlights) -> Noted:
+    return Noted(found.mission, found.notes, found.ledger)
+
+
 def _site(path: Path, robots: str | Path | None, suitability: Path | None, columns: Mapping[str, str]) -> Noted:
     from muster.exchange.sites.builder import SiteOptions
     from muster.exchange.sites.site_files import read_site
 
     team, of_robots = team_of(robots)
     found = read_site([path], SiteOptions(columns=columns), robots=of_robots, team=team, suitability=suitability)
-    return Noted(found.mission, found.notes)
+    return Noted(found.mission, found.notes, found.ledger)
 
 
 def team_of(robots: str | Path | None) -> tuple[Mission | None, Path | None]:
@@ -136,10 +162,10 @@ def _is_site(path: Path) -> bool:
 
 def _kind(path: Path, robots: Path | None, form: object, *, is_site: bool) -> str:
     """What kind of file it is, as its flags are known by."""
-    from muster.mission.instance_files import TSPLIB
+    from muster.mission.instance_files import TSPLIB, WAY_POINTS
 
     if form is not None:
-        return _TSPLIB if form == TSPLIB else _VEHICLES
+        return {TSPLIB: _TSPLIB, WAY_POINTS: ".waypoints"}.get(str(form), _VEHICLES)
     suffix = path.suffix.lower()
     if is_site and suffix == _TASK_LIST:
         from muster.mission.thesis_csv import is_task_list
@@ -160,7 +186,9 @@ def _found(path_or_name: str | Path) -> Path:
     return shipped
 
 
-_SUFFIXES = (".yaml", ".yml", ".tsp", ".atsp", ".vrp", ".txt", ".plan")
+CONVERTED = (".tsp", ".atsp", ".vrp", ".txt", ".plan", ".waypoints", ".wpl")
+"""Suffixes of missions of other programs."""
+_SUFFIXES = (".yaml", ".yml", *CONVERTED)
 """Suffixes of missions by themselves."""
 _OTHERS = (".json", "")
 """Suffixes of files that may be missions in YAML, of which JSON is a part."""

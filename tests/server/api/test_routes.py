@@ -4,6 +4,7 @@ import io
 import re
 import zipfile
 from base64 import b64encode
+from pathlib import Path
 
 import pytest
 from tests.cli.yard import MISSION
@@ -11,6 +12,7 @@ from tests.server.serving import plan_of
 
 ON_EARTH = MISSION.replace("name: yard", "name: on earth\norigin_wgs84: {lat_deg: 47.0, lon_deg: 8.0}")
 TRAVEL = ",look,open\n"
+CASES = Path(__file__).parents[2] / "data" / "cases" / "import"
 
 
 def test_missions_are_listed_made_changed_and_deleted(http):
@@ -77,6 +79,17 @@ def test_an_instance_file_is_uploaded(http):
     text = b"TYPE : CVRP\nDIMENSION : 3\nEDGE_WEIGHT_TYPE : EUC_2D\nCAPACITY : 9\n" + nodes
     made = http.post("/missions/upload", files={"file": ("three.vrp", text)})
     assert made.status_code == 201
+
+
+def test_an_upload_says_what_became_of_every_element(http):
+    text = (CASES / "roi.plan").read_bytes()
+    made = http.post("/missions/upload", files={"file": ("roi.plan", text)})
+    assert made.status_code == 201
+    ledger = made.json()["ledger"]
+    assert ledger["read"] + ledger["passed_over"] == sum(row["count"] for row in ledger["rows"])
+    assert "DO_SET_ROI_LOCATION" in {row["kind"] for row in ledger["rows"] if row["fate"] == "passed over"}
+    assert "DO_SET_ROI_LOCATION" in made.json()["note"]
+    assert http.get(f"/missions/{made.json()['id']}").json()["ledger"] is None
 
 
 def test_a_plan_is_made_judged_explained_and_drawn(http, yard, plan):

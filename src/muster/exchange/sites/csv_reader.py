@@ -7,12 +7,12 @@ import csv
 import io
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 
 from muster.exchange.formula_cells import text_in
 from muster.exchange.sites.features import Feature, Layer, refused
-from muster.exchange.sites.file_sizes import read_bytes
+from muster.exchange.sites.file_sizes import MOST_CELLS, read_bytes, require_few
 from muster.exchange.sites.tables import MOST_TITLES, Row, table_layer
 
 _SEPARATORS = ";\t,|"
@@ -31,7 +31,8 @@ def read_csv_layers(path: Path) -> Sequence[Layer]:
     """
     file = str(path)
     text = decoded(read_bytes(path), file)
-    layer = table_layer(file, "", _rows(text, file))
+    stated = _stated_separator(text)
+    layer = table_layer(file, "", _rows(text, file, stated), separator=stated)
     if not layer.headings:
         raise refused(file, 1, "", "empty", "a row of headings, then a row for each task or robot")
     return [_without_stops(layer)]
@@ -43,6 +44,7 @@ def _without_stops(layer: Layer) -> Layer:
         return layer
     first: dict[object, Feature] = {}
     for feature in layer.features:
+        feature.source.pass_over("is a stop of a plan: its task is read once")
         if "task" in feature.values:
             own = {heading: value for heading, value in feature.values.items() if heading != "load"}
             first.setdefault(feature.values["task"], replace(feature, values=own))
@@ -73,11 +75,16 @@ def _unmarked(start: bytes) -> str:
     return "utf-16-be" if zeros[0] and not zeros[1] else "utf-16-le" if zeros[1] and not zeros[0] else "utf-8"
 
 
-def _rows(text: str, file: str) -> Iterator[Row]:
-    lines = text.splitlines()
-    told = next((line.strip().strip('"') for line in lines if line.strip()), "")
-    stated = told[4:] if told[:4].casefold() == "sep=" and len(told) == 5 else ""
-    separator = stated or _separator([line for line in lines if line.strip()][: MOST_TITLES + 2])
+def _stated_separator(text: str) -> str:
+    """The separator that the first line states (`sep=;`); empty where it states none."""
+    told = next((line.strip().strip('"') for line in io.StringIO(text) if line.strip()), "")
+    return told[4:] if told[:4].casefold() == "sep=" and len(told) == 5 else ""
+
+
+def _rows(text: str, file: str, stated: str) -> Iterator[Row]:
+    filled = (line for line in io.StringIO(text) if line.strip())
+    separator = stated or _separator(list(islice(filled, MOST_TITLES + 2)))
+    require_few(text.count(separator), "cells", file, most=MOST_CELLS)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     begins, skips = 1, bool(stated)
     try:

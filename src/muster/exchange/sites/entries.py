@@ -8,22 +8,19 @@ from difflib import get_close_matches
 from typing import Any
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
+from muster.exchange.sites.file_sizes import MOST_VALUES, require_few
 from muster.exchange.sites.headings import Columns, columns_of
 from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
-from muster.exchange.sites.roles import Roles, is_no_fly, is_of_plan, names_role
+from muster.exchange.sites.roles import Roles, is_no_fly, names_role
 from muster.exchange.sites.shapes import from_text
+from muster.exchange.sites.value_fates import IN_DEGREES, IN_METRES, OF_PLACES, ValueFates
 from muster.mission.errors import Finding
 
 _NEAR = 0.75
 """How much a heading that means nothing is like a key, to be taken for a slip."""
 _MOST_NAMED = 8
-_IN_DEGREES = ("lat", "lon", "lat_lon", "alt")
-_IN_METRES = ("x", "y", "position")
-_OF_AREAS = frozenset(("action", "of"))
-"""What exported plans say of areas, and is read by its own name."""
 _OF_PLANS = frozenset(("starts_at", "ends_at", "starts_s", "ends_s"))
 """What exported plans say of stops: no slips of keys."""
-_OF_PLACES = (*_IN_DEGREES, *_IN_METRES)
 _EXPECTED_PLACE = "columns of latitude and longitude (or x and y); --column lat=HEADING --column lon=HEADING names them"
 
 
@@ -88,28 +85,34 @@ def entries_of(
     if layer.passed_over:
         notes.append(f"{layer.title}: passed over: {some_of(layer.passed_over)}")
     notes += [f"{layer.title}: {note}" for note in layer.notes]
+    drawn = {id(feature.source) for feature in layer.features if feature.geometry is not None}
     features = list(_with_shapes(_without_empty(layer, notes), findings))
     by_role: dict[str, list[Feature]] = {}
     for feature in features:
         by_role.setdefault(roles.role(layer, feature, default, findings), []).append(feature)
     found: list[Entry] = []
-    unread: list[set[str]] = []
+    unread: dict[str, list[str]] = {}
     for role, members in by_role.items():
         columns = columns_of(layer, role, given, findings, members)
-        if role in AT_POINTS and not columns.wrong.isdisjoint(_OF_PLACES):
+        if role in AT_POINTS and not columns.wrong.isdisjoint(OF_PLACES):
             continue
         if role in AT_POINTS and not _has_places(members, columns):
             if not _passes_over(layer, default, notes):
                 findings.append(_without_places(layer))
+            for feature in members:
+                feature.source.pass_over("has no place, as nothing in its table has")
             continue
-        unread.append(set(columns.unread))
+        fates = ValueFates(role, columns, drawn)
         for feature in members:
+            feature.source.keep(fates.of(feature))
             found += _entry(role, feature, columns, findings)
+        for heading in fates.unread(members):
+            unread.setdefault(heading, []).append(role)
+    filled = {heading for feature in features for heading in feature.values}
+    unread |= {heading: list(by_role) for heading in _without_meaning(layer, list(by_role)) if heading not in filled}
     found = _without_flying(layer, found, notes)
-    lost = set.intersection(*unread) if unread else set()
-    lost -= _OF_AREAS if any(is_of_plan(feature, kind) for feature in features for kind in ("area", "hole")) else set()
-    if names := [heading for heading in layer.headings if heading in lost and heading.casefold() != ROLE.name]:
-        notes.append(f"{layer.title}: not read: {_told_unread(names, list(by_role))}")
+    if unread:
+        notes.append(f"{layer.title}: not read: {_told_unread(layer, unread, list(by_role))}")
     return found
 
 
@@ -127,15 +130,34 @@ def _without_flying(layer: Layer, entries: list[Entry], notes: list[str]) -> lis
     return found
 
 
-def _told_unread(names: list[str], roles: list[str]) -> str:
-    """Headings that mean nothing, and for those that are nearly a key what that may be."""
+def _without_meaning(layer: Layer, roles: Sequence[str]) -> set[str]:
+    """The headings of a layer that mean nothing for any of the roles."""
+    unread = [{*columns_of(layer, role, {}, []).unread} for role in roles]
+    return {heading for heading in set.intersection(*unread) if heading.casefold() != ROLE.name} if unread else set()
+
+
+def _told_unread(layer: Layer, unread: Mapping[str, Sequence[str]], roles: list[str]) -> str:
+    """Headings that mean nothing, those that mean nothing for some roles alone with these.
+
+    For headings that are nearly a key it says what that may be.
+    """
+    names = [heading for heading in layer.headings if heading in unread]
     known = [key for role in roles for key in keys_of(role)]
     near = {
-        name: [] if name in _OF_PLANS else get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR)
+        name: []
+        if name in _OF_PLANS or len(unread[name]) < len(roles)
+        else get_close_matches(name.casefold(), known, n=1, cutoff=_NEAR)
         for name in names[:_MOST_NAMED]
     }
-    told = [f"{name} (did you mean {found[0]}?)" if found else name for name, found in near.items()]
+    told = [
+        f"{name} (did you mean {found[0]}?)" if found else f"{name}{_of_roles(unread[name], roles)}"
+        for name, found in near.items()
+    ]
     return some_of([*told, *names[_MOST_NAMED:]])
+
+
+def _of_roles(unread: Sequence[str], roles: Sequence[str]) -> str:
+    return "" if len(unread) == len(roles) else f" of {' and '.join(role + 's' for role in unread)}"
 
 
 def some_of(names: Sequence[str]) -> str:
@@ -150,13 +172,15 @@ def _without_empty(layer: Layer, notes: list[str]) -> Layer:
     if all(feature.geometry is None for feature in layer.features):
         return layer
     columns = columns_of(layer, "task", {}, [])
-    places = {columns.heading(key) for key in (*_OF_PLACES, "wkt") if key in columns}
+    places = {columns.heading(key) for key in (*OF_PLACES, "wkt") if key in columns}
     kept: list[Feature] = []
     lost: list[Feature] = []
     for feature in layer.features:
         is_placed = feature.geometry is not None or not places.isdisjoint(feature.values)
         (kept if is_placed else lost).append(feature)
     if lost:
+        for feature in lost:
+            feature.source.pass_over("has no geometry")
         told = some_of([feature.where or f"line {feature.line}" for feature in lost])
         notes.append(f"{layer.title}: passed over, without a geometry: {told}")
     return replace(layer, features=tuple(kept))
@@ -168,12 +192,14 @@ def _with_shapes(layer: Layer, findings: list[Finding]) -> Iterator[Feature]:
     if "wkt" not in columns:
         yield from layer.features
         return
-    column = columns.by_key["wkt"]
+    column, places = columns.by_key["wkt"], 0
     for feature in layer.features:
         told = column.value(feature, findings) if feature.geometry is None else None
         if not isinstance(told, str):
             yield feature
             continue
+        places += told.count(",")
+        require_few(places, "places", layer.file, feature.line, most=MOST_VALUES)
         try:
             for geometry in from_text(told):
                 yield replace(feature, geometry=geometry)
@@ -184,7 +210,7 @@ def _with_shapes(layer: Layer, findings: list[Finding]) -> Iterator[Feature]:
 
 def _has_places(features: list[Feature], columns: Columns) -> bool:
     return any(feature.geometry is not None for feature in features) or any(
-        key in columns for key in (*_IN_DEGREES[:3], *_IN_METRES)
+        key in columns for key in (*IN_DEGREES[:3], *IN_METRES)
     )
 
 
@@ -207,7 +233,7 @@ def _entry(role: str, feature: Feature, columns: Columns, findings: list[Finding
     before = len(findings)
     read = {key: column.value(feature, findings) for key, column in columns.by_key.items()}
     values = {key: value for key, value in read.items() if value is not None}
-    own = {key: value for key, value in values.items() if key not in (*_OF_PLACES, "z", "wkt")}
+    own = {key: value for key, value in values.items() if key not in (*OF_PLACES, "z", "wkt")}
     entry = Entry(role, feature, columns, own)
     geometry = feature.geometry
     if role not in AT_POINTS:
@@ -254,6 +280,6 @@ def _placed(entry: Entry, values: Mapping[str, object], findings: list[Finding])
 
 
 def _no_place(entry: Entry, values: Mapping[str, object]) -> Finding:
-    keys = [key for key in (*_IN_DEGREES[:3], *_IN_METRES) if key in entry.columns and key not in values]
+    keys = [key for key in (*IN_DEGREES[:3], *IN_METRES) if key in entry.columns and key not in values]
     headings = ", ".join(entry.columns.heading(key) for key in keys)
     return entry.feature.finding(headings, "missing", "a place: latitude and longitude, or x and y")

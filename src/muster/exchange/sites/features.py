@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date, time, timedelta
 from textwrap import shorten
-from typing import Literal
+from typing import Literal, Protocol
 
 from muster.mission.errors import Finding, MissionError
+from muster.mission.import_ledger import LedgerBook, Source
 from muster.mission.value_types import shown
 
 Coordinate = tuple[float, ...]
@@ -18,6 +19,15 @@ Ring = tuple[Coordinate, ...]
 Shape = Literal["point", "line", "area"]
 
 _LONGEST_NAME = 40
+HEIGHT = "the height of the place"
+"""What readers call, beside the headings of a `Source`, an element that says how high a point is."""
+
+
+class Document(Protocol):
+    """The whole source of a file, which knows after reading what became of each of its elements."""
+
+    def enter(self, book: LedgerBook) -> None:
+        """Give the ledger every element of the file, with its fate."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +59,8 @@ class Feature:
         where it begins; None where there are no lines.
     where
         which one of the file it is, where the line alone does not say so: `sheet Panels`, `features[3]`.
+    source
+        what becomes of its values; features that are made of one thing in the file share it.
     """
 
     values: Mapping[str, object]
@@ -56,6 +68,7 @@ class Feature:
     line: int | None
     where: str = ""
     geometry: Geometry | None = None
+    source: Source = field(default_factory=Source, compare=False, repr=False)
 
     def finding(self, heading: str, value: object, expected: str) -> Finding:
         """What is wrong with a value of it."""
@@ -68,7 +81,8 @@ class Layer:
     """Features that have their headings in common: a table, a sheet, a folder.
 
     `name` is that of the sheet, folder or layer, if there is one; `headings` are in the order of the file;
-    `passed_over` is what has no place in a mission; `notes` are what else is to be said of it.
+    `passed_over` is what has no place in a mission; `notes` are what else is to be said of it. `document` is the file
+    of which the layer is; a reader of an installed package may leave it out.
     """
 
     file: str
@@ -77,6 +91,7 @@ class Layer:
     features: tuple[Feature, ...]
     passed_over: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    document: Document | None = field(default=None, compare=False, repr=False)
 
     @property
     def title(self) -> str:
@@ -97,10 +112,10 @@ def with_name(where: str, values: Mapping[str, object]) -> str:
     return f"{where} ({name})".strip() if name else where
 
 
-def layer_of(file: str, name: str, features: list[Feature]) -> Layer:
+def layer_of(file: str, name: str, features: list[Feature], document: Document | None = None) -> Layer:
     """A layer whose headings are those of its features."""
     headings = dict.fromkeys(heading for feature in features for heading in feature.values)
-    return Layer(file, name, tuple(headings), tuple(features))
+    return Layer(file, name, tuple(headings), tuple(features), document=document)
 
 
 def refused(file: str, line: int | None, field: str, value: object, expected: str) -> MissionError:

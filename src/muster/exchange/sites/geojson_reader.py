@@ -9,7 +9,7 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from muster.exchange.sites.coordinate_systems import to_wgs84
 from muster.exchange.sites.csv_reader import decoded
@@ -24,7 +24,9 @@ from muster.exchange.sites.features import (
     refused,
     with_name,
 )
-from muster.exchange.sites.file_sizes import read_bytes
+from muster.exchange.sites.file_sizes import read_bytes, require_moderate_json
+from muster.exchange.tracked_json import Tracked, enter_json, parse_tracked
+from muster.mission.import_ledger import Fate, LedgerBook, Source, passed_over, read_as
 from muster.mission.json_reader import JsonPlaces
 from muster.mission.value_types import Path as Where
 
@@ -40,6 +42,7 @@ _SHAPES: Mapping[str, tuple[Shape, int, bool]] = {
 """By type: the shape, how deep the lists of positions are, and whether there are several."""
 _LEAST = {"point": 1, "line": 2, "area": 4}
 _SELDOM_DEEPER = 8
+_TOLD: Mapping[Shape, str] = {"point": "a point", "line": "a line", "area": "an area"}
 
 
 def read_geojson_layers(path: Path) -> Sequence[Layer]:
@@ -54,22 +57,47 @@ def read_geojson_layers(path: Path) -> Sequence[Layer]:
     """
     file = str(path)
     text = decoded(read_bytes(path), file)
+    require_moderate_json(text, file)
     try:
-        data = json.loads(text, parse_constant=_no_number)
+        data = parse_tracked(text)
     except json.JSONDecodeError as error:
         raise refused(file, error.lineno, "", error.msg, _WHAT) from None
     except (RecursionError, ValueError) as error:
         raise refused(file, None, "", str(error) or "nested too deep", _WHAT) from None
-    return [_Reading(file, text).layer(data)]
+    return [_Reading(file, text, data).layer(data)]
 
 
-def _no_number(name: str) -> float:
-    raise ValueError(f"{name} is no number in JSON")
+class _Document:
+    """The members of a file; the properties of a feature have the fates of its values."""
+
+    def __init__(self, root: object) -> None:
+        self._root = root
+        self._features: dict[int, Source] = {}
+        self._properties: dict[int, Source] = {}
+
+    def add(self, item: Tracked, properties: object, source: Source) -> None:
+        """Say of which feature of the site a feature of the file is the source."""
+        self._features[id(item)] = source
+        if isinstance(properties, Tracked):
+            self._properties[id(properties)] = source
+
+    def enter(self, book: LedgerBook) -> None:
+        """Give the ledger every member."""
+        enter_json(book, self._root, self._fate)
+
+    def _fate(self, item: Tracked, key: str) -> Fate | None:
+        if (source := self._properties.get(id(item))) is not None:
+            return source.fate(key, item.peek(key))
+        source = self._features.get(id(item))
+        if source is None:
+            return None
+        return source.whole or (source.fate(key, item.peek(key)) if key == "id" and key not in item.fates else None)
 
 
 class _Reading:
-    def __init__(self, file: str, text: str) -> None:
+    def __init__(self, file: str, text: str, root: object) -> None:
         self._file = file
+        self._document = _Document(root)
         self._places = JsonPlaces(text, file)
         self._transform: Callable[[Coordinate], Coordinate] | None = None
 
@@ -83,36 +111,44 @@ class _Reading:
         name = data.get("name")
         title = name if isinstance(name, str) and kind == "FeatureCollection" else ""
         if kind != "FeatureCollection":
-            feature = data if kind == "Feature" else {"type": "Feature", "geometry": data, "properties": {}}
-            return layer_of(
-                self._file, "", list(self._features(feature, (), () if kind != "Feature" else ("geometry",)))
-            )
+            given = [("type", "Feature"), ("geometry", data), ("properties", None)]
+            feature = data if kind == "Feature" else Tracked(given)
+            found = list(self._features(feature, (), () if kind != "Feature" else ("geometry",)))
+            return layer_of(self._file, "", found, self._document)
         items = data.get("features")
         if not isinstance(items, list):
             raise self._refused(("features",), "features", items, "a list of features")
+        if any(_is_edge(item) for item in items):
+            told, expected = "a route graph of Nav2 (startid, endid)", "the map of a site"
+            raise self._refused(("features",), "features", told, f"{expected}; lanes of a mission: {{nodes, edges}}")
         found = [
             feature
             for k, item in enumerate(items)
             for feature in self._features(item, ("features", k), ("features", k, "geometry"))
         ]
-        return layer_of(self._file, title, found)
+        return layer_of(self._file, title, found, self._document)
 
     def _features(self, item: Any, at: Where, geometry_at: Where) -> Iterator[Feature]:
         where = f"features[{at[1]}]" if at else ""
-        if not isinstance(item, dict) or item.get("type") != "Feature":
+        if not isinstance(item, Tracked) or item.get("type") != "Feature":
             told = item.get("type") if isinstance(item, dict) else item
             raise self._refused(at, where, told, 'a mapping of type "Feature"')
         properties = item.get("properties")
         if properties is not None and not isinstance(properties, dict):
             raise self._refused((*at, "properties"), f"{where}.properties", properties, "a mapping, or null")
         values = {str(key): value for key, value in (properties or {}).items() if value not in (None, "")}
-        if isinstance(item.get("id"), str | int) and not isinstance(item["id"], bool):
-            values.setdefault("id", item["id"])
+        number = item.peek("id")
+        if isinstance(number, str | int) and not isinstance(number, bool):
+            if "id" in values:
+                item.say(passed_over("stands beside an id among the properties"), "id")
+            values.setdefault("id", number)
+        source = Source()
+        self._document.add(item, properties, source)
         given, inside = item.get("geometry"), f"{where}.geometry".lstrip(".")
         found: list[Geometry | None] = []
         found += [] if given is None else self._geometries(given, geometry_at, inside)
         for geometry in found or [None]:
-            yield Feature(values, self._file, self._line(at), with_name(where, values), geometry)
+            yield Feature(values, self._file, self._line(at), with_name(where, values), geometry, source)
 
     def _geometries(self, data: Any, at: Where, where: str) -> Iterator[Geometry]:
         kind = data.get("type") if isinstance(data, dict) else None
@@ -133,6 +169,10 @@ class _Reading:
         for k, piece in enumerate(items):
             own_at, own_where = ((*at, k), f"{where}[{k}]") if several else (at, where)
             pieces.append(self._piece(piece, shape, depth, own_at, own_where))
+        if shape != "point" and any(
+            len(place) > 2 and place[2] for piece in pieces for ring in piece for place in ring
+        ):
+            data.say(read_as(f"places of {_TOLD[shape]}, without their heights"), "coordinates")
         if pieces:
             yield Geometry(shape, tuple(pieces))
 
@@ -179,12 +219,18 @@ class _Reading:
         return refused(self._file, self._line(at), where, "missing" if value is None else value, expected)
 
 
+def _is_edge(item: object) -> bool:
+    """Whether a feature is an edge of a route graph of Nav2."""
+    properties = item.peek("properties") if isinstance(item, Tracked) else None
+    return isinstance(properties, dict) and {"startid", "endid"} <= properties.keys()
+
+
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e12 and math.isfinite(value)
 
 
 def _crs(given: Any) -> str:
     """The name of a coordinate system, as old GeoJSON has it."""
-    named = cast("Any", given).get("properties") if isinstance(given, dict) else None
+    named = given.get("properties") if isinstance(given, dict) else None
     name = named.get("name") if isinstance(named, dict) else None
     return name if isinstance(name, str) else "?"

@@ -8,88 +8,94 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, Ring, Shape, layer_of, refused
-from muster.exchange.sites.file_sizes import open_archive, read_bytes, unpacked
-from muster.exchange.sites.xml_elements import Element, parse_xml, titled
+from muster.exchange.sites.xml_elements import Element, XmlDocument, titled
+from muster.mission.import_ledger import EMPTY, Source, passed_over, read_as
 
-_WHAT = "KML"
-_KMZ = "KMZ: a ZIP archive with a .kml in it"
 _SHAPES: dict[str, Shape] = {"Point": "point", "LineString": "line", "LinearRing": "line", "Polygon": "area"}
 _LEAST = {"point": 1, "line": 2, "area": 3}
 _PASSED_OVER = ("NetworkLink", "GroundOverlay", "ScreenOverlay", "PhotoOverlay")
+_WITHOUT_SHAPE = "has no point, line or area"
 _HEIGHTS = {"relativeToGround": True, "absolute": False}
 """Modes in which a height is one, and whether it is over the ground."""
 
 
-def read_kml_layers(path: Path) -> Sequence[Layer]:
-    """The folders of a KML file; raises MissionError with the line at which it is none."""
-    return _layers(read_bytes(path), str(path))
-
-
-def read_kmz_layers(path: Path) -> Sequence[Layer]:
-    """The folders of the first KML file in an archive; raises MissionError where there is none."""
-    with open_archive(path, _KMZ) as archive:
-        names = [name for name in archive.namelist() if name.lower().endswith(".kml")]
-        if not names:
-            raise refused(str(path), None, "", "no .kml in it", _KMZ)
-        name = "doc.kml" if "doc.kml" in names else names[0]
-        return _layers(unpacked(archive, name, path, _KMZ), str(path))
-
-
-def _layers(data: bytes, file: str) -> list[Layer]:
-    root = parse_xml(data, file, "kml", _WHAT)
+def kml_layers(root: Element, file: str, others: Sequence[str] = ()) -> list[Layer]:
+    """The folders of a document; `others` are the files beside it in its archive."""
+    document = XmlDocument(root.take(), others)
     groups: dict[str, list[Feature]] = {}
     lost = [element for element in root.within() if element.name in _PASSED_OVER]
-    for folder, mark in _placemarks(root, ""):
-        features = list(_Placemark(mark, folder, file).features())
+    for folder, mark in placemarks(root, ""):
+        features = list(Placemark(mark, folder, file).features())
         groups.setdefault(folder, []).extend(features)
         if not features:
             lost.append(mark)
-    layers = [layer_of(file, folder, features) for folder, features in groups.items() if features]
-    return [*layers, Layer(file, "", (), (), tuple(map(titled, lost)))] if lost else layers
+    for element in lost:
+        element.fate, element.whole = passed_over(_WITHOUT_SHAPE, noted=True), None
+    layers = [layer_of(file, folder, features, document) for folder, features in groups.items() if features]
+    return [*layers, Layer(file, "", (), (), tuple(map(titled, lost)), document=document)] if lost else layers
 
 
-def _placemarks(element: Element, folder: str) -> Iterator[tuple[str, Element]]:
+def placemarks(element: Element, folder: str) -> Iterator[tuple[str, Element]]:
     """All placemarks, each with the name of the innermost folder in which it is."""
     for child in element.children:
         if child.name == "Placemark":
-            yield folder, child
+            yield folder, child.take()
         elif child.name in ("Document", "Folder"):
+            child.take()
             name = " ".join(child.told("name").split()) if child.name == "Folder" else ""
-            yield from _placemarks(child, name or folder)
+            yield from placemarks(child, name or folder)
 
 
-class _Placemark:
+class Placemark:
     """Reads one placemark."""
 
     def __init__(self, mark: Element, folder: str, file: str) -> None:
         self._mark, self._file = mark, file
         self._name = " ".join(mark.told("name").split())
         self._where = ", ".join(part for part in (folder, self._name) if part)
+        self._borders: set[int] = set()
+        """The ids of rings that are borders of polygons."""
 
     def features(self) -> Iterator[Feature]:
-        values = self._values()
+        """The features of a placemark: one for each kind of shape in it."""
+        source = self._mark.whole = Source()
+        if (name := self._mark.first("name")) is not None:
+            name.value = source, "name"
+        values = self._values(source)
         pieces: dict[tuple[Shape, bool], list[tuple[Ring, ...]]] = {}
         for element in self._mark.within():
-            if element.name in _SHAPES and (found := self._piece(element)) is not None:
+            if element.name == "MultiGeometry":
+                element.take()
+            if element.name in ("outerBoundaryIs", "innerBoundaryIs"):
+                self._borders |= {id(child) for child in element.children}
+            if element.name in _SHAPES and (found := self.piece(element)) is not None:
                 shape, over_ground, rings = found
                 pieces.setdefault((shape, over_ground), []).append(rings)
         for (shape, over_ground), rings_of in pieces.items():
             geometry = Geometry(shape, tuple(rings_of), over_ground)
-            yield Feature(values, self._file, self._mark.line, self._where, geometry)
+            yield Feature(values, self._file, self._mark.line, self._where, geometry, source)
 
-    def _values(self) -> dict[str, object]:
+    def _values(self, source: Source) -> dict[str, object]:
         values: dict[str, object] = {"name": self._name} if self._name else {}
         for element in self._mark.within():
+            if element.name in ("ExtendedData", "SchemaData"):
+                element.take()
             if element.name in ("Data", "SimpleData") and (key := element.attributes.get("name", "").strip()):
                 told = element.text.strip() if element.name == "SimpleData" else element.told("value")
-                if told:
-                    values.setdefault(key, told)
+                if key in values:
+                    element.fate = passed_over(f"stands beside another {key}")
+                elif told:
+                    values[key] = told
+                    element.value = source, key
+                else:
+                    element.fate = EMPTY
         return values
 
-    def _piece(self, element: Element) -> tuple[Shape, bool, tuple[Ring, ...]] | None:
+    def piece(self, element: Element) -> tuple[Shape, bool, tuple[Ring, ...]] | None:
+        """The shape of an element, whether its heights are over the ground, and its rings; None for a border."""
+        element.take()
         mode = element.told("altitudeMode")
         if element.name == "Polygon":
             outer = element.first("outerBoundaryIs", "LinearRing")
@@ -98,18 +104,22 @@ class _Placemark:
                 raise self._refused(element, "Polygon", "no outer boundary", "<outerBoundaryIs> with a <LinearRing>")
             rings = [outer, *(ring for ring in inner if ring is not None)]
             return "area", False, tuple(self._ring(ring, "area", spatial=False) for ring in rings)
-        if element.name == "LinearRing" and self._is_of_polygon(element):
+        if id(element) in self._borders:
             return None
         shape = _SHAPES[element.name]
         return shape, _HEIGHTS.get(mode, False), (self._ring(element, shape, spatial=mode in _HEIGHTS),)
 
-    def _is_of_polygon(self, ring: Element) -> bool:
-        borders = (e for e in self._mark.within() if e.name in ("outerBoundaryIs", "innerBoundaryIs"))
-        return any(ring is child for border in borders for child in border.children)
+    def point(self, element: Element) -> Coordinate:
+        """The place of a point, without its height."""
+        return self._ring(element, "point", spatial=False)[0]
 
     def _ring(self, element: Element, shape: Shape, *, spatial: bool) -> Ring:
         told = re.sub(r"\s*,\s*", ",", element.told("coordinates")).split()
         ring = tuple(self._coordinate(element, one, spatial=spatial) for one in told)
+        coordinates = element.first("coordinates")
+        if coordinates is not None and (shape != "point" or not spatial) and any(map(_is_high, told)):
+            why = "altitudeMode does not say what they are" if shape == "point" else "lines and areas have none"
+            coordinates.fate = read_as(f"places without their heights: {why}")
         if len(ring) < _LEAST[shape] or (shape == "point" and len(ring) > 1):
             several = "one place" if shape == "point" else f"at least {_LEAST[shape]} places"
             raise self._refused(element, "coordinates", " ".join(told) or "missing", several)
@@ -128,3 +138,8 @@ class _Placemark:
     def _refused(self, element: Element, field: str, value: str, expected: str) -> Exception:
         where = f"{self._where}, {field}" if self._where else field
         return refused(self._file, element.line, where, value if len(value) < 60 else value[:57] + "...", expected)
+
+
+def _is_high(told: str) -> bool:
+    """Whether a coordinate has a height other than 0."""
+    return told.count(",") == 2 and float(told.rpartition(",")[2]) != 0

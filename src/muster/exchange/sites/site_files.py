@@ -15,11 +15,13 @@ from muster.exchange.sites.identities import identified
 from muster.exchange.sites.plan_areas import joined_areas
 from muster.exchange.sites.readers import reader_of
 from muster.exchange.sites.roles import Roles
+from muster.exchange.sites.site_ledger import ledger_of, left_out
 from muster.exchange.sites.times import require_alike
 from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
+from muster.mission.import_ledger import Ledger
 from muster.mission.model import Mission
 from muster.mission.source import Source
 from muster.mission.thesis_csv import suitability_table
@@ -39,11 +41,14 @@ class SiteMission:
         what was read from each file.
     notes
         what was chosen, and what was not read.
+    ledger
+        what became of every element of the files.
     """
 
     mission: Mission
     counts: tuple[str, ...]
     notes: tuple[str, ...]
+    ledger: Ledger = Ledger()
 
 
 @collector_paused()
@@ -96,7 +101,9 @@ def read_site(
         data["suitability"] = suitability_table(suitability, built.places)
     source = Source(main, built.places, built.fields)
     mission = mission_from(data, source, [], base.travel_tables if base is not None else None)
-    return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes))
+    left_out(entries, data)
+    ledger = ledger_of([layer for layer, _ in found])
+    return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes), ledger)
 
 
 def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -> tuple[list[Entry], list[str]]:

@@ -9,18 +9,63 @@ from textwrap import shorten
 
 from muster.exchange.sites.cells import NoValue
 from muster.exchange.sites.features import Feature, Layer, refused
+from muster.exchange.sites.file_sizes import MOST_COLUMNS, MOST_ROWS, require_few
 from muster.exchange.sites.headings import means_something
+from muster.mission.import_ledger import Fate, LedgerBook, passed_over, read_as
 from muster.mission.value_types import shown
 
 Row = tuple[int, Sequence[object]]
 """The number of a row, from 1, and its cells."""
-MOST_ROWS = 1_000_000
 _LONGEST_TITLE = 60
 MOST_TITLES = 5
 """Rows of a single cell that may stand above the headings."""
 
 
-def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> Layer:
+class TableDocument:
+    """The cells of a table that are not empty: those of titles and headings, and of each row the ones under headings.
+
+    Parameters
+    ----------
+    name
+        of the sheet, if there is one.
+    separator
+        the sign that a cell above the table states as separator, if there is such a cell.
+    """
+
+    def __init__(self, name: str = "", separator: str = "") -> None:
+        self._name = f"{name}: " if name else ""
+        self._separator = separator
+        self.titles: list[int] = []
+        self.headings: tuple[int, Sequence[str]] = 1, ()
+        self.rows: list[tuple[Feature, Sequence[str]]] = []
+        """Features as they are in the table, each with the headings of its cells."""
+
+    def enter(self, book: LedgerBook) -> None:
+        """Give the ledger every cell."""
+        if self._separator:
+            book.add(f"sep={self._separator}", read_as("the separator"))
+        for number in self.titles:
+            book.add(f"{self._name}title", _TITLE, f"row {number}")
+        groups: dict[tuple[Sequence[str], Fate | None, int], list[Feature]] = {}
+        for feature, headings in self.rows:
+            groups.setdefault((headings, feature.source.whole, feature.source.key), []).append(feature)
+        read: set[str] = set()
+        for (headings, _, _), features in groups.items():
+            first = features[0]
+            for heading in headings:
+                fate = first.source.fate(heading, heading)
+                read |= {heading} if fate.how == "read" else set()
+                book.add(f"{self._name}{heading}", fate, f"row {first.line}", len(features))
+        number, named = self.headings
+        for heading in filter(None, named):
+            book.add(f"{self._name}heading", _HEADING if heading in read else _UNUSED, f"row {number}")
+
+
+_TITLE = passed_over("stands above the headings", noted=True)
+_HEADING, _UNUSED = read_as("a heading"), passed_over("heads nothing that is read", minor=True)
+
+
+def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "", separator: str = "") -> Layer:
     """The layer of a table; empty rows, and columns without a heading and cells, are passed over.
 
     Raises
@@ -28,11 +73,13 @@ def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> L
     MissionError
         if a row has a cell beyond the headings, or a heading that means something stands twice.
     """
+    document = TableDocument(name, separator)
     titles, filled = _split_titles(row for row in rows if any(not is_empty(cell) for cell in row[1]))
     first = next(filled, None)
     if first is None:
         return Layer(file, name, (), ())
     line, head = first
+    require_few(len(head), "columns", file, line, most=MOST_COLUMNS)
     lost = next((cell for cell in head if isinstance(cell, NoValue)), None)
     if lost is not None:
         raise refused(file, line, _field(where, "headings"), lost.told, lost.expected)
@@ -42,14 +89,20 @@ def table_layer(file: str, name: str, rows: Iterable[Row], where: str = "") -> L
     if twice is not None:
         raise refused(file, line, _field(where, twice), "a heading for the second time", "each heading once")
     headings = _numbered(headings)
+    document.titles = [row[0] for row in titles]
+    document.headings = line, headings
     features: list[Feature] = []
+    alike: dict[Sequence[str], Sequence[str]] = {}
     for number, cells in filled:
         if len(features) >= MOST_ROWS:
             raise refused(file, number, where, f"more than {MOST_ROWS:,} rows", "fewer, in several files")
         _require_headings(file, number, cells, headings, where)
         values = {heading: _tidy(cell) for heading, cell in zip(headings, cells, strict=False) if not is_empty(cell)}
         features.append(Feature(values, file, number, where))
-    return Layer(file, name, tuple(filter(None, headings)), tuple(features), tuple(map(_told_title, titles)))
+        present = tuple(values)
+        document.rows.append((features[-1], alike.setdefault(present, present)))
+    told = tuple(map(_told_title, titles))
+    return Layer(file, name, tuple(filter(None, headings)), tuple(features), told, document=document)
 
 
 def _numbered(headings: Sequence[str]) -> list[str]:

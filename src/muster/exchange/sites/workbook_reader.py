@@ -15,15 +15,17 @@ from typing import Any
 
 from muster.exchange.sites.entries import some_of
 from muster.exchange.sites.features import Layer, refused
-from muster.exchange.sites.file_sizes import open_archive, unpacked
-from muster.exchange.sites.tables import MOST_ROWS, table_layer
+from muster.exchange.sites.file_sizes import MOST_BYTES, MOST_CELLS, MOST_ROWS, open_archive, require_few, unpacked
+from muster.exchange.sites.tables import table_layer
 from muster.exchange.sites.workbook_cells import Marks, column_number, marks_in, sheet_names
 from muster.mission.errors import MissingExtraError
 
 _WHAT = "a workbook (XLSX)"
-_MOST_CELLS = 20_000_000
 _CELL = re.compile(rb'[<:]c\s[^>]*?\br\s*=\s*["\']([A-Za-z]{1,9})(\d{1,9})')
 _ROW = re.compile(rb'[<:]row\s[^>]*?\br\s*=\s*["\'](\d{1,9})')
+_SHARED = re.compile(rb"""[<:]c\s[^>]*?\bt\s*=\s*["']s["'][^>]*>\s*<(?:\w+:)?v>\s*(\d{1,9})""")
+_TEXTS = re.compile(r"xl/sharedStrings\.xml", re.IGNORECASE)
+_TEXT = re.compile(rb"<(?:\w+:)?si[\s>]")
 _SHEETS = re.compile(r"xl/worksheets/[^/]+\.xml", re.IGNORECASE)
 
 
@@ -71,9 +73,13 @@ def _layer(file: str, name: str, sheet: Any, marks: Marks) -> Layer:
 def _marks(archive: zipfile.ZipFile, path: Path) -> dict[str, Marks]:
     """The marks of sheets by their names; a workbook with a sheet whose last cell is far out is refused."""
     found: dict[str, Marks] = {}
+    lengths = _text_lengths(archive, path)
+    shared = 0
     for member in filter(_SHEETS.fullmatch, archive.namelist()):
         data = unpacked(archive, member, path, _WHAT)
         _require_moderate(data, member, path)
+        shared += sum(lengths[k] for one in _SHARED.findall(data) if (k := int(one)) < len(lengths))
+        require_few(shared, "bytes of texts in cells", str(path), most=MOST_BYTES)
         found[member] = marks_in(data)
     if not any(marks.cells or marks.merged for marks in found.values()):
         return {}
@@ -81,10 +87,16 @@ def _marks(archive: zipfile.ZipFile, path: Path) -> dict[str, Marks]:
     return {names[member]: marks for member, marks in found.items() if member in names}
 
 
+def _text_lengths(archive: zipfile.ZipFile, path: Path) -> list[int]:
+    """The bytes of each text that cells share: the reader copies it for each cell that has it."""
+    member = next((name for name in archive.namelist() if _TEXTS.fullmatch(name)), None)
+    return [] if member is None else [len(text) for text in _TEXT.split(unpacked(archive, member, path, _WHAT))[1:]]
+
+
 def _require_moderate(data: bytes, member: str, path: Path) -> None:
     cells = _CELL.findall(data)
     width = max((column_number(letters) for letters, _ in cells), default=0)
     height = max((int(row) for row in (*(row for _, row in cells), *_ROW.findall(data))), default=0)
-    if height > MOST_ROWS or height * width > _MOST_CELLS:
+    if height > MOST_ROWS or height * width > MOST_CELLS:
         told = f"{height:,} rows of {width:,} cells"
-        raise refused(str(path), None, member, told, f"at most {MOST_ROWS:,} rows, and {_MOST_CELLS:,} cells")
+        raise refused(str(path), None, member, told, f"at most {MOST_ROWS:,} rows, and {MOST_CELLS:,} cells")

@@ -47,7 +47,11 @@ _BasedOn = Annotated[int | None, Query(ge=0, le=LARGEST, description="Instead of
 
 @dataclass(frozen=True, kw_only=True)
 class MissionText:
-    """A version of a mission; `files` are the sizes, in bytes, of the files that it names."""
+    """A version of a mission; `files` are the sizes, in bytes, of the files that it names.
+
+    In the answer to an upload of files that were converted, `ledger` says what became of every element of these: read,
+    passed over, or refused.
+    """
 
     id: str
     version: int
@@ -56,6 +60,7 @@ class MissionText:
     at: datetime | None
     note: str
     files: Mapping[str, int]
+    ledger: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

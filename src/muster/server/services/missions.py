@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import base64
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import PurePath
 from typing import Any, Protocol
 
@@ -23,6 +24,7 @@ from muster.exchange.sites.readers import READERS
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.yaml_writer import YAML_SUFFIXES
+from muster.planning.loading import CONVERTED
 from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
 from muster.server.services.uploads import (
@@ -35,7 +37,7 @@ from muster.server.services.uploads import (
 )
 from muster.server.store import Store
 
-_CONVERTED = (*(f".{name}" for name in READERS), ".tsp", ".atsp", ".vrp", ".txt", ".plan")
+_CONVERTED = (*(f".{name}" for name in READERS), *CONVERTED)
 
 
 class Workers(Protocol):
@@ -226,7 +228,7 @@ class Missions:
             require_file_name(filename)
             path = PurePath(filename)
             site: list[str] = []
-            note = ""
+            note, ledger = "", None
             if path.suffix.lower() in YAML_SUFFIXES:
                 text, kept = as_text(filename, data), dict(beside or {})
                 site = site_files(text, kept)
@@ -235,17 +237,21 @@ class Missions:
                 raise ParameterError(f"{filename}: no mission; expected {expected}")
             if site or path.suffix.lower() in _CONVERTED:
                 files = {**(beside or {}), filename: data}
-                text, kept, note = await self._converted(filename, files, options | ({"site": site} if site else {}))
-            return await self._create(who, text, kept, name, file=path.stem, note=note)
+                text, kept, note, ledger = await self._converted(
+                    filename, files, options | ({"site": site} if site else {})
+                )
+            made = await self._create(who, text, kept, name, file=path.stem, note=note)
+            return replace(made, ledger=ledger)
 
     async def _converted(
         self, name: str, files: Mapping[str, bytes], options: Mapping[str, Any]
-    ) -> tuple[str, dict[str, bytes], str]:
-        """The mission that a worker makes of files, those of them that it goes on to need, and what it says of them."""
+    ) -> tuple[str, dict[str, bytes], str, dict[str, Any] | None]:
+        """The mission that a worker makes of files, those of them that it goes on to need, its notes and its ledger."""
         check_sizes("", files)
         packed = {file: base64.b64encode(content).decode("ascii") for file, content in files.items()}
         made = await self._pool.run("convert", {"name": name, "files": packed, **options})
-        return made["text"], {file: files[file] for file in made["needs"]}, "\n".join(made["notes"])
+        needed = {file: files[file] for file in made["needs"]}
+        return made["text"], needed, "\n".join(made["notes"]), made.get("ledger")
 
     async def _create(
         self,

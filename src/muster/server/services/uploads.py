@@ -10,10 +10,10 @@ from typing import Any
 
 from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError, ParameterError
+from muster.mission.text_files import LARGEST_FILE as LARGEST_FILES
 from muster.mission.value_types import shown
 
 LONGEST_TEXT = 16 * 2**20
-LARGEST_FILES = 32 * 2**20
 MOST_FILES = 64
 LONGEST_FILE_NAME = 120
 FILE_NAME = r"[^\W_][\w. ()+-]*"

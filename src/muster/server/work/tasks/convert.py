@@ -8,25 +8,26 @@ from typing import Any
 
 from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError
+from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 from muster.planning.importing import read_site
-from muster.planning.loading import is_site_file, load_noted
+from muster.planning.loading import CONVERTED, is_site_file, load_noted
 from muster.server.work.missions import written_files
 
-_MISSIONS = (*YAML_SUFFIXES, ".tsp", ".atsp", ".vrp", ".txt", ".plan")
+_MISSIONS = (*YAML_SUFFIXES, *CONVERTED)
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"name", "files", ...}` -> `{"text", "name", "needs", "notes"}`: a mission as YAML, its name, files it names.
+    """`{"name", "files", ...}` -> `{"text", "name", "needs", "notes", "ledger"}`: a mission as YAML and what it names.
 
     `name` is which of `files` (base64, by name) is the mission: a task-list CSV or a file of a site, perhaps with
     `robots` and `suitability`, which name others of them, and all other files of a site are added; an instance file,
     perhaps with `salesmen` and `depot`, of which TSPLIB needs the first; a `.plan` of QGroundControl, of which all
     `.plan` files are taken together; a mission in YAML, to which the files named by `site` are added. `notes` are what
-    was read from files of a site, what was chosen, and what was not read.
+    was read from files of a site, what was chosen, and what was not read; `ledger` has the fate of every element.
     """
     name, files = arguments["name"], arguments["files"]
     options = {key: arguments[key] for key in _OPTIONS if arguments.get(key) is not None}
@@ -44,13 +45,15 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
         beside = {key: options[key] for key in ("robots", "suitability") if key in options}
         found = read_site(name, *others, **beside)
         kept = sorted(set(files) - {name, *others, *beside.values()}) if site else []
-        return _answer(found.mission, kept, (*found.counts, *found.notes))
+        return _answer(found.mission, kept, (*found.counts, *found.notes, *summary_lines(found.ledger)), found.ledger)
     noted = load_noted(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
-    return _answer(noted.mission, sorted(set((noted.mission.travel or {}).values())), noted.notes)
+    needs = sorted(set((noted.mission.travel or {}).values()))
+    return _answer(noted.mission, needs, noted.said, noted.ledger)
 
 
-def _answer(mission: Mission, needs: Sequence[str], notes: Sequence[str]) -> dict[str, Any]:
-    return {"text": yaml_text(mission), "name": mission.name, "needs": needs, "notes": notes}
+def _answer(mission: Mission, needs: Sequence[str], notes: Sequence[str], ledger: Ledger) -> dict[str, Any]:
+    told = {"needs": needs, "notes": notes, "ledger": ledger.as_dict()}
+    return {"text": yaml_text(mission), "name": mission.name, **told}
 
 
 def _others_of_site(name: str, files: Mapping[str, str]) -> list[str]:

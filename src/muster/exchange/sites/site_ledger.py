@@ -1,0 +1,54 @@
+"""The ledger of a site: what became of every element of its files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from muster.exchange.sites.entries import Entry
+from muster.exchange.sites.features import HEIGHT, Document, Layer
+from muster.mission.import_ledger import Ledger, LedgerBook, joined
+
+_ROUTE = "is a route of a plan: Muster plans it anew"
+_TO_NOBODY = "is a zone that is forbidden to nobody"
+_FLAT = "heights are left out, as some places have none or --flat says so"
+
+
+def left_out(entries: Sequence[Entry], data: Mapping[str, Any]) -> None:
+    """Mark what was made to entries, and is not in the data of the mission after all."""
+    groups = ("robots", "tasks", "stations")
+    flat = not any(len(one["position"]) == 3 for group in groups for one in data.get(group, ()))
+    for entry in entries:
+        source = entry.feature.source
+        if entry.role == "route":
+            source.drop(_ROUTE)
+        elif entry.role == "zone" and entry.values.get("forbidden_to") == []:
+            source.drop(_TO_NOBODY)
+        elif flat and entry.height is not None:
+            headings = [column.heading for key, column in entry.columns.by_key.items() if key in ("alt", "z")]
+            source.lose(_FLAT, HEIGHT, *headings)
+
+
+def ledger_of(layers: Sequence[Layer]) -> Ledger:
+    """Return the ledger of all files of which there are layers."""
+    documents: dict[int, tuple[str, Document]] = {}
+    for layer in layers:
+        document = layer.document or _Values(layer)
+        documents[id(document)] = layer.file, document
+    books: dict[str, LedgerBook] = {}
+    for file, document in documents.values():
+        document.enter(books.setdefault(file, LedgerBook(file)))
+    return joined(book.ledger() for book in books.values())
+
+
+class _Values:
+    """A layer of a reader that says nothing of its file: what the reader has made of it, not what is in the file."""
+
+    def __init__(self, layer: Layer) -> None:
+        self._layer = layer
+
+    def enter(self, book: LedgerBook) -> None:
+        """Give the ledger every value of each feature."""
+        for feature in self._layer.features:
+            for heading, value in feature.values.items():
+                book.add(heading, feature.source.fate(heading, value), feature.where)

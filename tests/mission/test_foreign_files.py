@@ -1,0 +1,52 @@
+"""Files of other programs that are no missions: refused in one line that names what they are."""
+
+import json
+
+import pytest
+from tests.exchange.sites import writers
+
+import muster
+from muster.mission.errors import MissionError
+
+GRAPH = {"id": 0, "frame": "map"}
+EDGE = {"id": 10, "startid": 0, "endid": 1}
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        (
+            "b.building.yaml",
+            "levels:\n  L1: {vertices: [], lanes: []}\nlifts: {}\nname: b\n",
+            "a building map of Open-RMF",
+        ),
+        (
+            "graph.yaml",
+            "building_name: b\nlevels:\n  L1: {vertices: [], lanes: []}\n",
+            "a navigation graph of Open-RMF",
+        ),
+        ("fleet.yaml", "rmf_fleet: {name: a}\n", "a fleet configuration of Open-RMF"),
+        ("floor.yaml", "image: f.png\nresolution: 0.05\norigin: [0, 0, 0]\n", "a map of ROS"),
+        ("x.json", json.dumps({"fileType": "Plan", "mission": {}}), "a plan of QGroundControl"),
+    ],
+)
+def test_a_file_of_another_program_is_named(name, text, said, tmp_path):
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    with pytest.raises(MissionError) as error:
+        muster.load(tmp_path / name)
+    assert str(error.value).startswith(f"{tmp_path / name}: {said}; expected ")
+    assert "\n" not in str(error.value)
+
+
+def test_a_route_graph_is_no_site(tmp_path):
+    edge = writers.feature("MultiLineString", [[[0, 0], [0, 9]]], **EDGE)
+    (tmp_path / "graph.geojson").write_text(writers.geojson(writers.feature("Point", [0, 0], **GRAPH), edge), "utf-8")
+    (tmp_path / "robots.csv").write_text("id,x,y\nr_0,0,0\n", encoding="utf-8")
+    with pytest.raises(MissionError, match=r"graph.geojson:\d+: features: a route graph of Nav2 \(startid, endid\)"):
+        muster.read_site(tmp_path / "graph.geojson", robots=tmp_path / "robots.csv")
+
+
+def test_a_mission_with_faults_is_not_taken_for_another_file(tmp_path):
+    (tmp_path / "m.yaml").write_text("schema: muster/1\nlevels: {}\n", encoding="utf-8")
+    with pytest.raises(MissionError, match="levels: "):
+        muster.load(tmp_path / "m.yaml")
