@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from pathlib import PurePath
 from typing import Any
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
-from muster.exchange.sites.headings import Columns, columns_of
-from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
-from muster.exchange.sites.roles import Roles, is_no_fly, is_of_plan, names_role
+from muster.exchange.sites.headings import Columns, bare_numbers, columns_of
+from muster.exchange.sites.keys import CIRCLE, ROLE, SKIP, WITH_PLACE, keys_of
+from muster.exchange.sites.robot_kinds import with_kind
+from muster.exchange.sites.roles import Decision, Roles, forbidden_by_name, is_of_plan, names_role
+from muster.exchange.sites.undecided import findings_of
 from muster.exchange.sites.shapes import from_text
 from muster.mission.errors import Finding
 
@@ -45,6 +48,8 @@ class Entry:
         another name by which references may mean it.
     holes, middle
         of an area of a plan, what else the plan has of it: its holes, and where its task is.
+    reason
+        what decided its role.
     """
 
     role: str
@@ -58,6 +63,7 @@ class Entry:
     also: str | None = None
     holes: tuple[Entry, ...] = ()
     middle: Entry | None = None
+    reason: str = ""
 
     def finding(self, key: str, value: object, expected: str) -> Finding:
         """What is wrong with the value of a key."""
@@ -68,6 +74,11 @@ class Entry:
         """As notes name it: by its name, else by where it is in its file."""
         named = self.values.get("id") or self.values.get("name")
         return str(named or self.feature.where or f"line {self.feature.line}")
+
+    @property
+    def named_by(self) -> str:
+        """The name by which `--as` means all of its file."""
+        return PurePath(self.feature.file).stem
 
     @property
     def height(self) -> float | None:
@@ -89,23 +100,25 @@ def entries_of(
         notes.append(f"{layer.title}: passed over: {some_of(layer.passed_over)}")
     notes += [f"{layer.title}: {note}" for note in layer.notes]
     features = list(_with_shapes(_without_empty(layer, notes), findings))
-    by_role: dict[str, list[Feature]] = {}
-    for feature in features:
-        by_role.setdefault(roles.role(layer, feature, default, findings), []).append(feature)
+    decided = [(feature, roles.decide(layer, feature, default, findings)) for feature in features]
+    by_role = _by_role(layer, decided, findings, notes)
     found: list[Entry] = []
     unread: list[set[str]] = []
-    for role, members in by_role.items():
+    for role, chosen in by_role.items():
+        members = [feature for feature, _ in chosen]
         columns = columns_of(layer, role, given, findings, members)
-        if role in AT_POINTS and not columns.wrong.isdisjoint(_OF_PLACES):
+        if role in WITH_PLACE and not columns.wrong.isdisjoint(_OF_PLACES):
             continue
-        if role in AT_POINTS and not _has_places(members, columns):
+        if role in WITH_PLACE and not _has_places(members, columns):
             if not _passes_over(layer, default, notes):
                 findings.append(_without_places(layer))
             continue
         unread.append(set(columns.unread))
-        for feature in members:
-            found += _entry(role, feature, columns, findings)
-    found = _without_flying(layer, found, notes)
+        if taken := bare_numbers(columns, members):
+            notes.append(f"{layer.title}: numbers without a unit are taken so: {', '.join(taken)}")
+        for feature, decision in chosen:
+            found += [replace(e, reason=decision.reason) for e in _entry(role, feature, columns, findings)]
+    found = [_forbidden(layer, with_kind(entry, layer, roles)) for entry in found]
     lost = set.intersection(*unread) if unread else set()
     lost -= _OF_AREAS if any(is_of_plan(feature, kind) for feature in features for kind in ("area", "hole")) else set()
     if names := [heading for heading in layer.headings if heading in lost and heading.casefold() != ROLE.name]:
@@ -113,18 +126,28 @@ def entries_of(
     return found
 
 
-def _without_flying(layer: Layer, entries: list[Entry], notes: list[str]) -> list[Entry]:
-    """The entries; a no-fly zone is forbidden to robots in the air alone, unless it says to whom it is."""
-    found = [
-        replace(e, values={**e.values, "forbidden_to": ["air"]})
-        if e.role == "zone" and "forbidden_to" not in e.values and is_no_fly(layer, e.feature)
-        else e
-        for e in entries
-    ]
-    changed = [entry.told for entry, before in zip(found, entries, strict=True) if entry is not before]
-    if changed:
-        notes.append(f"{layer.title}: no-fly zones are forbidden to robots in the air alone: {some_of(changed)}")
+def _by_role(
+    layer: Layer, decided: Sequence[tuple[Feature, Decision]], findings: list[Finding], notes: list[str]
+) -> dict[str, list[tuple[Feature, Decision]]]:
+    """The features by their roles; those that nothing decides are findings, those passed over are noted."""
+    findings += findings_of(layer, [pair for pair in decided if pair[1].role is None], len(decided))
+    found: dict[str, list[tuple[Feature, Decision]]] = {}
+    skipped: dict[str, list[str]] = {}
+    for feature, decision in decided:
+        if decision.role == SKIP:
+            skipped.setdefault(decision.reason, []).append(feature.where or f"line {feature.line}")
+        elif decision.role is not None:
+            found.setdefault(decision.role, []).append((feature, decision))
+    notes += [f"{layer.title}: passed over, {reason}: {some_of(names)}" for reason, names in skipped.items()]
     return found
+
+
+def _forbidden(layer: Layer, entry: Entry) -> Entry:
+    """The entry; a closed area whose name says to whom it is forbidden with that. Others are forbidden to all."""
+    if entry.role not in ("zone", CIRCLE) or "forbidden_to" in entry.values:
+        return entry
+    kinds = forbidden_by_name(layer, entry.feature)
+    return replace(entry, values={**entry.values, "forbidden_to": kinds}) if kinds else entry
 
 
 def _told_unread(names: list[str], roles: list[str]) -> str:
@@ -210,7 +233,7 @@ def _entry(role: str, feature: Feature, columns: Columns, findings: list[Finding
     own = {key: value for key, value in values.items() if key not in (*_OF_PLACES, "z", "wkt")}
     entry = Entry(role, feature, columns, own)
     geometry = feature.geometry
-    if role not in AT_POINTS:
+    if role not in WITH_PLACE:
         return [replace(entry, geometry=geometry)]
     if geometry is None:
         placed = _placed(entry, values, findings) if len(findings) == before else None

@@ -13,6 +13,7 @@ from typing import Any
 
 from muster.exchange.sites import cells
 from muster.exchange.sites.units import UNITS, Dimension
+from muster.exchange.sites.vocabulary import moves
 from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.records import key_of, specified
 from muster.mission.value_types import Choice, Flag, Kind, Many, Number, OneOrMany, Text, Whole
@@ -37,6 +38,12 @@ class SiteKey:
         whether other words than units may stand in brackets: `load (boxes)`, `lat (WGS84)`.
     unstated
         headings with what one unit of their numbers is where they do not say it.
+    needs_unit
+        whether a number without a unit, in the heading or beside it, is refused.
+    right
+        what is right, where a unit does not fit; by default the units of the dimension.
+    rare
+        of `names` those that often mean something else: such a column is read only if one of its cells can be.
     """
 
     name: str
@@ -45,6 +52,9 @@ class SiteKey:
     names: tuple[str, ...] = ()
     is_free: bool = False
     unstated: Mapping[str, float] = field(default_factory=dict)
+    needs_unit: bool = False
+    right: str = ""
+    rare: frozenset[str] = frozenset()
 
 
 def _length(name: str, *names: str) -> SiteKey:
@@ -65,6 +75,16 @@ def _number(dimension: Dimension, value: object, factor: float = 1.0) -> float:
 
 def _lower(value: object) -> str:
     return cells.text(value).casefold()
+
+
+def _kinds_of_robots(value: object) -> list[str]:
+    """Kinds of robots, as mission files have them, of words for such: `air`, `drones and UGVs`, `all`."""
+    found: list[str] = []
+    for word in _choices(value):
+        kind = moves(word)
+        kinds = ["ground", "air"] if word in ("all", "both", "everything", "robots", "yes", "true") else [kind]
+        found += [one or word for one in kinds if word not in ("and", "&")]
+    return list(dict.fromkeys(found))
 
 
 def _choices(value: object) -> list[str]:
@@ -93,7 +113,35 @@ PLACE = (
 )
 IDENTITY = (
     SiteKey("id", cells.text, names=("index", "no", "nr", "number", "key", "code", "ref")),
-    SiteKey("name", cells.text, names=("title", "label")),
+    SiteKey(
+        "name",
+        cells.text,
+        names=(
+            *("title", "label", "bezeichnung", "nom", "nombre", "nome", "naam", "nazwa", "nazev", "název", "navn"),
+            *("namn", "isim", "adı", "имя", "название", "назва", "όνομα", "ονομα", "اسم", "الاسم", "نام", "שם"),
+            *("नाम", "न\u092eम", "名称", "名稱", "名前", "이름"),
+        ),
+    ),
+)
+ENERGY = "Endurance (min), Range (km), or a unit beside the number: 28 min, 5 km"
+"""What says how much energy a robot has."""
+_BATTERY = (
+    *("battery", "batterycapacity", "batterylevel", "batterytime", "batterylife", "akku", "akkukapazitat", "akkukapazität"),
+    *("batterie", "bateria", "batería", "batteria", "accu", "batteri", "pil", "batarya", "акб", "батарея", "аккумулятор"),
+    *("акумулятор", "батарея", "μπαταρία", "بطارية", "باتری", "סוללה", "电池", "電池", "バッテリー", "배터리"),
+    *("energy", "stateofcharge", "soc", "chargelevel"),
+)
+_ENDURANCE = (
+    *("endurance", "flighttime", "flyingtime", "maxflighttime", "maxendurance", "runtime", "operatingtime", "drivetime"),
+    *("hovertime", "flugzeit", "flugdauer", "akkulaufzeit", "laufzeit", "ausdauer", "autonomie", "autonomia", "autonomía"),
+    *("tempsdevol", "tiempodevuelo", "tempodivolo", "tempodevoo", "vliegtijd", "czaslotu", "dobaletu", "flytid", "flygtid"),
+    *("flyvetid", "uçuşsüresi", "времяполета", "времяполёта", "часпольоту", "χρόνοςπτήσης", "续航", "续航时间", "航続時間"),
+    *("飛行時間", "飞行时间", "비행시간", "체공시간", "مدةالطيران", "مداومتپروازی", "זמןטיסה"),
+)
+_RANGE = (
+    *("range", "maxrange", "flightrange", "reichweite", "portée", "portee", "alcance", "raggio", "raggiodazione", "bereik"),
+    *("zasięg", "zasieg", "dosah", "dolet", "rekkevidde", "räckvidd", "rackvidd", "rækkevidde", "menzil", "дальность"),
+    *("дальністьпольоту", "дальність", "εμβέλεια", "航程", "航続距離", "항속거리", "المدى", "برد", "טווח"),
 )
 ROLE = SiteKey("kind", _lower, names=("role", "feature", "featurekind"))
 _TASK = (
@@ -104,23 +152,38 @@ _TASK = (
         cells.duration,
         "time",
         ("duration", "durations", "servicetime", "service", "worktime", "staytime", "dwell", "dwelltime", "timeneeded"),
+        rare=frozenset(("service",)),
     ),
     SiteKey(
         "opens",
         cells.moment,
         "time",
         ("from", "open", "earliest", "earlieststart", "windowfrom", "windowstart", "notbefore", "readytime", "opensat"),
+        rare=frozenset(("from", "open")),
     ),
     SiteKey(
         "closes",
         cells.moment,
         "time",
         ("to", "until", "close", "latest", "lateststart", "windowto", "windowuntil", "windowend", "closesat"),
+        rare=frozenset(("to", "close")),
     ),
-    SiteKey("window", cells.pairs, "time", ("windows", "timewindow", "timewindows", "hours", "openinghours")),
-    SiteKey("deadline", cells.moment, "time", ("finishby", "mustend", "mustendby", "by", "endby", "doneby")),
+    SiteKey(
+        "window",
+        cells.pairs,
+        "time",
+        ("windows", "timewindow", "timewindows", "hours", "openinghours"),
+        rare=frozenset(("hours", "openinghours")),
+    ),
+    SiteKey(
+        "deadline",
+        cells.moment,
+        "time",
+        ("finishby", "mustend", "mustendby", "by", "endby", "doneby"),
+        rare=frozenset(("by",)),
+    ),
     SiteKey("due", cells.moment, "time", ("duetime", "dueat", "duedate", "dueby")),
-    SiteKey("priority", cells.number, names=("prio", "weight", "importance")),
+    SiteKey("priority", cells.number, names=("prio", "weight", "importance"), rare=frozenset(("importance",))),
     SiteKey(
         "prerequisites",
         cells.words,
@@ -131,8 +194,8 @@ _TASK = (
         cells.words,
         names=("skills", "skill", "requiredskills", "requiredskill", "equipment", "capabilities"),
     ),
-    SiteKey("actuation_cost", cells.number, names=("cost", "workcost")),
-    SiteKey("robots_needed", cells.whole, names=("robotsneeded", "teamsize", "crew")),
+    SiteKey("actuation_cost", cells.number, names=("cost", "workcost"), rare=frozenset(("cost",))),
+    SiteKey("robots_needed", cells.whole, names=("robotsneeded", "teamsize", "crew"), rare=frozenset(("crew",))),
     _mass("load", "demand", "amount", "quantity", "weight", "mass"),
 )
 _ROBOT = (
@@ -140,12 +203,15 @@ _ROBOT = (
     SiteKey("type", cells.text, names=("model", "class")),
     SiteKey("moves", _lower, names=("domain",)),
     SiteKey("speed_mps", partial(_number, "speed"), "speed", ("speed", "maxspeed", "velocity", "cruisespeed")),
-    SiteKey("work_capacity", cells.limit, names=("capacity", "budget", "range")),
+    SiteKey("work_capacity", cells.limit),
     SiteKey("skills", cells.words, names=("skill", "capabilities", "equipment")),
     _length("radius_m", "radius"),
     SiteKey("heading_deg", partial(_number, "angle"), "angle", ("heading", "yaw")),
+    SiteKey("endurance_s", cells.endurance, "time", (*_ENDURANCE, *_BATTERY), needs_unit=True, right=ENERGY),
+    SiteKey("range_m", cells.range_of, "length", (*_RANGE, *_BATTERY), needs_unit=True, right=ENERGY),
+    SiteKey("battery", cells.battery, names=_BATTERY, right=ENERGY),
+    SiteKey("capacity", cells.no_capacity, names=("budget",)),
     _mass("load_capacity", "payload", "capacity"),
-    SiteKey("battery", cells.number, names=("batterycapacity",)),
     SiteKey("climb_mps", partial(_number, "speed"), "speed", ("climb", "climbspeed")),
     SiteKey("starts", cells.moment, "time", ("from", "availablefrom", "shiftstart", "start", "earliest")),
     SiteKey("ends", cells.moment, "time", ("to", "until", "availableuntil", "shiftend", "end", "latest")),
@@ -154,7 +220,7 @@ _ROBOT = (
 _STATION = (
     SiteKey("id", cells.text, names=(*IDENTITY[0].names, "station")),
     SiteKey("services", _choices, names=("service",)),
-    SiteKey("charge_per_s", cells.number, names=("charge", "chargerate")),
+    SiteKey("charge_per_s", cells.number),
     SiteKey("swap_s", cells.duration, "time", ("swap", "swaptime")),
 )
 _DOOR = SiteKey("door", cells.text, names=("doorid",))
@@ -162,8 +228,11 @@ _ZONE = (
     _DOOR,
     _length("floor_m", "floor", "minheight", "lowerlimit"),
     _length("ceiling_m", "ceiling", "maxheight", "upperlimit"),
-    SiteKey("forbidden_to", _choices, names=("closedto", "forbidden")),
+    SiteKey("forbidden_to", _kinds_of_robots, names=("closedto", "forbidden"), rare=frozenset(("forbidden",))),
 )
+ZONE_RADIUS = SiteKey("radius_m", cells.radius, "length", ("radius", "rad", "radio", "raggio", "rayon", "raio", "радиус"))
+"""Of a closed area that is given by its middle."""
+_ROUND_ZONE = (ZONE_RADIUS, SiteKey("diameter_m", cells.radius, "length", ("diameter", "durchmesser")), *_ZONE)
 _LANE = (
     _DOOR,
     _length("width_m", "width"),
@@ -184,7 +253,7 @@ _OF_ROLES: Mapping[str, tuple[SiteKey, ...]] = {
     "station": _STATION,
     "zone": _ZONE,
     "boundary": (),
-    "survey": _TASK,
+    "survey": (_length("height_m", "height", "altitude", "flightaltitude", "flightheight", "agl", "flughöhe"), *_TASK),
     "lane": _LANE,
     "route": (),
 }
@@ -193,6 +262,14 @@ ROLES = tuple(_OF_ROLES)
 
 AT_POINTS = ("task", "robot", "station")
 """Roles of points; the others are those of areas and lines."""
+
+CIRCLE = "circle"
+"""The role of a closed area that is given by its middle and its radius: a zone at a point."""
+WITH_PLACE = (*AT_POINTS, CIRCLE)
+"""Roles of features that are at one place."""
+
+SKIP = "skip"
+"""Stands for a role where a feature is passed over."""
 
 _INSTEAD = frozenset(
     ("id", "position", "window_s", "deadline_s", "due_s", "available_from_s", "available_until_s", "polygon", "extra")
@@ -212,8 +289,9 @@ def can_survey() -> bool:
 
 @cache
 def _keys_of(role: str, surveys: bool) -> Mapping[str, SiteKey]:
-    place = PLACE if role in AT_POINTS else PLACE[-1:]
-    own = {key.name: key for key in (*place, *IDENTITY, ROLE, *_OF_ROLES[role])}
+    place = PLACE if role in WITH_PLACE else PLACE[-1:]
+    of_role = _ROUND_ZONE if role == CIRCLE else _OF_ROLES[role]
+    own = {key.name: key for key in (*place, *IDENTITY, ROLE, *of_role)}
     for name, kind in _mission_keys(role, surveys).items():
         if name not in own and name not in _INSTEAD and (read := _reading(kind)) is not None:
             own[name] = SiteKey(name, read, _dimension(name) if isinstance(kind, Number) else "")
@@ -224,6 +302,7 @@ def _mission_keys(role: str, surveys: bool) -> Mapping[str, Kind]:
     from muster.mission.model import Action, Robot, Station, Task, Zone
 
     classes: dict[str, type[Any]] = {"task": Task, "survey": Task, "robot": Robot, "station": Station, "zone": Zone}
+    classes[CIRCLE] = Zone
     found = {} if role not in classes else {key_of(f): f.metadata["kind"] for f in specified(classes[role])}
     if role == "survey" and surveys:
         action = ACTION_KEYS[COVERAGE]

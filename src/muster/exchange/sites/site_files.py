@@ -87,7 +87,7 @@ def read_site(
     main = base.source.file if base is not None else str(files[0] if files else robots)
     if not there.get("robots") and not any(entry.role == "robot" for entry in entries):
         raise refused(main, None, "robots", "missing", _ROBOTS)
-    builder = Builder(entries, there, options)
+    builder = Builder(entries, there, options, is_new=base is None)
     builder.built.data["name"] = Path(main).stem if base is None else base.name
     built = builder.build()
     data = built.data
@@ -123,7 +123,10 @@ def _there(base: Mission | None, team: Mission | None) -> dict[str, Any]:
     """The data of the mission to which the site is added."""
     if base is not None:
         return file_data(base)
-    return {} if team is None else {key: value for key, value in file_data(team).items() if key in _FROM_TEAM}
+    if team is None:
+        return {}
+    found = {key: value for key, value in file_data(team).items() if key in _FROM_TEAM}
+    return found | ({"rules": {"usage": team.rules.usage}} if team.rules.usage != "distance" else {})
 
 
 def _counts(layers: Sequence[tuple[Layer, str | None]], entries: Sequence[Entry]) -> tuple[str, ...]:
