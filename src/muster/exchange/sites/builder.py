@@ -271,8 +271,7 @@ class Builder:
             assert self._frame is not None
             areas = areas_of(entry, self._frame, self.built.findings, mends if entry.role == "zone" else None)
             if entry.role == "survey":
-                entry = self._seen_from(entry)
-                tasks = survey_tasks(entry, areas, self._holes(entry), self._middle(entry, spatial))
+                tasks = survey_tasks(self._seen_from(entry), areas, self._holes(entry), self._middle(entry, spatial))
                 for task, name in zip(tasks, self._ids([entry] * len(areas)), strict=True):
                     record = self._record(entry, name, task["position"])
                     kept = {key: value for key, value in record.items() if key not in ACTION_KEYS[COVERAGE].names}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from pathlib import PurePath
 from typing import Any
 
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
@@ -50,6 +49,8 @@ class Entry:
         of an area of a plan, what else the plan has of it: its holes, and where its task is.
     reason
         what decided its role.
+    named_by
+        of a robot, the name by which `--as` means it, or all of its layer.
     """
 
     role: str
@@ -64,6 +65,7 @@ class Entry:
     holes: tuple[Entry, ...] = ()
     middle: Entry | None = None
     reason: str = ""
+    named_by: str = ""
 
     def finding(self, key: str, value: object, expected: str) -> Finding:
         """What is wrong with the value of a key."""
@@ -74,11 +76,6 @@ class Entry:
         """As notes name it: by its name, else by where it is in its file."""
         named = self.values.get("id") or self.values.get("name")
         return str(named or self.feature.where or f"line {self.feature.line}")
-
-    @property
-    def named_by(self) -> str:
-        """The name by which `--as` means all of its file."""
-        return PurePath(self.feature.file).stem
 
     @property
     def height(self) -> float | None:

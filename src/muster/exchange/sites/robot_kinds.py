@@ -8,7 +8,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from muster.exchange.sites.features import Layer
-from muster.exchange.sites.roles import Roles, role_word
+from muster.exchange.sites.roles import BY, Roles, labels_of, names_of, role_word
 from muster.exchange.sites.vocabulary import AIR, GROUND, meanings, moves
 
 if TYPE_CHECKING:
@@ -21,7 +21,9 @@ def with_kind(entry: Entry, layer: Layer, roles: Roles) -> Entry:
         return entry
     kind = roles.kind_given(layer, entry.feature) or _stated(entry) or _by_words(entry, layer)
     values = {key: value for key, value in entry.values.items() if key != "moves"}
-    return replace(entry, values=values if kind is None else {**values, "moves": kind})
+    whole = entry.reason == "--robots" or entry.reason.startswith(BY)
+    named_by = names_of(layer)[0] if whole else (*labels_of(layer, entry.feature), names_of(layer)[0])[0]
+    return replace(entry, values=values if kind is None else {**values, "moves": kind}, named_by=named_by)
 
 
 def _stated(entry: Entry) -> str | None:

@@ -134,13 +134,14 @@ class Roles:
 
     def _stated(self, layer: Layer, feature: Feature) -> tuple[str | None, str]:
         """Return the role that a flag or a property states, and which of them."""
+        point = feature.geometry is None or feature.geometry.shape == "point"
         for name in (*labels_of(layer, feature), *names_of(layer)):
-            if (role := self.given.get(_folded(name))) is not None:
+            role = self.given.get(_folded(name))
+            if role is not None and (point or _folded(name) not in self.kinds):
                 return role, f"--as {name}"
         for heading, value in feature.values.items():
             if isinstance(value, str) and heading.casefold() in (ROLE.name, *ROLE.names, "type"):
                 role = "survey" if is_of_plan(feature, "area") else stated_role(value) or _DRAWN.get(value)
-                point = feature.geometry is None or feature.geometry.shape == "point"
                 exact = value.casefold() in AT_POINTS or role == "zone"
                 if role is not None and not (heading.casefold() == "type" and point and not exact):
                     return role, heading
@@ -185,27 +186,28 @@ def forbidden_by_name(layer: Layer, feature: Feature) -> list[str]:
 
 def _of_point(layer: Layer, feature: Feature) -> Decision:
     """Return what a point is: a task, unless a word says other; never a task where a word says that it is closed."""
-    around = [(f"{what} {name}", meanings(name)) for what, name in _around(layer)]
+    around = [(f"the {what} {name}", meanings(name)) for what, name in _around(layer)]
     for where, said in around:
         of_robots = any(meaning in said for meaning in (words.ROBOT, *_KINDS))
         if of_robots and words.CLOSED not in said and words.HOME not in said:
             others = [meaning for meaning in (words.TASK, words.STATION, words.SURVEY) if meaning in said]
             if others:
                 return Decision(None, f"{where} says robot and {others[0]}", AT_POINTS)
-            return Decision("robot", where)
+            word = next(said[meaning] for meaning in (words.ROBOT, *_KINDS) if meaning in said)
+            return Decision("robot", _by_word(word, where))
     closed = _closed(layer, feature)
     if closed is not None:
         return Decision(CIRCLE, closed)
     for where, said in around:
         if words.CLOSED in said:
-            return Decision(CIRCLE, f"{where} ({said[words.CLOSED]})")
+            return Decision(CIRCLE, _by_word(said[words.CLOSED], where))
         if words.STATION in said and words.TASK not in said:
-            return Decision("station", where)
+            return Decision("station", _by_word(said[words.STATION], where))
         if words.TASK in said:
-            return Decision("task", where)
+            return Decision("task", _by_word(said[words.TASK], where))
         if words.FENCE in said or words.BOUNDARY in said:
             word = said.get(words.FENCE) or said[words.BOUNDARY]
-            return Decision(None, f"{where} ({word}) is that of an area", ("task", SKIP))
+            return Decision(None, f"{where} says {word}, and this is a point", ("task", SKIP))
     return _of_point_by_itself(layer, feature)
 
 
@@ -214,12 +216,12 @@ def _of_point_by_itself(layer: Layer, feature: Feature) -> Decision:
     if (name := next((name for name in labels if words.HOME in meanings(name) or _is_home(name)), None)) is not None:
         return Decision(SKIP, f"a place where robots start or land; --as {quoted(name)}=task makes it a task")
     if _has_kind(feature):
-        return Decision("robot", f"{ROLE.name} says how it moves")
+        return Decision("robot", f"{BY} how it moves")
     if (heading := _radius_heading(feature)) is not None:
         return Decision(None, f"{heading} beside a point: a round closed area, or a task", ("zone", "task"))
     if any(is_only(name, words.ROBOT, *_KINDS) for name in labels):
         return Decision(None, "a name of robots", ("robot", "task"))
-    return Decision("task", "points are tasks where no word says other")
+    return Decision("task", f"{BY} default: points where no word says other")
 
 
 def _of_shape(layer: Layer, feature: Feature, shape: str) -> Decision:
@@ -237,7 +239,8 @@ def _of_shape(layer: Layer, feature: Feature, shape: str) -> Decision:
             closes = here.role == "zone" and words.CLOSED in meanings(name) and found.role != "zone"
             others = set(meanings(name)) & {words.BOUNDARY, words.SURVEY}
             if closes and not others:
-                return Decision(None, f"{found.reason} says {found.role}, {here.reason} says closed", _choices(shape))
+                told = f"{found.role} {found.reason}, but closed {here.reason}"
+                return Decision(None, told, _choices(shape))
             continue
         if here.role is None:
             return here
@@ -245,27 +248,37 @@ def _of_shape(layer: Layer, feature: Feature, shape: str) -> Decision:
     if found is not None:
         return found
     if shape == "line":
-        return Decision("lane", "lines are lanes where no word says other")
+        return Decision("lane", f"{BY} default: lines where no word says other")
     return Decision(None, "no word says what it is", _choices(shape))
 
 
 def _of_words(feature: Feature, shape: str, what: str, name: str) -> Decision | None:
     """Return what the words of one name say of a line or area; None where they say nothing."""
     said = meanings(name)
+    where = "the name" if what == "name" else f"the {what} {name}"
     if words.CLOSED in said:
-        return Decision("zone", f"{what} {name} ({said[words.CLOSED]})")
+        return Decision("zone", _by_word(said[words.CLOSED], where))
     roles = {_ROLE_OF[meaning]: word for meaning, word in said.items() if meaning in _ROLE_OF}
     roles = {role: word for role, word in roles.items() if role in _FITTING[shape]}
     if shape == "line" and not _is_around_area(feature):
         roles.pop("survey", None)
     if words.FENCE in said and len(roles) != 1:
-        return Decision(None, f"{what} {name} ({said[words.FENCE]}): to stay inside or outside", _choices(shape))
+        told = f"{where} says {said[words.FENCE]}, and not whether robots stay inside or outside"
+        return Decision(None, told, _choices(shape))
     if len(roles) > 1:
-        return Decision(None, f"{what} {name} says {' and '.join(roles)}", _choices(shape))
+        return Decision(None, f"{where} says {' and '.join(roles.values())}", _choices(shape))
     if roles:
         ((role, word),) = roles.items()
-        return Decision(role, f"{what} {name} ({word})")
+        return Decision(role, _by_word(word, where))
     return None
+
+
+BY = "by"
+"""Begins reasons that words give, or that are taken where no word decides."""
+
+
+def _by_word(word: str, where: str) -> str:
+    return f"{BY} {word} in {where}"
 
 
 def _choices(shape: str) -> tuple[str, ...]:
@@ -276,19 +289,19 @@ def _closed(layer: Layer, feature: Feature) -> str | None:
     """Return what of a feature itself says that it is closed, its name or a property; None where nothing does."""
     for name in labels_of(layer, feature):
         if (word := meanings(name).get(words.CLOSED)) is not None:
-            return f"name {name} ({word})"
+            return _by_word(word, "the name")
     point = feature.geometry is None or feature.geometry.shape == "point"
     for heading, value in feature.values.items():
         folded = heading.strip().casefold()
         if folded in _CLASSES and isinstance(value, str) and (word := meanings(value).get(words.CLOSED)) is not None:
-            return f"{heading} {value} ({word})"
+            return _by_word(word, heading)
         if folded.replace(" ", "_") in ("forbidden_to", "closed_to"):
-            return heading
+            return f"{BY} {heading}"
         is_yes = value is True or value == 1 or (isinstance(value, str) and value.strip().casefold() in _YES)
         if is_yes and words.CLOSED in meanings(heading):
-            return heading
+            return f"{BY} {heading}"
         if folded in ("building", "building:part", "barrier") and not point and str(value).casefold() != "no":
-            return heading
+            return f"{BY} {heading}"
     return None
 
 

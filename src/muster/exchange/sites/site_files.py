@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from muster.exchange.sites.builder import Builder, SiteOptions
-from muster.exchange.sites.entries import Entry, entries_of
+from muster.exchange.sites.entries import Entry, entries_of, some_of
 from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.headings import given_columns
 from muster.exchange.sites.identities import identified
+from muster.exchange.sites.keys import CIRCLE
 from muster.exchange.sites.plan_areas import joined_areas
 from muster.exchange.sites.readers import reader_of
-from muster.exchange.sites.roles import Roles
+from muster.exchange.sites.roles import BY, Roles
 from muster.exchange.sites.times import require_alike
 from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError
@@ -107,16 +108,30 @@ def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -
     findings: list[Finding] = []
     notes: list[str] = []
     entries: list[Entry] = []
+    decided: list[str] = []
     for layer, default in layers:
         found = entries_of(layer, roles, default, columns, findings, notes)
         require_alike(found, findings)
         entries += identified(layer, found, columns, notes)
+        decided += _decisions(layer, entries[len(entries) - len(found) :])
+    notes = [*decided, *notes]
     entries = joined_areas(entries)
     if findings:
         raise MissionError(sorted(findings, key=lambda finding: (finding.file, finding.line or 0)))
     if whole and not entries:
         raise refused(whole[0].file, None, "", "nothing to read", "points, areas or lines")
     return entries, notes
+
+
+def _decisions(layer: Layer, entries: Sequence[Entry]) -> list[str]:
+    """What words, or no words, decided of the features of a layer, one line for each role and reason."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for entry in entries:
+        if entry.reason.startswith(BY):
+            groups.setdefault((entry.role, entry.reason), []).append(entry.told)
+    return [
+        f"{layer.title}: {_NOUNS[role][0]} {reason}: {some_of(names)}" for (role, reason), names in groups.items()
+    ]
 
 
 def _there(base: Mission | None, team: Mission | None) -> dict[str, Any]:
@@ -147,4 +162,5 @@ _NOUNS: Mapping[str, tuple[str, ...]] = {
     "boundary": ("boundary", "boundaries"),
     "survey": ("area to survey", "areas to survey"),
     "lane": ("line of lanes", "lines of lanes"),
+    CIRCLE: ("round zone",),
 }

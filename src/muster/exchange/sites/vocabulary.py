@@ -100,7 +100,8 @@ _PATTERNS: Mapping[str, str] = {
         *捜索*, *探索*, *セクター*, *測量*, *調査*, *수색*, *탐색*, *섹터*, *측량*, *조사*
     """,
     OBSTACLE: """
-        building*, wall, walls, fence, fences, gebaude*, mauer*, batiment*, edifici*, gebouw*, budyn*, budov*, bygning*,
+        building*, hall, halls, house, houses, shed, sheds, barn, barns, warehouse*, hangar*, silo*, garage*, roof, roofs,
+        wall, walls, fence, fences, halle, hallen, *lagerhalle*, haus, hauser, scheune*, gebaude*, mauer*, batiment*, edifici*, gebouw*, budyn*, budov*, bygning*,
         byggnad*, bina, binalar, здани*, будівл*, κτιρι*, *مبنى*, *مباني*, *ساختمان*, *בניין*, *मकान*, *इमारत*, *建筑*,
         *建築*, *建物*, *건물*
     """,
