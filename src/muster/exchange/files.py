@@ -167,7 +167,9 @@ def _landing(itinerary: Itinerary) -> str:
     away = f"{math.dist(start[:2], last[:2]):.0f} m from its start"
     if itinerary.has_end:
         return f"lands at its end_position, {away}"
-    return f"lands where its route ends, at {_named(itinerary.passages[-1])}, {away}; return_to_start: true lets it return"
+    return (
+        f"lands where its route ends, at {_named(itinerary.passages[-1])}, {away}; return_to_start: true lets it return"
+    )
 
 
 def _named(passage: Passage) -> str:

@@ -59,8 +59,8 @@ def spec(
     unit
         of the value, for the help of the class, where the name of the field does not say it.
     instead
-        a key of files, its kind and description, or several such, that may stand for the field: places in degrees, clock
-        times. They are replaced before; `Record` never gets to read the key.
+        a key of files, its kind and description, or several such, that may stand for the field: places in degrees,
+        clock times. They are replaced before; `Record` never gets to read the key.
     unless
         the JSON Schema of records of which files may leave the field out, though it is required: it follows from others
         and is put in before.

@@ -189,7 +189,9 @@ def coverage():
 
 
 def test_areas_to_survey_are_tasks(tmp_path, robots, coverage):
-    found = site(tmp_path, robots, area(YARD, [FENCE], name="Survey west", width_m=3, height_m=30, priority=2), *points()[:1])
+    found = site(
+        tmp_path, robots, area(YARD, [FENCE], name="Survey west", width_m=3, height_m=30, priority=2), *points()[:1]
+    )
     task = next(task for task in found.mission.tasks if task.action is not None)
     assert (task.id, task.priority, task.action.name) == ("Survey west", 2, "coverage")
     assert (len(task.action.value("area")), len(task.action.value("holes"))) == (4, 1)

@@ -106,7 +106,9 @@ def test_a_table_of_stops_read_again_has_the_same_tasks(mission):
 def test_a_geopackage_has_the_same_places_and_areas(mission):
     earth = Earth.of(mission, "a test")
     layers = {
-        group: [(shapely.Point(*_lon_lat(earth.spot(one.position))), _properties(one)) for one in getattr(mission, group)]
+        group: [
+            (shapely.Point(*_lon_lat(earth.spot(one.position))), _properties(one)) for one in getattr(mission, group)
+        ]
         for group in ("robots", "tasks")
     }
     if mission.map is not None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -133,7 +134,9 @@ def circle_of(entry: Entry, center: Sequence[float], findings: list[Finding]) ->
     if radius is None and isinstance(across := values.get("diameter_m"), float):
         radius = across / 2
     if radius is None:
-        expected = f"a column radius (m), an area in place of the point; or --as {quoted(f'{entry.told}=task')} or =skip"
+        expected = (
+            f"a column radius (m), an area in place of the point; or --as {quoted(f'{entry.told}=task')} or =skip"
+        )
         told = f"a closed area at a point, without a radius: {entry.reason}"
         findings.append(entry.feature.finding("radius", told, expected))
     own = {key: values[key] for key in _OF_ZONES if key in values}
@@ -162,6 +165,21 @@ def boundary_of(
         return [], []
     (area,) = areas
     return _corners(area.exterior), [{"polygon": _corners(hole)} for hole in area.interiors]
+
+
+def seen_from(entry: Entry, stated: Mapping[str, float | None], *, has_camera: bool, findings: list[Finding]) -> Entry:
+    """Return an area to survey with what is stated for all; a finding where nothing says how wide its lanes are."""
+    own = {key: value for key, value in stated.items() if value is not None}
+    if "width_m" in entry.values or "fov_deg" in entry.values:
+        own = {key: value for key, value in own.items() if key == "height_m"}
+    values = {**own, **entry.values}
+    if "width_m" not in values and "height_m" not in values:
+        expected = "a property height_m, or --height-m METRES: from how high it is seen; or --width-m of a tool"
+        findings.append(entry.feature.finding("height_m", "missing", expected))
+    elif "width_m" not in values and "fov_deg" not in values and not has_camera:
+        expected = "a property fov_deg, or --fov-deg DEGREES: how wide the camera sees; or robots with a camera"
+        findings.append(entry.feature.finding("fov_deg", "missing", expected))
+    return replace(entry, values=values)
 
 
 def survey_tasks(

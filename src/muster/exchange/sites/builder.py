@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from muster.exchange.sites.areas import (
     boundary_of,
     circle_of,
     corners_of,
+    seen_from,
     survey_tasks,
     zones_of,
 )
@@ -271,7 +272,7 @@ class Builder:
             assert self._frame is not None
             areas = areas_of(entry, self._frame, self.built.findings, mends if entry.role == "zone" else None)
             if entry.role == "survey":
-                tasks = survey_tasks(self._seen_from(entry), areas, self._holes(entry), self._middle(entry, spatial))
+                tasks = survey_tasks(self._seen(entry), areas, self._holes(entry), self._middle(entry, spatial))
                 for task, name in zip(tasks, self._ids([entry] * len(areas)), strict=True):
                     record = self._record(entry, name, task["position"])
                     kept = {key: value for key, value in record.items() if key not in ACTION_KEYS[COVERAGE].names}
@@ -288,21 +289,9 @@ class Builder:
         if left_out := [entry.told for entry, zone in zones if zone.get("forbidden_to") == []]:
             self.built.notes.append(f"zones that are forbidden to nobody are left out: {some_of(left_out)}")
 
-    def _seen_from(self, entry: Entry) -> Entry:
-        """An area to survey with what a user says of all of them; a finding where nothing says how wide lanes are."""
-        stated = {key: value for key, value in self._options.survey.items() if value is not None}
-        if "width_m" in entry.values or "fov_deg" in entry.values:
-            stated = {key: value for key, value in stated.items() if key == "height_m"}
-        values = {**stated, **entry.values}
-        if "width_m" in values:
-            return replace(entry, values=values)
-        if "height_m" not in values:
-            expected = "a property height_m, or --height-m METRES: from how high it is seen; or --width-m of a tool"
-            self.built.findings.append(entry.feature.finding("height_m", "missing", expected))
-        elif "fov_deg" not in values and not any("camera" in one for one in self.built.data.get("robots", ())):
-            expected = "a property fov_deg, or --fov-deg DEGREES: how wide the camera sees; or robots with a camera"
-            self.built.findings.append(entry.feature.finding("fov_deg", "missing", expected))
-        return replace(entry, values=values)
+    def _seen(self, entry: Entry) -> Entry:
+        has_camera = any("camera" in one for one in self.built.data.get("robots", ()))
+        return seen_from(entry, self._options.survey, has_camera=has_camera, findings=self.built.findings)
 
     def _holes(self, entry: Entry) -> list[shapely.Polygon]:
         """The holes that a plan has beside an area."""

@@ -11,7 +11,6 @@ import math
 import re
 import unicodedata
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
 from typing import Any
@@ -36,10 +35,6 @@ _OF_CLOCK = re.compile(r"\s*uhr$", re.IGNORECASE)
 _DATED = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})[\s,]+(\d{1,2}):(\d\d)(?::(\d\d))?(?:\s*uhr)?", re.IGNORECASE)
 _CLOCK_WITHOUT_COLON = re.compile(r"0\d[0-5]\d")
 _YES = frozenset(("true", "yes", "y", "x", "1", "on"))
-_ENERGY = (
-    "how long or how far it carries the robot, with a unit: a column Endurance (min) or Range (km), "
-    "or 28 min or 5 km in the cell; not a number alone, mAh, Wh or %"
-)
 _JOINERS = "\u200c\u200d"
 """Of letters and of emoji: part of the text, though they are seen only in what they join."""
 _UNLIMITED = ("inf", ".inf", "infinity", "unlimited", "none")
@@ -137,37 +132,6 @@ def limit(value: object) -> float | None:
     return number(value)
 
 
-def no_capacity(value: object) -> float:
-    """Refuse a capacity that does not say of what."""
-    raise CellError("load_capacity for what it carries (kg or pieces), Endurance (min) or Range (km) for its energy")
-
-
-def endurance(value: object, factor: float = 1.0) -> float:
-    """Seconds that a robot can be under way; a number needs a unit."""
-    return _above_0(duration(_with_unit(value, factor), factor))
-
-
-def range_of(value: object, factor: float = 1.0) -> float:
-    """Metres that a robot can go; a number needs a unit."""
-    return _above_0(number(_with_unit(value, factor), "length", factor))
-
-
-def battery(value: object) -> dict[str, float]:
-    """How long or how far a battery carries a robot, by the unit beside the number: `28 min`, `5 km`."""
-    if isinstance(value, str) or isinstance(value, timedelta):
-        for key, read in (("endurance_s", endurance), ("range_m", range_of)):
-            with suppress(CellError):
-                return {key: read(value, math.nan)}
-    raise CellError(_ENERGY)
-
-
-def _with_unit(value: object, factor: float) -> object:
-    """The value; refused where it is a number that nothing gives a unit."""
-    if math.isnan(factor) and is_bare_number(value):
-        raise CellError(_ENERGY)
-    return value
-
-
 def is_bare_number(value: object) -> bool:
     """Return whether a cell holds a number without a unit."""
     if isinstance(value, str):
@@ -175,7 +139,8 @@ def is_bare_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _above_0(found: float) -> float:
+def above_0(found: float) -> float:
+    """The number; refused unless it is more than 0."""
     if not found > 0:
         raise CellError("more than 0")
     return found
@@ -183,7 +148,7 @@ def _above_0(found: float) -> float:
 
 def radius(value: object, factor: float = 1.0) -> float:
     """Metres; a number below 1 without a unit may be one of kilometres, and is refused."""
-    found = _above_0(number(value, "length", factor))
+    found = above_0(number(value, "length", factor))
     if is_bare_number(value) and factor == 1.0 and found < 1:
         raise CellError(f"a radius with its unit, as {found:g} km or {found:g} m")
     return found

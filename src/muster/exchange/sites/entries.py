@@ -10,10 +10,9 @@ from typing import Any
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
 from muster.exchange.sites.headings import Columns, bare_numbers, columns_of
 from muster.exchange.sites.keys import CIRCLE, ROLE, SKIP, WITH_PLACE, keys_of
-from muster.exchange.sites.robot_kinds import with_kind
 from muster.exchange.sites.roles import Decision, Roles, forbidden_by_name, is_of_plan, names_role
-from muster.exchange.sites.undecided import findings_of
 from muster.exchange.sites.shapes import from_text
+from muster.exchange.sites.undecided import findings_of
 from muster.mission.errors import Finding
 
 _NEAR = 0.75
@@ -115,7 +114,7 @@ def entries_of(
             notes.append(f"{layer.title}: numbers without a unit are taken so: {', '.join(taken)}")
         for feature, decision in chosen:
             found += [replace(e, reason=decision.reason) for e in _entry(role, feature, columns, findings)]
-    found = [_forbidden(layer, with_kind(entry, layer, roles)) for entry in found]
+    found = [_forbidden(layer, entry) for entry in found]
     lost = set.intersection(*unread) if unread else set()
     lost -= _OF_AREAS if any(is_of_plan(feature, kind) for feature in features for kind in ("area", "hole")) else set()
     if names := [heading for heading in layer.headings if heading in lost and heading.casefold() != ROLE.name]:

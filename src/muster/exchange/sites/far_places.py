@@ -77,6 +77,7 @@ def _near(entry: Entry, frame: Frame) -> Entry | None:
         reaches = isinstance(radius, float) and frame.distance(entry.degrees) - radius < FARTHEST_M
         return entry if reaches else None
     assert entry.geometry is not None
+    pieces: list[tuple[Ring, ...]]
     if entry.role == "lane":
         pieces = [(run,) for piece in entry.geometry.pieces for run in _near_runs(piece[0], frame)]
     else:

@@ -112,7 +112,9 @@ def columns_of(
             elif column.key.name in found:
                 first = found[column.key.name]
                 expected = f"one column that says {column.key.name}: --column {column.key.name}={first.heading}"
-                findings.append(_of_layer(layer, heading, f"means {column.key.name}, as {first.heading} does", expected))
+                findings.append(
+                    _of_layer(layer, heading, f"means {column.key.name}, as {first.heading} does", expected)
+                )
             elif column.factor == 0:
                 wrong.add(column.key.name)
                 told = column.key.right or f"{units_text(column.key.dimension)}, or nothing in brackets"

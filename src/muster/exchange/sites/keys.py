@@ -11,7 +11,9 @@ from dataclasses import dataclass, field, fields
 from functools import cache, partial
 from typing import Any
 
-from muster.exchange.sites import cells
+from muster.exchange.sites import cells, energy_cells
+from muster.exchange.sites import key_words as words
+from muster.exchange.sites.energy_cells import COLUMNS
 from muster.exchange.sites.units import UNITS, Dimension
 from muster.exchange.sites.vocabulary import moves
 from muster.mission.action_keys import ACTION_KEYS
@@ -113,35 +115,7 @@ PLACE = (
 )
 IDENTITY = (
     SiteKey("id", cells.text, names=("index", "no", "nr", "number", "key", "code", "ref")),
-    SiteKey(
-        "name",
-        cells.text,
-        names=(
-            *("title", "label", "bezeichnung", "nom", "nombre", "nome", "naam", "nazwa", "nazev", "název", "navn"),
-            *("namn", "isim", "adı", "имя", "название", "назва", "όνομα", "ονομα", "اسم", "الاسم", "نام", "שם"),
-            *("नाम", "न\u092eम", "名称", "名稱", "名前", "이름"),
-        ),
-    ),
-)
-ENERGY = "Endurance (min), Range (km), or a unit beside the number: 28 min, 5 km"
-"""What says how much energy a robot has."""
-_BATTERY = (
-    *("battery", "batterycapacity", "batterylevel", "batterytime", "batterylife", "akku", "akkukapazitat", "akkukapazität"),
-    *("batterie", "bateria", "batería", "batteria", "accu", "batteri", "pil", "batarya", "акб", "батарея", "аккумулятор"),
-    *("акумулятор", "батарея", "μπαταρία", "بطارية", "باتری", "סוללה", "电池", "電池", "バッテリー", "배터리"),
-    *("energy", "stateofcharge", "soc", "chargelevel"),
-)
-_ENDURANCE = (
-    *("endurance", "flighttime", "flyingtime", "maxflighttime", "maxendurance", "runtime", "operatingtime", "drivetime"),
-    *("hovertime", "flugzeit", "flugdauer", "akkulaufzeit", "laufzeit", "ausdauer", "autonomie", "autonomia", "autonomía"),
-    *("tempsdevol", "tiempodevuelo", "tempodivolo", "tempodevoo", "vliegtijd", "czaslotu", "dobaletu", "flytid", "flygtid"),
-    *("flyvetid", "uçuşsüresi", "времяполета", "времяполёта", "часпольоту", "χρόνοςπτήσης", "续航", "续航时间", "航続時間"),
-    *("飛行時間", "飞行时间", "비행시간", "체공시간", "مدةالطيران", "مداومتپروازی", "זמןטיסה"),
-)
-_RANGE = (
-    *("range", "maxrange", "flightrange", "reichweite", "portée", "portee", "alcance", "raggio", "raggiodazione", "bereik"),
-    *("zasięg", "zasieg", "dosah", "dolet", "rekkevidde", "räckvidd", "rackvidd", "rækkevidde", "menzil", "дальность"),
-    *("дальністьпольоту", "дальність", "εμβέλεια", "航程", "航続距離", "항속거리", "المدى", "برد", "טווח"),
+    SiteKey("name", cells.text, names=words.NAMES),
 )
 ROLE = SiteKey("kind", _lower, names=("role", "feature", "featurekind"))
 _TASK = (
@@ -207,10 +181,24 @@ _ROBOT = (
     SiteKey("skills", cells.words, names=("skill", "capabilities", "equipment")),
     _length("radius_m", "radius"),
     SiteKey("heading_deg", partial(_number, "angle"), "angle", ("heading", "yaw")),
-    SiteKey("endurance_s", cells.endurance, "time", (*_ENDURANCE, *_BATTERY), needs_unit=True, right=ENERGY),
-    SiteKey("range_m", cells.range_of, "length", (*_RANGE, *_BATTERY), needs_unit=True, right=ENERGY),
-    SiteKey("battery", cells.battery, names=_BATTERY, right=ENERGY),
-    SiteKey("capacity", cells.no_capacity, names=("budget",)),
+    SiteKey(
+        "endurance_s",
+        energy_cells.endurance,
+        "time",
+        (*words.ENDURANCE, *words.BATTERY),
+        needs_unit=True,
+        right=COLUMNS,
+    ),
+    SiteKey(
+        "range_m",
+        energy_cells.range_of,
+        "length",
+        (*words.RANGE, *words.BATTERY),
+        needs_unit=True,
+        right=COLUMNS,
+    ),
+    SiteKey("battery", energy_cells.battery, names=words.BATTERY, right=COLUMNS),
+    SiteKey("capacity", energy_cells.no_capacity, names=("budget",)),
     _mass("load_capacity", "payload", "capacity"),
     SiteKey("climb_mps", partial(_number, "speed"), "speed", ("climb", "climbspeed")),
     SiteKey("starts", cells.moment, "time", ("from", "availablefrom", "shiftstart", "start", "earliest")),
@@ -230,7 +218,9 @@ _ZONE = (
     _length("ceiling_m", "ceiling", "maxheight", "upperlimit"),
     SiteKey("forbidden_to", _kinds_of_robots, names=("closedto", "forbidden"), rare=frozenset(("forbidden",))),
 )
-ZONE_RADIUS = SiteKey("radius_m", cells.radius, "length", ("radius", "rad", "radio", "raggio", "rayon", "raio", "радиус"))
+ZONE_RADIUS = SiteKey(
+    "radius_m", cells.radius, "length", ("radius", "rad", "radio", "raggio", "rayon", "raio", "радиус")
+)
 """Of a closed area that is given by its middle."""
 _ROUND_ZONE = (ZONE_RADIUS, SiteKey("diameter_m", cells.radius, "length", ("diameter", "durchmesser")), *_ZONE)
 _LANE = (

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
+from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Layer
 from muster.exchange.sites.roles import BY, Roles, labels_of, names_of, role_word
 from muster.exchange.sites.vocabulary import AIR, GROUND, meanings, moves
-
-if TYPE_CHECKING:
-    from muster.exchange.sites.entries import Entry
 
 
 def with_kind(entry: Entry, layer: Layer, roles: Roles) -> Entry:

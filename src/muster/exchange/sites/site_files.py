@@ -15,6 +15,7 @@ from muster.exchange.sites.identities import identified
 from muster.exchange.sites.keys import CIRCLE
 from muster.exchange.sites.plan_areas import joined_areas
 from muster.exchange.sites.readers import reader_of
+from muster.exchange.sites.robot_kinds import with_kind
 from muster.exchange.sites.roles import BY, Roles
 from muster.exchange.sites.times import require_alike
 from muster.mission.counting import counted
@@ -110,7 +111,8 @@ def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -
     entries: list[Entry] = []
     decided: list[str] = []
     for layer, default in layers:
-        found = entries_of(layer, roles, default, columns, findings, notes)
+        read = entries_of(layer, roles, default, columns, findings, notes)
+        found = [with_kind(entry, layer, roles) for entry in read]
         require_alike(found, findings)
         entries += identified(layer, found, columns, notes)
         decided += _decisions(layer, entries[len(entries) - len(found) :])
@@ -129,9 +131,7 @@ def _decisions(layer: Layer, entries: Sequence[Entry]) -> list[str]:
     for entry in entries:
         if entry.reason.startswith(BY):
             groups.setdefault((entry.role, entry.reason), []).append(entry.told)
-    return [
-        f"{layer.title}: {_NOUNS[role][0]} {reason}: {some_of(names)}" for (role, reason), names in groups.items()
-    ]
+    return [f"{layer.title}: {_NOUNS[role][0]} {reason}: {some_of(names)}" for (role, reason), names in groups.items()]
 
 
 def _there(base: Mission | None, team: Mission | None) -> dict[str, Any]:

@@ -12,7 +12,9 @@ UNITS: dict[Dimension, dict[str, float]] = {
     "time": {
         **dict.fromkeys(("s", "sec", "secs", "second", "seconds", "sek", "sekunden", "сек", "с", "秒", "초"), 1.0),
         **dict.fromkeys(("min", "mins", "minute", "minutes", "minuten", "minuti", "minutos", "minut", "minuty"), 60.0),
-        **dict.fromkeys(("minutter", "minuter", "dk", "dakika", "мин", "минут", "хв", "分", "分钟", "分鐘", "분"), 60.0),
+        **dict.fromkeys(
+            ("minutter", "minuter", "dk", "dakika", "мин", "минут", "хв", "分", "分钟", "分鐘", "분"), 60.0
+        ),
         **dict.fromkeys(("h", "hr", "hrs", "hour", "hours", "std", "stunden", "heures", "horas", "ore", "uur"), 3600.0),
         **dict.fromkeys(("timer", "timmar", "godz", "saat", "ч", "час", "год", "小时", "小時", "時間", "시간"), 3600.0),
         **dict.fromkeys(("d", "day", "days"), 86400.0),
