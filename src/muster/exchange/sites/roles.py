@@ -326,8 +326,13 @@ def _has_kind(feature: Feature) -> bool:
 
 def _radius_heading(feature: Feature) -> str | None:
     """Return the heading of a feature under which a radius stands, if there is one."""
+    return next((heading for heading in feature.values if _is_radius(heading)), None)
+
+
+@lru_cache(maxsize=1024)
+def _is_radius(heading: str) -> bool:
     known = (ZONE_RADIUS.name.replace("_", ""), *ZONE_RADIUS.names)
-    return next((h for h in feature.values if re.sub(r"\W*[(\[].*|[\W_]", "", h.casefold()) in known), None)
+    return re.sub(r"\W*[(\[].*|[\W_]", "", heading.casefold()) in known
 
 
 def _around(layer: Layer) -> Iterable[tuple[str, str]]:

@@ -23,8 +23,10 @@ _PATTERNS: Mapping[str, str] = {
         no drive*, no overflight*, do not enter, do not fly*, do not overfly, not allowed, not permitted, keep out*,
         keepout*, keep away, keep clear, stay out, stay away, off limits, out of bounds, prohibit*, forbid*,
         restrict*, exclusion*, exclude*, danger*, hazard*, unsafe, avoid, closed, minefield*, tfr, obstacle*, sperr*,
-        *sperrgebiet*, *sperrzone*, *sperrflach*, *sperrbereich*, gesperrt*, *verbot*, *gefahr*, *schutzgebiet*,
-        kein zutritt, nicht betreten, nicht uberfliegen, hindernis*, *ausschluss*, tabu*, interdi*, defense d entrer,
+        *sperrgebiet*, *sperrzone*, *sperrflach*, *sperrbereich*, gesperrt*, *absperrung*, *beschrankung*,
+        kein einflug, keine einfahrt, keine durchfahrt, kein zugang, blocked, drone free, gevaren*, exclusao,
+        *fareomrad*, hinderomrad*, *yasag*, evitar, eviter, *verbot*, *gefahr*, *schutzgebiet*, kein zutritt,
+        nicht betreten, nicht uberfliegen, hindernis*, *ausschluss*, tabu*, interdi*, defense d entrer,
         ne pas survoler, ne pas entrer, dangereu*, exclu, exclue*, reglementee*, prohibe*, prohibi*, restring*,
         restriccion*, peligr*, vedad*, no volar, no entrar, no pasar, no sobrevolar, obstacul*, vietat*, divieto,
         divieti, proibit*, interdett*, pericol*, esclus*, non entrare, non sorvolare, ostacol*, proibi*, restrit*,
@@ -135,33 +137,38 @@ _PATTERNS: Mapping[str, str] = {
         samolot*, smiglow*, letoun*, letadl*, bezpilotn*, vzdusn*, *dronare*, dronarna, luftfartoy*, luftfartoj*,
         luftfarkost*, *drone, *drones, iha, ihalar, siha, insansiz hava*, hava arac*, ucak*, ucan, дрон*, бпла, бла,
         бвс, беспилотник*, *коптер*, мультиротор*, самолет*, вертолет*, воздушн*, летательн*, безпілотник*, літак*,
-        вертол*, повітрян*, аеродрон*, ντρον*, δρον, δρονος, αεροσκαφ*, *κοπτερ*, εναερι*, σμηεα, σμη ε α, *طائر*,
-        *درون*, *پهپاد*, *پهباد*, *کوپتر*, *هواپیما*, *هلیکوپتر*, *רחפנ*, *רחפן*, כטב*, מל ט, מל טים, *מטוס*, *מסוק*,
-        *דרון*, *דרונ*, *ड्रोन*, *विमान*, *यूएवी*, *कॉप्टर*, *हवाई*, *无人机*, *無人機*, *飞机*, *飛機*, *旋翼*,
-        *直升机*, *直升機*, *飞行器*, *飛行器*, *航拍*, *無人航空*, *ドローン*, *コプター*, *飛行機*, *드론*,
-        *무인기*, *콥터*, *항공기*, *비행기*, *무인 항공*
+        вертол*, повітрян*, аеродрон*, ντρον*, ντροουν*, bezzalogowiec, bezzalogowce, e bee, octo, heli, helis, δρον,
+        δρονος, αεροσκαφ*, *κοπτερ*, εναερι*, σμηεα, σμη ε α, *طائر*, *درون*, *پهپاد*, *پهباد*, *کوپتر*, *هواپیما*,
+        *هلیکوپتر*, *רחפנ*, *רחפן*, כטב*, מל ט, מל טים, *מטוס*, *מסוק*, *דרון*, *דרונ*, *ड्रोन*, *विमान*, *यूएवी*,
+        *कॉप्टर*, *हवाई*, *无人机*, *無人機*, *飞机*, *飛機*, *旋翼*, *直升机*, *直升機*, *飞行器*, *飛行器*, *航拍*,
+        *無人航空*, *ドローン*, *コプター*, *飛行機*, *드론*, *무인기*, *콥터*, *항공기*, *비행기*, *무인 항공*
     """,
     GROUND: """
         ground, wheeled, rover, rovers, ugv, ugvs, agv, agvs, amr, amrs, truck, trucks, lorry, lorries, van, vans,
         car, cars, buggy, forklift*, tractor, tractors, crawler*, quadruped*, legged, robot dog*, robodog*,
-        turtlebot*, husky, jackal, mower*, atv, differential drive*, *rasenmaher*, *bodenroboter*, *bodenfahrzeug*,
-        lkw, pkw, *stapler, traktor*, laufroboter*, raupe, terrestre*, camion*, tracteur*, carretilla*, coche,
-        coches, terrestr*, carrell*, muletto, trattor*, caminhao, caminhoes, empilhadeira*, vrachtwagen*, *heftruck*,
-        grondrobot*, grondvoertuig*, ciezarowk*, wozek*, wozki, lazik*, ladowy, ladowe, pozemn*, vozik*, nakladni,
-        *lastbil*, gaffeltruck*, bil, biler, bilar, markfordon*, bakkekjoretoy*, kara arac*, ika, kamyon*, ровер*,
-        наземн*, грузовик*, погрузчик*, автомобил*, вездеход*, вантажівк*, навантажувач*, автомобіл*, επιγει*,
-        φορτηγ*, *شاحنة*, *شاحنات*, *أرضي*, *کامیون*, *زمینی*, *لیفتراک*, *خودرو*, *משאית*, *משאיות*, *קרקעי*,
-        *מלגז*, *רובר*, *ट्रक*, *रोवर*, *无人车*, *無人車*, *小车*, *卡车*, *卡車*, *叉车*, *地面*, *车辆*, *車両*,
-        *トラック*, *ローバー*, *フォークリフト*, *地上*, *로버*, *트럭*, *지게차*, *지상*
+        turtlebot*, husky, jackal, mower*, atv, differential drive*, *rasenmaher*, *bodenroboter*, mahroboter*,
+        *bodenfahrzeug*, lkw, pkw, *stapler, traktor*, laufroboter*, raupe, terrestre*, camion*, tracteur*,
+        carretilla*, coche, coches, terrestr*, carrell*, muletto, trattor*, caminhao, caminhoes, empilhadeira*,
+        vrachtwagen*, *heftruck*, grondrobot*, grondvoertuig*, ciezarowk*, wozek*, wozki, lazik*, ladowy, ladowe,
+        pozemn*, vozik*, nakladni, *lastbil*, gaffeltruck*, bil, biler, bilar, markfordon*, bakkekjoretoy*,
+        kara arac*, ika, kamyon*, ровер*, наземн*, грузовик*, погрузчик*, автомобил*, вездеход*, вантажівк*,
+        навантажувач*, автомобіл*, επιγει*, φορτηγ*, *شاحنة*, *شاحنات*, *أرضي*, *کامیون*, *زمینی*, *لیفتراک*,
+        *خودرو*, *משאית*, *משאיות*, *קרקעי*, *מלגז*, *רובר*, *ट्रक*, *रोवर*, *无人车*, *無人車*, *小车*, *卡车*,
+        *卡車*, *叉车*, *地面*, *车辆*, *車両*, *トラック*, *ローバー*, *フォークリフト*, *地上*, *로버*, *트럭*,
+        *지게차*, *지상*
     """,
 }
 
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_ASCII_WORD = re.compile("[a-z]+")
 _PLAIN = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "ı": "i", "æ": "ae", "œ": "oe", "ð": "d", "þ": "th"})
 
 
+@lru_cache(maxsize=1024)
 def plain(text: str) -> str:
     """Return the words of a text: in lower case, without accents, marks and digits, a space around each."""
+    if text.isascii():
+        return f" {' '.join(_ASCII_WORD.findall(_CAMEL.sub(' ', text).lower()))} "
     folded = unicodedata.normalize("NFKD", _CAMEL.sub(" ", text).casefold().translate(_PLAIN))
     kept = "".join(" " if _divides(c) else c for c in folded if unicodedata.category(c) not in ("Mn", "Cf"))
     return f" {' '.join(unicodedata.normalize('NFC', kept).split())} "
@@ -184,10 +191,14 @@ def _expressions() -> Mapping[str, re.Pattern[str]]:
     return {meaning: _expression(patterns) for meaning, patterns in _PATTERNS.items()}
 
 
-@lru_cache(maxsize=4096)
 def meanings(text: str) -> Mapping[str, str]:
     """Return what the words of a text say, each meaning with the first word that has it."""
-    words = plain(text)
+    return _meanings(plain(text))
+
+
+@lru_cache(maxsize=4096)
+def _meanings(words: str) -> Mapping[str, str]:
+    """Names of many features differ by their numbers alone, so that most are looked up once."""
     found = {meaning: match for meaning, one in _expressions().items() if (match := one.search(words))}
     return {meaning: match[0].strip() for meaning, match in found.items()}
 
@@ -199,10 +210,11 @@ def moves(text: str) -> str | None:
 
 
 def is_only(text: str, *wanted: str) -> bool:
-    """Return whether a text has no words besides those of the wanted meanings, and numbers or single letters."""
-    rest = plain(text)
-    if not any(meaning in meanings(text) for meaning in wanted):
-        return False
+    """Return whether a text has no words besides those of the wanted meanings, and single letters."""
+    return not meanings(text).keys().isdisjoint(wanted) and _is_only(plain(text), wanted)
+
+
+def _is_only(words: str, wanted: tuple[str, ...]) -> bool:
     for meaning in wanted:
-        rest = _expressions()[meaning].sub(" ", rest)
-    return all(len(word) < 2 for word in rest.split())
+        words = _expressions()[meaning].sub(" ", words)
+    return all(len(word) < 2 for word in words.split())
