@@ -142,8 +142,6 @@ def _thinned(itinerary: Itinerary, robot_paths: RobotPaths | None, tolerance: fl
 def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
     """Messages about one robot's file."""
     name, fence = itinerary.robot.id, Fence.of(plans.mission, itinerary)
-    if itinerary.robot.kind == "air":
-        yield f"{name}: {_landing(itinerary)}"
     for k in fence.passed:
         yield f"warning: {name}: its way leads over or under zone {k}, which a fence cannot say; left out of its fence"
     for broken in fence.broken:
@@ -157,6 +155,8 @@ def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
     low = [p for p in itinerary.under_way if p.place[2] <= itinerary.start.place[2]]
     if itinerary.robot.kind == "air" and low:
         yield f"warning: {name}: flies no higher than its start at {_named(low[0])}; --altitude M gives a least height"
+    if itinerary.robot.kind == "air":
+        yield f"{name}: {_landing(itinerary)}"
 
 
 def _landing(itinerary: Itinerary) -> str:

@@ -218,7 +218,14 @@ def _of_point_by_itself(layer: Layer, feature: Feature) -> Decision:
     if _has_kind(feature):
         return Decision("robot", f"{BY} how it moves")
     if (heading := _radius_heading(feature)) is not None:
-        return Decision(None, f"{heading} beside a point: a round closed area, or a task", ("zone", "task"))
+        areas = [
+            word
+            for name in labels
+            for meaning in (words.BOUNDARY, words.SURVEY)
+            if (word := meanings(name).get(meaning))
+        ]
+        told = f"{areas[0]} says an area to be drawn" if areas else "a round closed area, or a task"
+        return Decision(None, f"{heading} beside a point: {told}", (SKIP, "task") if areas else ("zone", "task"))
     if any(is_only(name, words.ROBOT, *_KINDS) for name in labels):
         return Decision(None, "a name of robots", ("robot", "task"))
     return Decision("task", f"{BY} default: points where no word says other")

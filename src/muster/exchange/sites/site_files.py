@@ -84,7 +84,7 @@ def read_site(
     found: list[tuple[Layer, str | None]] = [*layers]
     if robots is not None:
         found += [(layer, "robot") for layer in reader_of(robots)(robots)]
-    entries, notes = _entries(found, options)
+    entries, notes, decided = _entries(found, options)
     there = _there(base, team)
     main = base.source.file if base is not None else str(files[0] if files else robots)
     if not there.get("robots") and not any(entry.role == "robot" for entry in entries):
@@ -98,10 +98,13 @@ def read_site(
         data["suitability"] = suitability_table(suitability, built.places)
     source = Source(main, built.places, built.fields)
     mission = mission_from(data, source, [], base.travel_tables if base is not None else None)
-    return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes))
+    return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes, *decided))
 
 
-def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -> tuple[list[Entry], list[str]]:
+def _entries(
+    layers: Sequence[tuple[Layer, str | None]], options: SiteOptions
+) -> tuple[list[Entry], list[str], list[str]]:
+    """The entries of all layers, what there is to say of how they were read, and what words decided of them."""
     whole = [layer for layer, _ in layers]
     roles = Roles.of(options.kinds)
     roles.require_used(whole)
@@ -116,13 +119,12 @@ def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -
         require_alike(found, findings)
         entries += identified(layer, found, columns, notes)
         decided += _decisions(layer, entries[len(entries) - len(found) :])
-    notes = [*decided, *notes]
     entries = joined_areas(entries)
     if findings:
         raise MissionError(sorted(findings, key=lambda finding: (finding.file, finding.line or 0)))
     if whole and not entries:
         raise refused(whole[0].file, None, "", "nothing to read", "points, areas or lines")
-    return entries, notes
+    return entries, notes, decided
 
 
 def _decisions(layer: Layer, entries: Sequence[Entry]) -> list[str]:
