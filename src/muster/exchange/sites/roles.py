@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import PurePath
@@ -87,6 +87,7 @@ class Roles:
 
     given: Mapping[str, str]
     kinds: Mapping[str, str]
+    _with_areas: dict[int, bool] = field(default_factory=dict, compare=False, repr=False)
 
     @classmethod
     def of(cls, given: Mapping[str, str]) -> Roles:
@@ -132,12 +133,23 @@ class Roles:
             return Decision(default, "--robots")
         return _of_point(layer, feature) if shape == "point" else _of_shape(layer, feature, shape)
 
+    def _has_areas(self, layer: Layer) -> bool:
+        """Return whether a layer has areas or lines, which a word for areas means rather than points beside them."""
+        if id(layer) not in self._with_areas:
+            shapes = (feature.geometry.shape for feature in layer.features if feature.geometry is not None)
+            self._with_areas[id(layer)] = any(shape != "point" for shape in shapes)
+        return self._with_areas[id(layer)]
+
     def _stated(self, layer: Layer, feature: Feature) -> tuple[str | None, str]:
         """Return the role that a flag or a property states, and which of them."""
         point = feature.geometry is None or feature.geometry.shape == "point"
-        for name in (*labels_of(layer, feature), *names_of(layer)):
+        labels = labels_of(layer, feature)
+        for name in (*labels, *names_of(layer)):
             role = self.given.get(_folded(name))
-            if role is not None and (point or _folded(name) not in self.kinds):
+            if role is None or (not point and _folded(name) in self.kinds):
+                continue
+            own = name in labels
+            if own or role in AT_POINTS or role == SKIP or not point or not self._has_areas(layer):
                 return role, f"--as {name}"
         for heading, value in feature.values.items():
             if isinstance(value, str) and heading.casefold() in (ROLE.name, *ROLE.names, "type"):
