@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from contextlib import suppress
-from datetime import timedelta
+from datetime import time, timedelta
 
 from muster.exchange.sites.cells import CellError, above_0, duration, is_bare_number, number
 
@@ -23,25 +24,29 @@ def no_capacity(value: object) -> float:
 
 def endurance(value: object, factor: float = 1.0) -> float:
     """Seconds that a robot can be under way; a number needs a unit."""
-    return above_0(duration(_with_unit(value, factor), factor))
+    return _read(lambda given: duration(given, factor), value, factor)
 
 
 def range_of(value: object, factor: float = 1.0) -> float:
     """Metres that a robot can go; a number needs a unit."""
-    return above_0(number(_with_unit(value, factor), "length", factor))
+    return _read(lambda given: number(given, "length", factor), value, factor)
 
 
 def battery(value: object) -> dict[str, float]:
     """How long or how far a battery carries a robot, by the unit beside the number: `28 min`, `5 km`."""
-    if isinstance(value, str | timedelta):
+    if isinstance(value, str | time | timedelta):
         for key, read in (("endurance_s", endurance), ("range_m", range_of)):
             with suppress(CellError):
                 return {key: read(value, math.nan)}
     raise CellError(_EXPECTED)
 
 
-def _with_unit(value: object, factor: float) -> object:
-    """The value; refused where it is a number that nothing gives a unit."""
+def _read(read: Callable[[object], float], value: object, factor: float) -> float:
+    """The number of a cell; refused where nothing gives it a unit, or another one."""
     if math.isnan(factor) and is_bare_number(value):
         raise CellError(_EXPECTED)
-    return value
+    try:
+        found = read(value)
+    except CellError:
+        raise CellError(_EXPECTED) from None
+    return above_0(found)

@@ -156,13 +156,16 @@ def bare_numbers(columns: Columns, members: Sequence[Feature]) -> list[str]:
     for column in columns.by_key.values():
         unit = _UNIT_TAKEN.get(column.key.dimension)
         cells = (feature.values.get(column.heading) for feature in members)
-        if unit and column.is_bare and column.key.read not in _MOMENTS and any(map(is_bare_number, cells)):
+        is_said = column.key.read in _MOMENTS or column.key.name in _IN_METRES
+        if unit and column.is_bare and not is_said and any(map(is_bare_number, cells)):
             found.append(f"{column.heading} in {unit}")
     return found
 
 
-_UNIT_TAKEN = {"time": "s", "length": "m", "speed": "m/s", "mass": "kg"}
+_UNIT_TAKEN = {"time": "s", "length": "m", "speed": "m/s", "mass": "kg or pieces"}
 _MOMENTS = (moment, pairs)
+_IN_METRES = ("x", "y")
+"""Places of the map frame, which is in metres."""
 
 
 def means_something(heading: str) -> bool:

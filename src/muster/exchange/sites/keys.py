@@ -198,7 +198,7 @@ _ROBOT = (
         right=COLUMNS,
     ),
     SiteKey("battery", energy_cells.battery, names=words.BATTERY, right=COLUMNS),
-    SiteKey("capacity", energy_cells.no_capacity, names=("budget",)),
+    SiteKey("capacity", energy_cells.no_capacity, names=("budget",), right=COLUMNS),
     _mass("load_capacity", "payload", "capacity"),
     SiteKey("climb_mps", partial(_number, "speed"), "speed", ("climb", "climbspeed")),
     SiteKey("starts", cells.moment, "time", ("from", "availablefrom", "shiftstart", "start", "earliest")),
