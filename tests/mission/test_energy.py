@@ -1,4 +1,4 @@
-"""Batteries stated by time or length: what they are in the unit of usage, and that no drone flies longer than it can."""
+"""Batteries stated by time or length: what they are in the unit of usage; no drone flies longer than it can."""
 
 import pytest
 from hypothesis import given
@@ -115,8 +115,8 @@ def test_no_drone_flies_longer_or_farther_than_it_can(robot, tasks, rules):
     key, amount, speed = robot
     amount *= speed if key == "range_m" else 1
     lines = [f"{{id: '{k}', position: [{x}, {y}], {more if k else ''}}}" for k, (x, y, more) in enumerate(tasks)]
-    text = f"schema: muster/1\nrules: {{{rules}}}\nrobots: [{{id: r, position: [0, 0], kind: air, {key}: {amount}, "
-    text += f"speed_mps: {speed}}}]\ntasks: [{', '.join(lines)}]\n"
+    one = f"{{id: r, position: [0, 0], kind: air, {key}: {amount}, speed_mps: {speed}}}"
+    text = f"schema: muster/1\nrules: {{{rules}}}\nrobots: [{one}]\ntasks: [{', '.join(lines)}]\n"
     try:
         found = parse_yaml(text, "m.yaml")
     except MissionError as error:

@@ -73,10 +73,7 @@ def test_range_is_a_length(tmp_path, heading, cell, metres):
             (heading, "5000")
             for heading in ("Battery (mAh)", "Battery (%)", "Battery Wh", "Battery [kWh]", "Akku (Ah)")
         ),
-        *(
-            (heading, "28")
-            for heading in ("Akku", "Batterie", "Bateria", "Flugzeit", "Reichweite", "SoC", "电池", "батарея")
-        ),
+        *((heading, "28") for heading in ("Akku", "Batterie", "Flugzeit", "Reichweite", "SoC", "电池", "батарея")),
         ("Capacity", "28"),
         ("Capacity (mAh)", "5000"),
         ("Budget", "28"),
@@ -133,13 +130,13 @@ def test_work_counts_against_a_range(tmp_path):
 
 def test_numbers_that_are_taken_in_si_units_are_told(tmp_path):
     places, team = tmp_path / "site.csv", tmp_path / "rovers.csv"
-    places.write_text("id,x,y,duration,load\na,1,2,90,3\n", encoding="utf-8")
+    places.write_text("id,x,y,duration,demand\na,1,2,90,3\n", encoding="utf-8")
     team.write_text("id,x,y,speed,radius\nr,0,0,2,0.3 m\n", encoding="utf-8")
     found = read_site(places, robots=team)
     assert f"{team}: numbers without a unit are taken so: speed in m/s" in found.notes
-    assert f"{places}: numbers without a unit are taken so: duration in s, load in kg or pieces" in found.notes
+    assert f"{places}: numbers without a unit are taken so: duration in s, demand in kg or pieces" in found.notes
     team.write_text("id,x,y,speed_mps,radius\nr,0,0,2,0.3 m\n", encoding="utf-8")
-    places.write_text("id,x,y,duration_s,load_kg\na,1,2,90,3\n", encoding="utf-8")
+    places.write_text("id,x,y,duration_s,load\na,1,2,90,3\n", encoding="utf-8")
     assert not any("without a unit" in note for note in read_site(places, robots=team).notes)
 
 
