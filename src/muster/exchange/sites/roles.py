@@ -17,6 +17,7 @@ from itertools import pairwise
 from pathlib import PurePath
 
 from muster.exchange.sites import vocabulary as words
+from muster.exchange.sites.cells import visible
 from muster.exchange.sites.features import Feature, Layer
 from muster.exchange.sites.keys import AT_POINTS, CIRCLE, COVERAGE, IDENTITY, ROLE, ROLES, SKIP, ZONE_RADIUS
 from muster.exchange.sites.vocabulary import is_only, meanings
@@ -374,7 +375,7 @@ def _names_in(name: str, file: str) -> list[str]:
 def labels_of(layer: Layer, feature: Feature) -> list[str]:
     """Return the name and the id of a feature, each in one line, as far as it has them."""
     values = (feature.values.get(heading) for heading in _label_headings(layer.headings))
-    return [" ".join(value.split()) for value in values if isinstance(value, str)]
+    return [" ".join(visible(value).split()) for value in values if isinstance(value, str)]
 
 
 @lru_cache(maxsize=64)
@@ -391,7 +392,7 @@ def _bare(heading: str) -> str:
 
 
 def _folded(name: str) -> str:
-    return " ".join(name.casefold().replace("\u00ad", "").split())
+    return " ".join(visible(name).casefold().split())
 
 
 def quoted(name: str) -> str:
