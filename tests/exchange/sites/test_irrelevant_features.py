@@ -77,7 +77,7 @@ def test_a_closed_area_that_reaches_far_is_cut_and_covers_what_it_covered(tmp_pa
 )
 @pytest.mark.parametrize("origin", [None, ORIGIN])
 def test_what_is_needed_or_mistaken_is_refused(tmp_path, team, wrong, origin):
-    with pytest.raises(MissionError, match="within 100 km of the origin.*swapped, or 0"):
+    with pytest.raises(MissionError, match=r"within 100 km of the origin.*swapped, or 0"):
         site(tmp_path, team, wrong, *points(), origin=origin)
 
 
@@ -148,14 +148,16 @@ def test_tags_of_maps_that_look_like_keys_are_not_read_and_named(tmp_path, team,
 
 
 def test_a_column_of_durations_is_read_strictly(tmp_path, team):
-    given = [feature("Point", [8.5417, 47.377 + k / 1e4], name=f"t{k}", service=v) for k, v in enumerate(["5 min", "x"])]
+    given = [
+        feature("Point", [8.5417, 47.377 + k / 1e4], name=f"t{k}", service=v) for k, v in enumerate(["5 min", "x"])
+    ]
     with pytest.raises(MissionError, match="service: x; expected a duration"):
         site(tmp_path, team, *given)
 
 
 NAMES = [
     ("Vogel\u00adschutz\u00adgebiet", "Vogelschutzgebiet"),
-    ("می\u200cخواهم", "می\u200cخواهم"),
+    ("می\u200cخو", "می\u200cخو"),
     ("क्\u200dष", "क्\u200dष"),
     ("Turm\u200b 3", "Turm 3"),
     ("\ufeffmast", "mast"),

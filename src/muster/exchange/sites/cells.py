@@ -120,6 +120,8 @@ def _plain(told: str) -> str | None:
 
 
 def _finite(found: float, expected: str) -> float:
+    if math.isnan(found):
+        raise CellError(f"{expected}, with its unit beside it or in the heading")
     if not math.isfinite(found):
         raise CellError(f"{expected}, finite")
     return found

@@ -63,6 +63,12 @@ def _length(name: str, *names: str) -> SiteKey:
     return SiteKey(name, partial(_number, "length"), "length", names)
 
 
+def _level(name: str, *names: str) -> SiteKey:
+    """A height of a zone; storeys and the like, under the same headings, are not read: all heights are closed then."""
+    read = partial(_number, "length")
+    return SiteKey(name, read, "length", names, needs_unit=True, rare=frozenset(names))
+
+
 def _angle(name: str, read: Read, *names: str) -> SiteKey:
     return SiteKey(name, read, "angle", names, is_free=True)
 
@@ -214,8 +220,8 @@ _STATION = (
 _DOOR = SiteKey("door", cells.text, names=("doorid",))
 _ZONE = (
     _DOOR,
-    _length("floor_m", "floor", "minheight", "lowerlimit"),
-    _length("ceiling_m", "ceiling", "maxheight", "upperlimit"),
+    _level("floor_m", "floor", "minheight", "lowerlimit"),
+    _level("ceiling_m", "ceiling", "maxheight", "upperlimit"),
     SiteKey("forbidden_to", _kinds_of_robots, names=("closedto", "forbidden"), rare=frozenset(("forbidden",))),
 )
 ZONE_RADIUS = SiteKey(
