@@ -26,8 +26,8 @@ def test_several_files_make_a_mission(muster, files):
         "robots.csv: numbers without a unit are taken so: speed in m/s\n"
         "origin_wgs84 chosen: lat_deg 47.377, lon_deg 8.54205, alt_m 0.0; --origin says another\n"
         "no boundary given: a rectangle 50 m around everything is taken\n"
-        "panels.csv: task by default: points where no word says other: north, east, south\n"
-        "fences.geojson: zone by fences in the file fences: features[0]\n"
+        "panels.csv: north, east, south: task, as points are where no word says other\n"
+        "fences.geojson: features[0]: zone, by the word fences in the file fences\n"
         "next: muster check m.yaml; muster solve m.yaml\n"
     )
     assert muster("check", "m.yaml")[0] == 0

@@ -45,7 +45,7 @@ def test_what_fits_no_robot_is_refused(tmp_path, form, robots, options, message)
 
 
 def test_a_tolerance_is_for_corners_of_maps(tmp_path):
-    with pytest.raises(ParameterError, match="tolerance: 0.5; expected it with travel over a map"):
+    with pytest.raises(ParameterError, match=r"tolerance: 0\.5; expected it with travel over a map"):
         exported(*given(tmp_path, ROVERS), "qgc", ExportOptions(tolerance=0.5))
     assert exported(*given(tmp_path, ROVERS, more=MAP), "qgc", ExportOptions(tolerance=0.5)).texts
 

@@ -136,7 +136,7 @@ def test_what_its_folder_closes_no_name_opens(tmp_path, team):
     with pytest.raises(MissionError) as caught:
         read_site(file, robots=team)
     (finding,) = caught.value.findings
-    assert "closed by no fly in the layer No-fly zones" in finding.value
+    assert "closed by the word no fly in the layer No-fly zones" in finding.value
     assert len(read_site(file, robots=team, kinds={"No-fly zones": "zone"}).mission.map.zones) == 1
 
 
@@ -144,7 +144,7 @@ def test_what_its_folder_closes_no_name_opens(tmp_path, team):
 def test_points_of_other_names_are_tasks_and_that_is_told(tmp_path, team, name):
     found = read(tmp_path, feature("Point", [8.5417, 47.3775], name=name), team=team)
     assert [task.id for task in found.mission.tasks] == [name]
-    told = f"{tmp_path / 'site.geojson'}: task by default: points where no word says other: {name}"
+    told = f"{tmp_path / 'site.geojson'}: {name}: task, as points are where no word says other"
     assert told in found.notes
 
 

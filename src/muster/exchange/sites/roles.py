@@ -241,7 +241,7 @@ def _of_point_by_itself(layer: Layer, feature: Feature) -> Decision:
         return Decision(None, f"{heading} beside a point: {told}", (SKIP, "task") if areas else ("zone", "task"))
     if any(is_only(name, words.ROBOT, *_KINDS) for name in labels):
         return Decision(None, "a name of robots", ("robot", "task"))
-    return Decision("task", f"{BY} default: points where no word says other")
+    return Decision("task", POINT)
 
 
 def _of_shape(layer: Layer, feature: Feature, shape: str) -> Decision:
@@ -268,7 +268,7 @@ def _of_shape(layer: Layer, feature: Feature, shape: str) -> Decision:
     if found is not None:
         return found
     if shape == "line":
-        return Decision("lane", f"{BY} default: lines where no word says other")
+        return Decision("lane", LINE)
     return Decision(None, "no word says what it is", _choices(shape))
 
 
@@ -294,11 +294,13 @@ def _of_words(feature: Feature, shape: str, what: str, name: str) -> Decision | 
 
 
 BY = "by"
-"""Begins reasons that words give, or that are taken where no word decides."""
+"""Begins reasons that words give."""
+POINT, LINE = "as points are where no word says other", "as lines are where no word says other"
+"""Reasons where no word decides."""
 
 
 def _by_word(word: str, where: str) -> str:
-    return f"{BY} {word} in {where}"
+    return f"{BY} the word {word} in {where}"
 
 
 def _choices(shape: str) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from muster.exchange.sites.keys import CIRCLE
 from muster.exchange.sites.plan_areas import joined_areas
 from muster.exchange.sites.readers import reader_of
 from muster.exchange.sites.robot_kinds import with_kind
-from muster.exchange.sites.roles import BY, Roles
+from muster.exchange.sites.roles import BY, LINE, POINT, Roles
 from muster.exchange.sites.times import require_alike
 from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError
@@ -131,9 +131,9 @@ def _decisions(layer: Layer, entries: Sequence[Entry]) -> list[str]:
     """What words, or no words, decided of the features of a layer, one line for each role and reason."""
     groups: dict[tuple[str, str], list[str]] = {}
     for entry in entries:
-        if entry.reason.startswith(BY):
+        if entry.reason.startswith(BY) or entry.reason in (POINT, LINE):
             groups.setdefault((entry.role, entry.reason), []).append(entry.told)
-    return [f"{layer.title}: {_NOUNS[role][0]} {reason}: {some_of(names)}" for (role, reason), names in groups.items()]
+    return [f"{layer.title}: {some_of(names)}: {_NOUNS[role][0]}, {reason}" for (role, reason), names in groups.items()]
 
 
 def _there(base: Mission | None, team: Mission | None) -> dict[str, Any]:
