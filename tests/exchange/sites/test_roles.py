@@ -178,6 +178,35 @@ def test_a_name_makes_no_task_of_what_is_closed(tmp_path, team, name, around):
     assert finding.value.startswith("a closed area at a point, without a radius")
 
 
+@pytest.mark.parametrize(
+    "properties",
+    [{"kind": "building"}, {"type": "wall"}, {"status": "closed"}, {"closed": "yes"}, {"class": "restricted access"}],
+)
+def test_what_is_built_or_done_may_be_visited(tmp_path, team, properties):
+    spot = feature("Point", [8.5417, 47.3775], name="Valve", **properties)
+    assert [task.id for task in read(tmp_path, spot, team=team).mission.tasks] == ["Valve"]
+
+
+@pytest.mark.parametrize(
+    "properties",
+    [
+        {"kind": "no-fly zone"},
+        {"kind": "zone"},
+        {"type": "Restricted"},
+        {"restriction": "PROHIBITED"},
+        {"nofly": True},
+        {"no_fly": "yes"},
+        {"forbidden_to": "air"},
+    ],
+)
+def test_a_property_makes_no_task_of_what_is_closed(tmp_path, team, properties):
+    spot = feature("Point", [8.5417, 47.3775], name="Valve", **properties)
+    (finding,) = undecided(tmp_path, spot, team=team)
+    assert finding.value.startswith("a closed area at a point, without a radius")
+    found = read(tmp_path, area(**{"name": "x", **properties}), *points(), team=team)
+    assert len(found.mission.map.zones) == 1
+
+
 def test_an_open_line_stays_a_line(tmp_path, team):
     line = feature("LineString", [[8.5416, 47.3768], [8.542, 47.377], [8.543, 47.3775]], name="Pipeline survey route")
     found = read(tmp_path, line, *points(), team=team)

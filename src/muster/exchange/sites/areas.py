@@ -12,7 +12,7 @@ from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Coordinate, Ring
 from muster.exchange.sites.frame import Frame
 from muster.exchange.sites.keys import COVERAGE
-from muster.exchange.sites.roles import quoted
+from muster.exchange.sites.labels import quoted
 from muster.exchange.sites.shapes import mended, require_valid, without_holes
 from muster.mission.errors import Finding, MissingExtraError
 

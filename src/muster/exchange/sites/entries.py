@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
 
+from muster.exchange.sites.decisions import Decision
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
 from muster.exchange.sites.headings import Columns, bare_numbers, columns_of
 from muster.exchange.sites.keys import CIRCLE, ROLE, SKIP, WITH_PLACE, keys_of
-from muster.exchange.sites.roles import Decision, Roles, forbidden_by_name, is_of_plan, names_role
+from muster.exchange.sites.roles import Roles, forbidden_by_name, is_of_plan, names_role
 from muster.exchange.sites.shapes import from_text
 from muster.exchange.sites.undecided import findings_of
 from muster.mission.errors import Finding

@@ -6,9 +6,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import PurePath
 
+from muster.exchange.sites.decisions import BY
 from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Layer
-from muster.exchange.sites.roles import BY, Roles, labels_of, names_of, role_word
+from muster.exchange.sites.labels import labels_of, names_of
+from muster.exchange.sites.roles import Roles, role_word
 from muster.exchange.sites.vocabulary import AIR, GROUND, meanings, moves
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from muster.exchange.sites.builder import Builder, SiteOptions
+from muster.exchange.sites.decisions import BY, LINE, POINT
 from muster.exchange.sites.entries import Entry, entries_of, some_of
 from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.headings import given_columns
@@ -16,7 +17,7 @@ from muster.exchange.sites.keys import CIRCLE
 from muster.exchange.sites.plan_areas import joined_areas
 from muster.exchange.sites.readers import reader_of
 from muster.exchange.sites.robot_kinds import with_kind
-from muster.exchange.sites.roles import BY, LINE, POINT, Roles
+from muster.exchange.sites.roles import Roles
 from muster.exchange.sites.times import require_alike
 from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError

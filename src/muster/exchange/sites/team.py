@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from muster.exchange.sites.entries import Entry, some_of
-from muster.exchange.sites.roles import quoted
+from muster.exchange.sites.labels import quoted
 from muster.mission.errors import Finding
 
 Made = tuple[Entry, dict[str, Any]]

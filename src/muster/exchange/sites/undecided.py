@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from muster.exchange.sites.decisions import Decision
 from muster.exchange.sites.features import Feature, Layer
-from muster.exchange.sites.roles import Decision, labels_of, names_of, quoted
+from muster.exchange.sites.labels import labels_of, names_of, quoted
 from muster.mission.errors import Finding
 
 _MOST = 20
