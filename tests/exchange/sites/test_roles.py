@@ -140,6 +140,21 @@ def test_what_its_folder_closes_no_name_opens(tmp_path, team):
     assert len(read_site(file, robots=team, kinds={"No-fly zones": "zone"}).mission.map.zones) == 1
 
 
+def test_the_name_of_a_file_makes_no_survey_beside_closed_areas(tmp_path, team):
+    features = [area(name="Hospital"), area(YARD, name="Perimeter")]
+    (finding,) = undecided(tmp_path, *features, team=team, name="search.geojson")
+    assert "by the word search in the file search, whose other areas are none to survey" in finding.value
+    alone = read(tmp_path, features[0], team=team, name="search.geojson", height_m=30, fov_deg=60)
+    assert alone.mission.tasks[0].action.name == "coverage"
+
+
+@pytest.mark.parametrize("file", ["drones", "drone survey", "robot tasks"])
+def test_the_name_of_a_file_makes_no_robots_of_places_beside_areas(tmp_path, team, file):
+    features = [*points()[:1], area(name="Search")]
+    (finding,) = undecided(tmp_path, *features, team=team, name=f"{file}.geojson")
+    assert finding.value.startswith(f"undecided: the file {file} says ")
+
+
 @pytest.mark.parametrize("name", names.listed(names.PLACES))
 def test_points_of_other_names_are_tasks_and_that_is_told(tmp_path, team, name):
     found = read(tmp_path, feature("Point", [8.5417, 47.3775], name=name), team=team)

@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from pathlib import PurePath
 
@@ -42,6 +42,8 @@ _CLASSES = (ROLE.name, *ROLE.names, "type", "restriction")
 """Headings whose values classify a feature, besides its name."""
 _CLASSES_OF_AREAS = (*_CLASSES, "category", "class", "status", "usage")
 """Of points, such as orders, a status may be that they are closed, too."""
+_NO_ROBOTS = (words.TASK, words.STATION, words.SURVEY, words.BOUNDARY)
+"""What in the name of a layer or file makes a word for robots beside it say nothing of its points."""
 _YES = ("yes", "true", "1", "y", "on")
 _OPEN_GAP = 0.1
 """A line is drawn around an area if its ends are closer than this share of its length."""
@@ -70,16 +72,47 @@ class Decision:
     choices: tuple[str, ...] = ()
 
 
-def of_point(layer: Layer, feature: Feature) -> Decision:
+class Surroundings:
+    """The features of a layer as one of them is seen beside the others.
+
+    Parameters
+    ----------
+    layer
+        the layer.
+    """
+
+    def __init__(self, layer: Layer) -> None:
+        self.layer = layer
+
+    @cached_property
+    def has_areas(self) -> bool:
+        """Whether the layer has areas or lines."""
+        shapes = (feature.geometry.shape for feature in self.layer.features if feature.geometry is not None)
+        return any(shape != "point" for shape in shapes)
+
+    @cached_property
+    def has_bounds(self) -> bool:
+        """Whether an area of the layer says by itself that it is closed, or the boundary."""
+        areas = [f for f in self.layer.features if f.geometry is not None and f.geometry.shape == "area"]
+        return any(
+            _closed(self.layer, area) is not None
+            or any(words.BOUNDARY in meanings(name) for name in labels_of(self.layer, area))
+            for area in areas
+        )
+
+
+def of_point(surroundings: Surroundings, feature: Feature) -> Decision:
     """Return what a point is: a task, unless a word says other; never a task where a word says that it is closed."""
+    layer = surroundings.layer
     around = [(f"the {what} {name}", meanings(name)) for what, name in _around(layer)]
     for where, said in around:
         of_robots = any(meaning in said for meaning in (words.ROBOT, *KINDS))
         if of_robots and words.CLOSED not in said and words.HOME not in said:
-            others = [meaning for meaning in (words.TASK, words.STATION, words.SURVEY) if meaning in said]
-            if others:
-                return Decision(None, f"{where} says robot and {others[0]}", AT_POINTS)
             word = next(said[meaning] for meaning in (words.ROBOT, *KINDS) if meaning in said)
+            others = [said[meaning] for meaning in _NO_ROBOTS if meaning in said]
+            if others or surroundings.has_areas:
+                other = others[0] if others else "has areas or lines beside points"
+                return Decision(None, f"{where} says {word}, and {other}", ("robot", "task", SKIP))
             return Decision("robot", _by_word(word, where))
     closed = _closed(layer, feature)
     if closed is not None:
@@ -123,8 +156,9 @@ def _started(name: str) -> str:
     return f"a place where robots start or land; --as {quoted(f'{name}=task')} makes it a task"
 
 
-def of_shape(layer: Layer, feature: Feature, shape: str) -> Decision:
+def of_shape(surroundings: Surroundings, feature: Feature, shape: str) -> Decision:
     """Return what a line or area is; areas that nothing decides, or words of which one says closed, are undecided."""
+    layer = surroundings.layer
     closed = _closed(layer, feature)
     if closed is not None:
         return Decision("zone", closed)
@@ -143,6 +177,9 @@ def of_shape(layer: Layer, feature: Feature, shape: str) -> Decision:
             continue
         if here.role is None:
             return here
+        if here.role == "survey" and what == "file" and surroundings.has_bounds:
+            told = f"survey {here.reason}, whose other areas are none to survey"
+            return Decision(None, told, _choices(shape))
         found = here
     if found is not None:
         return found

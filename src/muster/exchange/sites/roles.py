@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from muster.exchange.sites import vocabulary as words
-from muster.exchange.sites.decisions import FITTING, KINDS, ROLE_OF, Decision, of_point, of_shape
+from muster.exchange.sites.decisions import FITTING, KINDS, ROLE_OF, Decision, Surroundings, of_point, of_shape
 from muster.exchange.sites.features import Feature, Layer
 from muster.exchange.sites.keys import AT_POINTS, CIRCLE, COVERAGE, ROLE, ROLES, SKIP
 from muster.exchange.sites.labels import folded, labels_of, names_of
@@ -39,7 +39,7 @@ class Roles:
 
     given: Mapping[str, str]
     kinds: Mapping[str, str]
-    _with_areas: dict[int, bool] = field(default_factory=dict, compare=False, repr=False)
+    _surroundings: dict[int, Surroundings] = field(default_factory=dict, compare=False, repr=False)
 
     @classmethod
     def of(cls, given: Mapping[str, str]) -> Roles:
@@ -83,14 +83,14 @@ class Roles:
             return Decision(SKIP, said)
         if default is not None and default in FITTING[shape]:
             return Decision(default, "--robots")
-        return of_point(layer, feature) if shape == "point" else of_shape(layer, feature, shape)
+        around = self._around(layer)
+        return of_point(around, feature) if shape == "point" else of_shape(around, feature, shape)
 
-    def _has_areas(self, layer: Layer) -> bool:
-        """Return whether a layer has areas or lines, which a word for areas means rather than points beside them."""
-        if id(layer) not in self._with_areas:
-            shapes = (feature.geometry.shape for feature in layer.features if feature.geometry is not None)
-            self._with_areas[id(layer)] = any(shape != "point" for shape in shapes)
-        return self._with_areas[id(layer)]
+    def _around(self, layer: Layer) -> Surroundings:
+        """Return the surroundings of features of a layer; all layers live as long as the roles are asked for."""
+        if id(layer) not in self._surroundings:
+            self._surroundings[id(layer)] = Surroundings(layer)
+        return self._surroundings[id(layer)]
 
     def _stated(self, layer: Layer, feature: Feature) -> tuple[str | None, str]:
         """Return the role that a flag or a property states, and which of them."""
@@ -101,7 +101,7 @@ class Roles:
             if role is None or (not point and folded(name) in self.kinds):
                 continue
             own = name in labels
-            if own or role in AT_POINTS or role == SKIP or not point or not self._has_areas(layer):
+            if own or role in AT_POINTS or role == SKIP or not point or not self._around(layer).has_areas:
                 return role, f"--as {name}"
         for heading, value in feature.values.items():
             if isinstance(value, str) and heading.casefold() in (ROLE.name, *ROLE.names, "type"):
