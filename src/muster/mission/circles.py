@@ -15,7 +15,7 @@ from muster.mission.records import Record
 from muster.mission.site import Circle
 from muster.mission.value_types import INVALID, Fault, shown
 
-_SIDES = 32
+SIDES = 32
 _DECIMALS = 6
 """Of the corners in metres; a unit of the last one is added to the radius, so that rounding takes nothing away."""
 
@@ -41,7 +41,7 @@ def round_zones(data: object) -> Iterator[Raw]:
 
 def enclosing(center: tuple[float, ...], radius_m: float) -> list[list[float]]:
     """Return the corners of a polygon whose sides touch a circle from outside, anticlockwise."""
-    reach = (radius_m + 10**-_DECIMALS) / math.cos(math.pi / _SIDES)
-    turns = [2 * math.pi * (k + 0.5) / _SIDES for k in range(_SIDES)]
+    reach = (radius_m + 10**-_DECIMALS) / math.cos(math.pi / SIDES)
+    turns = [2 * math.pi * (k + 0.5) / SIDES for k in range(SIDES)]
     corners: list[Any] = [(center[0] + reach * math.cos(turn), center[1] + reach * math.sin(turn)) for turn in turns]
     return [[round(x, _DECIMALS), round(y, _DECIMALS)] for x, y in corners]
