@@ -7,7 +7,7 @@ place of the circle for good: what is checked, drawn, exported and written back 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from muster.mission.raw_records import Raw, listed
@@ -39,7 +39,7 @@ def round_zones(data: object) -> Iterator[Raw]:
     yield from ((("map", *at), zone) for at, zone in listed(area, "zones") if "circle" in zone)
 
 
-def enclosing(center: tuple[float, ...], radius_m: float) -> list[list[float]]:
+def enclosing(center: Sequence[float], radius_m: float) -> list[list[float]]:
     """Return the corners of a polygon whose sides touch a circle from outside, anticlockwise."""
     reach = (radius_m + 10**-_DECIMALS) / math.cos(math.pi / SIDES)
     turns = [2 * math.pi * (k + 0.5) / SIDES for k in range(SIDES)]
