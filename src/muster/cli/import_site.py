@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import column_option, pairs_of, quiet_option
+from muster.cli.options import Finite, column_option, pairs_of, quiet_option
 from muster.cli.outputs import require_writable
 from muster.mission.errors import ParameterError
 
@@ -24,8 +24,11 @@ from muster.mission.errors import ParameterError
     "kinds",
     multiple=True,
     metavar="NAME=KIND",
-    help="What the features of a file, layer or name are: task, robot, station, zone, boundary, survey, lane.",
+    help="What a file, layer or feature is: task, robot (air, ground), station, zone, boundary, survey, lane, skip.",
 )
+@click.option("--height-m", type=Finite(0.1, 1e4), metavar="M", help="Height from which areas are surveyed.")
+@click.option("--fov-deg", type=Finite(1, 179), metavar="DEG", help="Width of the picture of surveys' cameras.")
+@click.option("--width-m", type=Finite(0.01, 1e4), metavar="M", help="Width of the tool of surveys, without a camera.")
 @click.option("--origin", metavar="LAT,LON", help="Place of the map frame's origin.  [default: the middle of all]")
 @click.option("--starts-at", metavar="TIME", help="When the mission begins, for clock times: 2027-03-01T08:00.")
 @click.option("--name", metavar="NAME", help="Name of the mission.  [default: that of the first file]")
@@ -50,14 +53,18 @@ def command(
     name: str | None,
     flat: bool,
     form: str,
+    height_m: float | None,
+    fov_deg: float | None,
+    width_m: float | None,
     quiet: bool,
     verbose: bool,
 ) -> int:
     """Make a mission of the files of a site: tables, maps, tracks.
 
     FILEs are CSV, XLSX, GeoJSON, KML, KMZ, GPX and GeoPackage; one may be a mission, to which the others are added.
-    Points become tasks, areas zones, lines lanes; names, a property kind, or --as say other things. Without -o the
-    mission goes to standard output. What of the files is not read stands in a table at the end.
+    Names, a property kind, or --as say what features are. Without that points become tasks and lines lanes; areas
+    that nothing decides are an error, which names the option that decides. Without -o the mission goes to standard
+    output. What of the files is not read stands in a table at the end.
     """
     from muster.cli.ledger_table import ledger_lines
     from muster.mission.plan import json_text
@@ -78,6 +85,9 @@ def command(
         starts_at=starts_at,
         name=name,
         flat=flat,
+        height_m=height_m,
+        fov_deg=fov_deg,
+        width_m=width_m,
     )
     _say((*found.counts, *found.notes, *ledger_lines(found.ledger)), quiet=quiet or form == "json")
     if form == "json":

@@ -26,9 +26,10 @@ def altitudes_of(mission: Mission, options: ExportOptions) -> dict[str, float]:
     Raises
     ------
     ParameterError
-        for a robot that is none of the mission, or none in the air.
+        for a robot that is none of the mission, or none in the air, and for an option that fits no robot.
     """
     drones = [robot.id for robot in mission.robots if robot.kind == "air"]
+    _require_robots(mission, drones, options)
     for name in options.altitudes:
         if name not in drones:
             hint = did_you_mean(name, drones)
@@ -38,6 +39,20 @@ def altitudes_of(mission: Mission, options: ExportOptions) -> dict[str, float]:
     first = options.altitude_step if options.altitude is None else options.altitude
     layers = {name: first + k * options.altitude_step for k, name in enumerate(drones)}
     return {name: float(options.altitudes.get(name, height)) for name, height in layers.items()}
+
+
+def _require_robots(mission: Mission, drones: Sequence[str], options: ExportOptions) -> None:
+    """Refuse options for heights without drones, for steps without a second one, and for distances of one robot."""
+    of_drones = {"altitude": options.altitude, "altitude_step": options.altitude_step or None}
+    for name, value in of_drones.items():
+        if value is not None and not drones:
+            raise ParameterError(f"{name}: {value:g}; expected it with robots of kind air: the mission has none")
+    if options.altitude_step and options.altitude is not None and len(drones) < 2:
+        told = f"expected it, beside altitude, with several robots of kind air: the mission has {drones[0]} alone"
+        raise ParameterError(f"altitude_step: {options.altitude_step:g}; {told}")
+    if options.clearance and len(mission.robots) < 2:
+        told = f"expected it with several robots: the mission has {mission.robots[0].id} alone"
+        raise ParameterError(f"clearance: {options.clearance:g}; {told}")
 
 
 def heights_of_work(mission: Mission) -> dict[str, float]:

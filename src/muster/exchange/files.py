@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -120,6 +121,9 @@ def plan_files(
     require_geometry(mission, "--to qgc")
     robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None
     altitudes = altitudes_of(mission, options)
+    if robot_paths is None and options.tolerance != ExportOptions.tolerance:
+        told = "expected it with travel over a map, whose corners it is for: no robot of the mission travels so"
+        raise ParameterError(f"tolerance: {options.tolerance:g}; {told}")
     straight = [_thinned(i, robot_paths, options.tolerance) for i in itineraries(mission, verdict, robot_paths)]
     whole = at_work(mission, straight)
     _require_heights(mission, whole, altitudes)
@@ -157,6 +161,21 @@ def _notes(plans: PlanFiles, itinerary: Itinerary) -> Iterator[str]:
     low = [p for p in itinerary.under_way if p.place[2] <= itinerary.start.place[2]]
     if itinerary.robot.kind == "air" and low:
         yield f"warning: {name}: flies no higher than its start at {_named(low[0])}; --altitude M gives a least height"
+    if itinerary.robot.kind == "air":
+        yield f"{name}: {_landing(itinerary)}"
+
+
+def _landing(itinerary: Itinerary) -> str:
+    """Where a drone lands, as the ending of its file says."""
+    start, last = itinerary.start.place, itinerary.passages[-1].place
+    if itinerary.has_end and itinerary.robot.end_position is None:
+        return "lands at its start"
+    away = f"{math.dist(start[:2], last[:2]):.0f} m from its start"
+    if itinerary.has_end:
+        return f"lands at its end_position, {away}"
+    return (
+        f"lands where its route ends, at {_named(itinerary.passages[-1])}, {away}; return_to_start: true lets it return"
+    )
 
 
 def _named(passage: Passage) -> str:

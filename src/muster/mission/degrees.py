@@ -98,6 +98,8 @@ def _places(data: object) -> Iterator[InDegrees]:
         yield from _corners(("map",), area, "boundary")
         for at, zone in listed(area, "zones"):
             yield from _corners(("map", *at), zone, "polygon")
+            if isinstance(circle := zone.get("circle"), dict):
+                yield from _by_key(("map", *at, "circle"), circle, ("center",), planar=True)
 
 
 def _corners(at: Path, record: Any, key: str | int) -> Iterator[InDegrees]:

@@ -10,9 +10,11 @@ from collections.abc import Mapping
 
 from muster.mission.area_parts import with_parts
 from muster.mission.areas import put_in_positions
+from muster.mission.circles import circles_to_polygons
 from muster.mission.clock_times import clock_times_to_seconds
 from muster.mission.consistency import inconsistencies
 from muster.mission.degrees import degrees_to_metres, in_degrees
+from muster.mission.energy import energy_to_batteries
 from muster.mission.errors import MissionError
 from muster.mission.model import Mission
 from muster.mission.records import Record, findings
@@ -30,8 +32,8 @@ def mission_from(
     Parameters
     ----------
     data
-        a mapping with the keys of `Mission`; within it places in degrees are replaced by metres,
-        and clock times by seconds.
+        a mapping with the keys of `Mission`; within it places in degrees are replaced by metres, circles by polygons,
+        clock times by seconds, and endurance and range by batteries.
     source
         where the values came from; files named in the data are found from the folder of its file.
     faults
@@ -47,7 +49,9 @@ def mission_from(
         if places are in degrees and pymap3d is not installed.
     """
     places = degrees_to_metres(data, faults)
+    circles_to_polygons(data, faults)
     clock_times_to_seconds(data, faults)
+    energy_to_batteries(data, faults)
     put_in_positions(data)
     mission: Mission = Record(Mission, "a mission").read(data, (), faults)
     object.__setattr__(mission, "source", source)

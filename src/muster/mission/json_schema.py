@@ -15,7 +15,7 @@ from typing import Any
 from muster.mission.action_keys import ACTION_KEYS, ActionKeys
 from muster.mission.cooperation import Prerequisite, PrerequisiteOrId
 from muster.mission.model import SCHEMA, Action, Mission
-from muster.mission.records import Record, key_of, required, specified
+from muster.mission.records import Record, instead_of, key_of, required, specified
 from muster.mission.value_types import JsonSchema, Kind, Many
 
 
@@ -35,7 +35,8 @@ def schema_text() -> str:
 
 def _define_parts(of: type[Any], found: dict[str, JsonSchema]) -> None:
     """Add the definition of each class that a value of this one may hold."""
-    for part in (record.of for f in specified(of) for record in _records(f.metadata["kind"])):
+    kinds = [kind for f in specified(of) for kind in (f.metadata["kind"], *(kind for _, kind, _ in instead_of(f)))]
+    for part in (record.of for kind in kinds for record in _records(kind)):
         if part.__name__ not in found:
             found[part.__name__] = _action() if part is Action else _definition(part)
             _define_parts(part, found)
@@ -53,11 +54,10 @@ def _records(kind: Kind) -> Iterator[Record]:
 def _definition(of: type[Any]) -> JsonSchema:
     own = specified(of)
     properties = {key_of(f): _schema(f) | _described(f) for f in own}
-    need = [key_of(f) for f in own if required(f) and "instead" not in f.metadata]
+    need = [key_of(f) for f in own if required(f) and not instead_of(f)]
     rules: list[JsonSchema] = []
     for f in own:
-        if "instead" in f.metadata:
-            key, kind, doc = f.metadata["instead"]
+        for key, kind, doc in instead_of(f):
             properties[key] = kind.schema() | {"description": doc}
             rules.append(_one_of(f, key))
     choice: JsonSchema = rules[0] if len(rules) == 1 else {"allOf": rules} if rules else {}
@@ -93,7 +93,7 @@ def _form(name: str, keys: ActionKeys) -> JsonSchema:
 
 
 def _has_instead(key: str, fields: dict[str, Field[Any]]) -> bool:
-    return key in fields and "instead" in fields[key].metadata
+    return key in fields and bool(instead_of(fields[key]))
 
 
 def _choices(keys: ActionKeys, fields: dict[str, Field[Any]], properties: dict[str, JsonSchema]) -> JsonSchema:
@@ -101,7 +101,7 @@ def _choices(keys: ActionKeys, fields: dict[str, Field[Any]], properties: dict[s
     rules: list[JsonSchema] = []
     for name in keys.names:
         if _has_instead(name, fields):
-            key, kind, doc = fields[name].metadata["instead"]
+            ((key, kind, doc),) = instead_of(fields[name])
             properties[key] = kind.schema() | {"description": doc}
             pair: list[JsonSchema] = [{"required": [name]}, {"required": [key]}]
             rules.append({"oneOf": pair} if name in keys.needed else {"not": {"required": [name, key]}})

@@ -36,6 +36,8 @@ from muster.mission.value_types import (
 C = TypeVar("C")
 _SPECIFIED: dict[type[Any], tuple[Field[Any], ...]] = {}
 _MISSING = object()
+Instead = tuple[str, Kind, str]
+"""A key of files that may stand for another: its name, the kind of its value, and what it means."""
 _Fillers = tuple[tuple[str, Callable[[], Any]], ...]
 
 
@@ -45,7 +47,7 @@ def spec(
     *,
     default: Any = MISSING,
     unit: str = "",
-    instead: tuple[str, Kind, str] | None = None,
+    instead: Instead | tuple[Instead, ...] | None = None,
     unless: JsonSchema | None = None,
     if_used: bool = False,
     key: str = "",
@@ -57,8 +59,8 @@ def spec(
     unit
         of the value, for the help of the class, where the name of the field does not say it.
     instead
-        a key of files, its kind and description, that may stand for the field: places in degrees, clock times. They are
-        replaced before; `Record` never gets to read the key.
+        a key of files, its kind and description, or several such, that may stand for the field: places in degrees,
+        clock times. They are replaced before; `Record` never gets to read the key.
     unless
         the JSON Schema of records of which files may leave the field out, though it is required: it follows from others
         and is put in before.
@@ -69,7 +71,7 @@ def spec(
     """
     metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit, "if_used": if_used}
     metadata |= {"key": key} if key else {}
-    metadata |= {"instead": instead} if instead else {}
+    metadata |= {"instead": instead if isinstance(instead[0], tuple) else (instead,)} if instead else {}
     metadata |= {"unless": unless} if unless else {}
     hashed = False if isinstance(kind, Table) else None  # a mapping has no hash
     if default is MISSING:
@@ -119,6 +121,11 @@ def key_of(f: Field[Any]) -> str:
 def shown_if_used(cls: type[Any]) -> tuple[str, ...]:
     """The names of the fields that tables show only where some record has them."""
     return tuple(f.name for f in specified(cls) if f.metadata["if_used"])
+
+
+def instead_of(f: Field[Any]) -> tuple[Instead, ...]:
+    """The keys of files that may stand for a field."""
+    return tuple(f.metadata.get("instead", ()))
 
 
 def required(f: Field[Any]) -> bool:
@@ -332,7 +339,7 @@ def _unknown_keys(
 ) -> Iterator[Fault]:
     """The faults of keys that are none of the fields, nor further ones."""
     own = specified(cls)
-    hints = (*map(key_of, own), *further, *(f.metadata["instead"][0] for f in own if "instead" in f.metadata))
+    hints = (*map(key_of, own), *further, *(key for f in own for key, _, _ in instead_of(f)))
     return (_unknown_key(str(key), data[key], at, hints) for key in unknown if key not in further)
 
 

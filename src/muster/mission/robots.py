@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from muster.mission.clock_times import SHIFT
+from muster.mission.energy import ENDURANCE, RANGE
 from muster.mission.goods import Amount, Amounts, by_commodity
 from muster.mission.near_matches import did_you_mean
 from muster.mission.place_types import Place
@@ -62,7 +63,9 @@ class Robot(Checked):
     load_at_start: Amount | None = spec(
         Amounts(minimum=0), "what it carries at first, or by commodity", default=None, if_used=True
     )
-    battery: Battery | None = spec(Record(Battery, "a battery"), "its energy", default=None, if_used=True)
+    battery: Battery | None = spec(
+        Record(Battery, "a battery"), "its energy", default=None, instead=(ENDURANCE, RANGE), if_used=True
+    )
     speed_mps: float = spec(Number(above=0), "speed of travel", default=1.0)
     efficiency: float = spec(Number(above=0), "work of duration d takes d / efficiency (aging factor)", default=1.0)
     return_to_start: bool | None = spec(Flag(), "goes back to its start; without it as the rules say", default=None)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from muster.mission.place_types import Corners, LatLon
+from muster.mission.place_types import Corners, LatLon, Place
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Text, Whole, shown
 
@@ -25,10 +25,21 @@ class Origin(Checked):
 
 
 @record
+class Circle(Checked):
+    """A circle of a file; a polygon around it takes its place."""
+
+    center: Point = spec(Place(planar=True), "where its middle is")
+    radius_m: float = spec(Number(above=0), "its radius")
+
+
+IN_CIRCLE = ("circle", Record(Circle, "a circle"), "in place of polygon: the zone is the polygon of 32 sides around it")
+
+
+@record
 class Zone(Checked):
     """A part of the map that some robots may not enter; with an id a door, which events close and open."""
 
-    polygon: tuple[Point, ...] = spec(Corners(), "corners in order")
+    polygon: tuple[Point, ...] = spec(Corners(), "corners in order", instead=IN_CIRCLE)
     floor_m: float | None = spec(Number(), "lower end of the zone", default=None)
     ceiling_m: float | None = spec(Number(), "upper end of the zone", default=None)
     forbidden_to: tuple[str, ...] = spec(

@@ -245,6 +245,15 @@ class Flag:
         return {"type": "boolean"}
 
 
+_JOINERS = str.maketrans("", "", "\u200c\u200d")
+"""Of letters, as in Persian and Hindi, and of emoji: they are part of words, and no control characters."""
+
+
+def is_one_line(text: str) -> bool:
+    """Return whether a text has no ends of lines and no control characters."""
+    return text.isprintable() or text.translate(_JOINERS).isprintable()
+
+
 @dataclass(frozen=True)
 class Text:
     """A text of one line that is not empty; a whole number is read as its decimal text (ids, types, skills)."""
@@ -255,7 +264,7 @@ class Text:
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 10**300:
             return str(value)
-        if isinstance(value, str) and value.strip() and value.isprintable():
+        if isinstance(value, str) and value.strip() and is_one_line(value):
             return value
         hint = "; in quotes it is one" if isinstance(value, int | float) else ""
         faults.append(Fault(at, shown(value), self.expected + hint))
@@ -264,7 +273,7 @@ class Text:
     def read_column(self, values: Sequence[Any]) -> Sequence[str] | None:
         if {str} != set(map(type, values)):
             return None
-        return values if all(map(str.isprintable, values)) and all(map(str.strip, values)) else None
+        return values if all(map(is_one_line, values)) and all(map(str.strip, values)) else None
 
     def schema(self) -> JsonSchema:
         return {"anyOf": [{"type": "string", "minLength": 1}, {"type": "integer"}]}

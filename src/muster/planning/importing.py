@@ -24,11 +24,14 @@ def read_site(
     starts_at: str | None = None,
     name: str | None = None,
     flat: bool = False,
+    height_m: float | None = None,
+    fov_deg: float | None = None,
+    width_m: float | None = None,
 ) -> SiteMission:
     """Read the files of a site as one mission: tables (CSV, XLSX), maps (GeoJSON, KML, GeoPackage), tracks (GPX).
 
-    Points are tasks, areas zones, lines lanes; a property `kind`, a word in a name, or `kinds` says other things
-    (docs/sites.md).
+    A property `kind`, a word in a name, or `kinds` says what a feature is (docs/sites.md). Without them points are
+    tasks and lines lanes; an area that nothing decides is an error, which names the choices.
 
     Parameters
     ----------
@@ -42,7 +45,7 @@ def read_site(
         headings by what they mean: `{"lat": "Breite"}`.
     kinds
         what features are by the name of their file, layer, or their own: task, robot, station, zone, boundary, survey,
-        lane.
+        lane; air or ground for robots that fly or drive; skip for what is passed over.
     origin
         latitude and longitude in degrees of the map frame's origin, and perhaps its altitude, metres; by default the
         middle of all places.
@@ -52,6 +55,9 @@ def read_site(
         of the mission; by default that of the first file.
     flat
         whether heights are left out.
+    height_m, fov_deg, width_m
+        of areas to survey that have none of their own: the height of flight, metres; the horizontal field of view of a
+        camera that looks down, degrees; the width of a tool, metres.
 
     Returns
     -------
@@ -85,6 +91,7 @@ def read_site(
         starts_at=starts_at,
         name=name,
         flat=flat,
+        survey={"height_m": height_m, "fov_deg": fov_deg, "width_m": width_m},
     )
     base = load_noted(missions[0]) if missions else None
     found = read(

@@ -154,7 +154,14 @@ SHAPE_OF = {
 }
 NEEDED = {"survey": {"width_m": "5", "height_m": "10"}, "station": {"services": "charge", "charge_per_s": "1"}}
 VALUES = ("3", "yes", "a", "10:00", "air", "ground", "10:00-11:00", "swap", "0.5", "2027-03-01T10:00", "gripper")
-SAME = {("lane", "both_ways"), ("station", "partial"), ("zone", "name"), ("boundary", "name"), ("lane", "name")}
+SAME = {
+    ("zone", "forbidden_to"),
+    ("lane", "both_ways"),
+    ("station", "partial"),
+    ("zone", "name"),
+    ("boundary", "name"),
+    ("lane", "name"),
+}
 """What is read and changes nothing here: what is the default, and names that may say what a feature is."""
 
 
@@ -163,7 +170,8 @@ def read_feature(folder, role, properties):
     features = [{"type": "Feature", "properties": {"kind": role, **properties}, "geometry": SHAPES[SHAPE_OF[role]]}]
     for kind, name in (("robot", "rr"), ("task", "a")):
         point = {"type": "Point", "coordinates": [8.5417, 47.3768]}
-        features.append({"type": "Feature", "properties": {"kind": kind, "called": name}, "geometry": point})
+        properties = {"kind": kind, "called": name} | ({"moves": "air"} if kind == "robot" else {})
+        features.append({"type": "Feature", "properties": properties, "geometry": point})
     file = folder / "site.geojson"
     file.write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
     found = read_site(file, starts_at="2027-03-01T08:00", origin=ORIGIN)

@@ -133,7 +133,7 @@ def test_what_the_mission_refuses_is_named_by_the_column(tmp_path, robots):
     ("text", "message"),
     [
         ("name,latitude,lat,lon\na,1,2,3\n", "lat: means lat, as latitude does; expected one column that says lat"),
-        ("name,x (kg),y\na,1,2\n", r"x \(kg\): a unit that does not fit; expected m, km, cm or ft"),
+        ("name,x (kg),y\na,1,2\n", r"x \(kg\): a unit that does not fit; expected m, km, cm, ft, mi or NM"),
         ("name,lat (km),lon (km)\na,1,2\n", r"^[^\n]*lat \(km\): a unit that [^\n]*\n[^\n]*lon \(km\)[^\n]*$"),
         ("name,lat,lon,priority (%)\na,1,2,3\n", r"priority \(%\): a unit that does not fit; expected no unit"),
         ("name,lat,lon,duration (km)\na,1,2,3\n", r"duration \(km\): a unit that does not fit; expected s, min or h"),

@@ -14,7 +14,7 @@ TASKS = [
     ("south", 47.3765, 8.5417),
 ]
 CSV = "name,lat,lon\n" + "".join(f"{name},{lat},{lon}\n" for name, lat, lon in TASKS)
-ROBOTS = "id,lat,lon,speed\nr_0,47.3768,8.5416,1.5\n"
+ROBOTS = "id,lat,lon,speed,kind\nr_0,47.3768,8.5416,1.5,ground\n"
 FENCE = [(8.5418, 47.3770), (8.5420, 47.3770), (8.5420, 47.3772), (8.5418, 47.3772)]
 
 

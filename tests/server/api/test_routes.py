@@ -1,6 +1,7 @@
 """What every route answers, with the real services."""
 
 import io
+import json
 import re
 import zipfile
 from base64 import b64encode
@@ -68,6 +69,29 @@ def test_a_mission_is_checked_with_lines(http):
 def test_a_mission_is_uploaded(http):
     made = http.post("/missions/upload", files={"file": ("folder/some yard.yaml", MISSION.encode())})
     assert (made.status_code, made.json()["text"]) == (201, MISSION)
+
+
+def test_what_a_site_does_not_say_is_asked_and_answered(http):
+    area = {"type": "Polygon", "coordinates": [[[11, 47], [11.001, 47], [11.001, 47.001], [11, 47]]]}
+    spot = {"type": "Point", "coordinates": [11.002, 47.001]}
+    features = [
+        {"type": "Feature", "properties": {"name": "West"}, "geometry": area},
+        {"type": "Feature", "properties": {"name": "Mavic", "kind": "drone"}, "geometry": spot},
+    ]
+    text = json.dumps({"type": "FeatureCollection", "features": features}).encode()
+    files = {"file": ("site.geojson", text)}
+    asked = http.post("/missions/upload", files=files)
+    assert asked.status_code == 400
+    assert "--as West=zone (or boundary, survey, skip)" in asked.text
+    asked = http.post("/missions/upload", files=files, data={"as": ["West=survey"]})
+    assert (asked.status_code, "height_m" in asked.text) == (400, True)
+    answers = {"as": ["West=survey"], "height_m": "40", "fov_deg": "60"}
+    made = http.post("/missions/upload", files=files, data=answers)
+    assert made.status_code == 201
+    assert "height_m: 40" in made.json()["text"]
+    assert "return_to_start: true" in made.json()["text"]
+    wrong = http.post("/missions/upload", files=files, data={"as": ["West"]})
+    assert (wrong.status_code, "expected NAME=KIND" in wrong.text) == (400, True)
 
 
 def test_an_instance_file_is_uploaded(http):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,8 @@ from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Coordinate, Ring
 from muster.exchange.sites.frame import Frame
 from muster.exchange.sites.keys import COVERAGE
-from muster.exchange.sites.shapes import require_valid, without_holes
+from muster.exchange.sites.labels import quoted
+from muster.exchange.sites.shapes import mended, require_valid, without_holes
 from muster.mission.errors import Finding, MissingExtraError
 
 if TYPE_CHECKING:
@@ -23,8 +25,15 @@ _MARGIN_M = 50.0
 _EXPECTED = "an area whose sides meet at its corners alone"
 
 
-def areas_of(entry: Entry, frame: Frame, findings: list[Finding]) -> list[shapely.Polygon]:
+def areas_of(
+    entry: Entry, frame: Frame, findings: list[Finding], mends: dict[str, list[str]] | None = None
+) -> list[shapely.Polygon]:
     """The areas of an entry in metres; those cut at the meridian of 180 degrees are whole again.
+
+    Parameters
+    ----------
+    mends
+        notes by what was done to areas that are none: with it such areas are made to contain all that they may mean.
 
     Raises
     ------
@@ -39,15 +48,36 @@ def areas_of(entry: Entry, frame: Frame, findings: list[Finding]) -> list[shapel
     pieces = [[_open(ring) for ring in piece] for piece in entry.geometry.pieces]
     if entry.geometry.shape == "line":
         pieces = [[[place for piece in pieces for place in piece[0]]]]  # a track around an area
-    found = []
+    found: list[shapely.Polygon] = []
+    wrong: list[Finding] = []
     for rings in _whole(pieces, frame):
+        metres = [frame.metres([place[:2] for place in ring]) for ring in rings]
         try:
-            found.append(require_valid([frame.metres([place[:2] for place in ring]) for ring in rings]))
+            found.append(require_valid(metres))
         except ValueError as error:
             told, *places = error.args
             told += "".join(f" at latitude {lat}, longitude {lon}" for lat, lon in map(frame.degrees, places))
-            findings.append(entry.feature.finding("geometry", told, _EXPECTED))
+            wrong.append(entry.feature.finding("geometry", told, _EXPECTED))
+            if mends is not None:
+                found += _mended(entry, metres, told, mends)
+    if mends is None or not found:
+        findings += wrong
     return [shapely.orient_polygons(area) for area in found]
+
+
+def _mended(
+    entry: Entry, rings: list[list[list[float]]], told: str, mends: dict[str, list[str]]
+) -> list[shapely.Polygon]:
+    """What contains an area that is none; nothing where it encloses nothing."""
+    try:
+        found = mended(rings)
+    except ValueError:
+        return []
+    filled = ", its holes too" if len(rings) > 1 else ""
+    mends.setdefault(f"closed areas whose sides cross are closed as a whole{filled}", []).append(
+        f"{entry.told} ({told})"
+    )
+    return found
 
 
 def _open(ring: Ring) -> list[Coordinate]:
@@ -68,6 +98,8 @@ def _whole(pieces: list[list[list[Coordinate]]], frame: Frame) -> list[list[list
         for piece, is_cut in zip(pieces, cut, strict=True)
         if is_cut and all(len(ring) > 2 for ring in piece)
     ]
+    if not all(side.is_valid for side in sides):
+        return pieces
     joined = [
         [_without_seam(line.coords[:-1]) for line in (area.exterior, *area.interiors)]
         for area in shapely.get_parts(shapely.union_all(sides, grid_size=1e-9))
@@ -92,10 +124,30 @@ def _without_seam(corners: Sequence[Sequence[float]]) -> list[Coordinate]:
     return kept
 
 
+_OF_ZONES = ("floor_m", "ceiling_m", "forbidden_to", "open")
+
+
+def circle_of(entry: Entry, center: Sequence[float], findings: list[Finding]) -> dict[str, Any]:
+    """The zone of a mission's map around a point."""
+    values = entry.values
+    radius = values.get("radius_m")
+    if radius is None and isinstance(across := values.get("diameter_m"), float):
+        radius = across / 2
+    if radius is None:
+        expected = (
+            f"a column radius (m), an area in place of the point; or --as {quoted(f'{entry.told}=task')} or =skip"
+        )
+        told = f"a closed area at a point, without a radius: {entry.reason}"
+        findings.append(entry.feature.finding("radius", told, expected))
+    own = {key: values[key] for key in _OF_ZONES if key in values}
+    door = {"id": values["door"]} if "door" in values else {}
+    return {"circle": {"center": list(center[:2]), "radius_m": radius}, **own, **door}
+
+
 def zones_of(entry: Entry, areas: Sequence[shapely.Polygon], findings: list[Finding]) -> list[dict[str, Any]]:
     """The zones of a mission's map: areas with holes are cut into several without."""
     polygons = [_corners(part.exterior) for area in areas for part in without_holes(area)]
-    own = {key: entry.values[key] for key in ("floor_m", "ceiling_m", "forbidden_to", "open") if key in entry.values}
+    own = {key: entry.values[key] for key in _OF_ZONES if key in entry.values}
     if "door" in entry.values:
         own["id"] = entry.values["door"]
         if len(polygons) > 1:
@@ -113,6 +165,21 @@ def boundary_of(
         return [], []
     (area,) = areas
     return _corners(area.exterior), [{"polygon": _corners(hole)} for hole in area.interiors]
+
+
+def seen_from(entry: Entry, stated: Mapping[str, float | None], *, has_camera: bool, findings: list[Finding]) -> Entry:
+    """Return an area to survey with what is stated for all; a finding where nothing says how wide its lanes are."""
+    own = {key: value for key, value in stated.items() if value is not None}
+    if "width_m" in entry.values or "fov_deg" in entry.values:
+        own = {key: value for key, value in own.items() if key == "height_m"}
+    values = {**own, **entry.values}
+    if "width_m" not in values and "height_m" not in values:
+        expected = "a property height_m, or --height-m METRES: from how high it is seen; or --width-m of a tool"
+        findings.append(entry.feature.finding("height_m", "missing", expected))
+    elif "width_m" not in values and "fov_deg" not in values and not has_camera:
+        expected = "a property fov_deg, or --fov-deg DEGREES: how wide the camera sees; or robots with a camera"
+        findings.append(entry.feature.finding("fov_deg", "missing", expected))
+    return replace(entry, values=values)
 
 
 def survey_tasks(
@@ -135,6 +202,14 @@ def survey_tasks(
         place = list(at) if len(at) > 1 else [round(inside.x, 4), round(inside.y, 4), *at]
         found.append({"position": place, "action": action})
     return found
+
+
+def corners_of(zone: dict[str, Any]) -> list[list[float]]:
+    """The corners of a zone, those of a square around one that is a circle."""
+    if "polygon" in zone:
+        return list(zone["polygon"])
+    (x, y), radius = zone["circle"]["center"], zone["circle"]["radius_m"] or 0.0
+    return [[x - radius, y - radius], [x + radius, y + radius]]
 
 
 def around(points: Sequence[Sequence[float]]) -> list[list[float]]:

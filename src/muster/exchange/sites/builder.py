@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.sites.areas import areas_of, around, boundary_of, survey_tasks, zones_of
+from muster.exchange.sites.areas import (
+    areas_of,
+    around,
+    boundary_of,
+    circle_of,
+    corners_of,
+    seen_from,
+    survey_tasks,
+    zones_of,
+)
 from muster.exchange.sites.entries import Entry, some_of
-from muster.exchange.sites.features import Coordinate
-from muster.exchange.sites.frame import FARTHEST_M, Frame
-from muster.exchange.sites.keys import AT_POINTS, COVERAGE, can_survey, keys_of
+from muster.exchange.sites.keys import AT_POINTS, CIRCLE, COVERAGE, can_survey, keys_of
+from muster.exchange.sites.origin import choose_origin
 from muster.exchange.sites.references import References
-from muster.exchange.sites.roles import role_word
+from muster.exchange.sites.team import choose_usage, energy_of, let_return, require_kinds
 from muster.exchange.sites.times import KEYS as TIMES
 from muster.exchange.sites.times import chosen_start, of_next_day, robot_times, task_times
 from muster.exchange.sites.ways import Ways
@@ -22,15 +30,15 @@ from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.errors import Finding, MissionError
 from muster.mission.model import SCHEMA
 from muster.mission.source import Place
-from muster.mission.value_types import Path, shown
+from muster.mission.value_types import Path
 
 if TYPE_CHECKING:
     import shapely
 
 _GROUPS = {"task": "tasks", "robot": "robots", "station": "stations"}
-_OWN = frozenset(("id", "name", "kind", "moves", "battery", *TIMES))
+_OWN = frozenset(("id", "name", "kind", "moves", "battery", "endurance_s", "range_m", "capacity", *TIMES))
 """Keys of entries that do not go into the mission as they are."""
-_AREAS = ("zone", "boundary", "survey")
+_AREAS = ("zone", "boundary", "survey", CIRCLE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +59,8 @@ class SiteOptions:
         of the mission.
     flat
         whether heights are left out.
+    survey
+        `height_m`, `fov_deg` and `width_m` of areas to survey that have none of their own.
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -59,6 +69,7 @@ class SiteOptions:
     starts_at: str | None = None
     name: str | None = None
     flat: bool = False
+    survey: Mapping[str, float | None] = field(default_factory=dict)
 
 
 @dataclass
@@ -73,14 +84,24 @@ class Built:
 
 
 class Builder:
-    """Builds one mission; what is wrong is gathered, and raised when the frame depends on it."""
+    """Builds one mission; what is wrong is gathered, and raised when the frame depends on it.
 
-    def __init__(self, entries: Sequence[Entry], base: Mapping[str, Any] | None, options: SiteOptions) -> None:
+    Parameters
+    ----------
+    base
+        the data of the mission to which the entries are added, or of its robots alone.
+    is_new
+        whether the rules of the mission are free: there is no mission to which the entries are added.
+    """
+
+    def __init__(
+        self, entries: Sequence[Entry], base: Mapping[str, Any] | None, options: SiteOptions, *, is_new: bool = True
+    ) -> None:
         self._base = dict(base or {})
         self._options = options
+        self._is_new = is_new
         self._entries = [entry for entry in entries if entry.role != "route"]
         self.built = Built({"schema": SCHEMA, "name": "site", **self._base})
-        self._chose_origin = False
         self._made: list[tuple[str, Entry, dict[str, Any]]] = []
         passed_over = len(entries) - len(self._entries)
         if passed_over:
@@ -97,10 +118,14 @@ class Builder:
         data = self.built.data
         if self._options.name is not None:
             data["name"] = self._options.name
-        points = [entry for entry in self._entries if entry.role in AT_POINTS]
-        self._frame = self._chosen_frame()
-        self._refuse_far()
+        origin = choose_origin(self._entries, self._base, self._options.origin, flat=self._options.flat)
+        self._frame, self._entries = origin.frame, origin.entries
+        if origin.chosen is not None:
+            data["origin_wgs84"] = origin.chosen
+        self.built.findings += origin.findings
+        self.built.notes += origin.notes
         self._raise_findings()
+        points = [entry for entry in self._entries if entry.role in AT_POINTS]
         spatial = self._is_spatial(points)
         positions = self._positions(points, spatial)
         ids = self._ids(points)
@@ -109,89 +134,23 @@ class Builder:
         self._add_areas(spatial)
         self._resolve_references()
         self._add_lanes()
+        self._settle_team()
         self._set_start()
         self._note_next_day()
         self._raise_findings()
         return self.built
 
+    def _settle_team(self) -> None:
+        made = [(entry, record) for group, entry, record in self._made if group == "robots"]
+        data, findings, notes = self.built.data, self.built.findings, self.built.notes
+        require_kinds(made, data, findings, notes)
+        if self._is_new:
+            choose_usage(made, data, findings, notes)
+        let_return(made, data, is_new=self._is_new, notes=notes)
+
     def _raise_findings(self) -> None:
         if self.built.findings:
             raise MissionError(sorted(self.built.findings, key=lambda finding: (finding.file, finding.line or 0)))
-
-    # Where on Earth
-
-    def _chosen_frame(self) -> Frame | None:
-        """The frame of the base, of the options, or one around everything; None where nothing is in degrees."""
-        given = self._base.get("origin_wgs84")
-        stated = self._options.origin
-        if given is not None:
-            if stated is not None:
-                told = "origin_wgs84 of the mission that is there"
-                self.built.findings.append(Finding("--origin", None, "", shown(list(stated)), f"none beside {told}"))
-            return Frame(given["lat_deg"], given["lon_deg"], given.get("alt_m", 0.0))
-        if stated is not None:
-            frame = Frame(stated[0], stated[1], stated[2] if len(stated) > 2 else 0.0)
-            self._set_origin(frame)
-            return frame
-        in_degrees = list(self._degrees())
-        in_metres = next((entry for entry in self._entries if entry.metres is not None), None)
-        if not in_degrees:
-            return None
-        if in_metres is not None or self._base:
-            self._refuse_mixture(in_degrees[0][0], in_metres)
-            return None
-        spatial = not self._options.flat
-        altitudes = [e.height for e in self._entries if e.height is not None and not e.over_ground and spatial]
-        frame = Frame.around([place for _, place in in_degrees], altitudes)
-        self._chose_origin = True
-        self._set_origin(frame)
-        self.built.notes.append(
-            f"origin_wgs84 chosen: lat_deg {frame.lat}, lon_deg {frame.lon}, alt_m {frame.alt}; --origin says another"
-        )
-        return frame
-
-    def _set_origin(self, frame: Frame) -> None:
-        self.built.data["origin_wgs84"] = {"lat_deg": frame.lat, "lon_deg": frame.lon, "alt_m": frame.alt}
-
-    def _refuse_mixture(self, entry: Entry, in_metres: Entry | None) -> None:
-        expected = "--origin LAT,LON, the place of [0, 0] on Earth, as others are in metres"
-        where = "" if in_metres is None else f" ({in_metres.feature.file})"
-        self.built.findings.append(entry.feature.finding("", "a place in degrees", expected + where))
-
-    def _degrees(self) -> Iterable[tuple[Entry, Coordinate]]:
-        for entry in self._entries:
-            if entry.degrees is not None:
-                yield entry, entry.degrees
-            elif entry.geometry is not None:
-                yield from ((entry, place) for piece in entry.geometry.pieces for ring in piece for place in ring)
-
-    def _refuse_far(self) -> None:
-        """Refuse places that cannot be meant: the first that is far from a given origin, or that far from most others.
-
-        An origin that is chosen is far from all others, where one place is wrong.
-        """
-        frame = self._frame
-        if frame is None:
-            return
-        far = next(((entry, place) for entry, place in self._degrees() if frame.is_far(place)), None)
-        if far is None:
-            return
-        limit = f"{FARTHEST_M / 1000:g} km"
-        if not self._chose_origin:
-            told = f"within {limit} of the origin, not {frame.distance(far[1]) / 1000:,.0f}"
-        else:
-            places = list(self._degrees())
-            most = Frame.amid([place for _, place in places])
-            far = max(places, key=lambda one: most.distance(one[1]))
-            origin = (
-                f"the origin, which is chosen in the middle of all places: latitude {frame.lat}, longitude {frame.lon}"
-            )
-            told = f"within {limit} of {origin}; this place is {most.distance(far[1]) / 1000:,.0f} km from most others"
-        entry, place = far
-        value = f"latitude {place[1]:g}, longitude {place[0]:g}"
-        self.built.findings.append(
-            entry.feature.finding("", value, f"{told}; are latitude and longitude swapped, or 0?")
-        )
 
     # Points
 
@@ -260,10 +219,8 @@ class Builder:
         record: dict[str, Any] = {"id": name, "position": position}
         record |= {key: value for key, value in entry.values.items() if key in known and key not in _OWN}
         if entry.role == "robot":
-            moves = entry.values.get("moves", entry.values.get("kind"))
-            record |= {} if moves is None or role_word(moves) else {"kind": moves}
-            if "battery" in entry.values:
-                record["battery"] = {"capacity": entry.values["battery"]}
+            record |= {"kind": entry.values["moves"]} if "moves" in entry.values else {}
+            record |= energy_of(entry)
             record |= robot_times(entry, self.built.findings)
         elif entry.role == "task":
             record |= task_times(entry, self.built.findings)
@@ -306,11 +263,16 @@ class Builder:
             return
         zones: list[tuple[Entry, dict[str, Any]]] = []
         bounds: list[tuple[Entry, list[list[float]]]] = []
+        mends: dict[str, list[str]] = {}
         for entry in entries:
+            if entry.role == CIRCLE:
+                center = self._positions([entry], False)[0]
+                zones.append((entry, circle_of(entry, center, self.built.findings)))
+                continue
             assert self._frame is not None
-            areas = areas_of(entry, self._frame, self.built.findings)
+            areas = areas_of(entry, self._frame, self.built.findings, mends if entry.role == "zone" else None)
             if entry.role == "survey":
-                tasks = survey_tasks(entry, areas, self._holes(entry), self._middle(entry, spatial))
+                tasks = survey_tasks(self._seen(entry), areas, self._holes(entry), self._middle(entry, spatial))
                 for task, name in zip(tasks, self._ids([entry] * len(areas)), strict=True):
                     record = self._record(entry, name, task["position"])
                     kept = {key: value for key, value in record.items() if key not in ACTION_KEYS[COVERAGE].names}
@@ -322,9 +284,14 @@ class Builder:
             else:
                 holes = zones_of(entry, areas, self.built.findings)
             zones += [(entry, zone) for zone in holes]
+        self.built.notes += [f"{told}: {some_of(names)}" for told, names in mends.items()]
         self._set_map(bounds, [(entry, zone) for entry, zone in zones if zone.get("forbidden_to") != []])
         if left_out := [entry.told for entry, zone in zones if zone.get("forbidden_to") == []]:
             self.built.notes.append(f"zones that are forbidden to nobody are left out: {some_of(left_out)}")
+
+    def _seen(self, entry: Entry) -> Entry:
+        has_camera = any("camera" in one for one in self.built.data.get("robots", ()))
+        return seen_from(entry, self._options.survey, has_camera=has_camera, findings=self.built.findings)
 
     def _holes(self, entry: Entry) -> list[shapely.Polygon]:
         """The holes that a plan has beside an area."""
@@ -354,7 +321,7 @@ class Builder:
             self._place(("map", "boundary"), bounds[0][0])
         elif not there:
             points = [one["position"] for group in _GROUPS.values() for one in self.built.data.get(group, ())]
-            points += [corner for _, zone in zones for corner in zone["polygon"]]
+            points += [corner for _, zone in zones for corner in corners_of(zone)]
             there["boundary"] = around(points)
             self.built.notes.append("no boundary given: a rectangle 50 m around everything is taken")
         there["zones"] = [*there.get("zones", ())]

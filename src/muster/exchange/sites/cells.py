@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
@@ -34,6 +35,8 @@ _OF_CLOCK = re.compile(r"\s*uhr$", re.IGNORECASE)
 _DATED = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4})[\s,]+(\d{1,2}):(\d\d)(?::(\d\d))?(?:\s*uhr)?", re.IGNORECASE)
 _CLOCK_WITHOUT_COLON = re.compile(r"0\d[0-5]\d")
 _YES = frozenset(("true", "yes", "y", "x", "1", "on"))
+_JOINERS = "\u200c\u200d"
+"""Of letters and of emoji: part of the text, though they are seen only in what they join."""
 _UNLIMITED = ("inf", ".inf", "infinity", "unlimited", "none")
 _NO = frozenset(("false", "no", "n", "0", "off", "-"))
 
@@ -59,10 +62,17 @@ def text(value: object) -> str:
         return str(int(value))
     if isinstance(value, bool) or not isinstance(value, str | int | float | datetime | date | time):
         raise CellError("a text")
-    found = " ".join(str(value).split())
-    if not found.isprintable():
+    found = " ".join(visible(str(value)).split())
+    if any(unicodedata.category(c) in ("Cc", "Cs") for c in found):
         raise CellError("a text without control characters")
     return found
+
+
+def visible(text: str) -> str:
+    """The text without marks that nobody sees, such as soft hyphens and those of direction; joiners stay."""
+    if text.isascii():
+        return text
+    return "".join(c for c in text if c in _JOINERS or unicodedata.category(c) != "Cf")
 
 
 def number(value: object, dimension: Dimension = "", factor: float = 1.0) -> float:
@@ -110,6 +120,8 @@ def _plain(told: str) -> str | None:
 
 
 def _finite(found: float, expected: str) -> float:
+    if math.isnan(found):
+        raise CellError(f"{expected}, with its unit beside it or in the heading")
     if not math.isfinite(found):
         raise CellError(f"{expected}, finite")
     return found
@@ -120,6 +132,28 @@ def limit(value: object) -> float | None:
     if isinstance(value, str) and value.strip().casefold() in _UNLIMITED:
         return None
     return number(value)
+
+
+def is_bare_number(value: object) -> bool:
+    """Return whether a cell holds a number without a unit."""
+    if isinstance(value, str):
+        return _plain(value.translate(_SPACES).strip()) is not None
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def above_0(found: float) -> float:
+    """The number; refused unless it is more than 0."""
+    if not found > 0:
+        raise CellError("more than 0")
+    return found
+
+
+def radius(value: object, factor: float = 1.0) -> float:
+    """Metres; a number below 1 without a unit may be one of kilometres, and is refused."""
+    found = above_0(number(value, "length", factor))
+    if is_bare_number(value) and factor == 1.0 and found < 1:
+        raise CellError(f"a radius with its unit, as {found:g} km or {found:g} m")
+    return found
 
 
 def whole(value: object) -> int:

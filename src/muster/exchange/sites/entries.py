@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
 
+from muster.exchange.sites.decisions import Decision
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer
 from muster.exchange.sites.file_sizes import MOST_VALUES, require_few
-from muster.exchange.sites.headings import Columns, columns_of
-from muster.exchange.sites.keys import AT_POINTS, ROLE, keys_of
-from muster.exchange.sites.roles import Roles, is_no_fly, names_role
+from muster.exchange.sites.headings import Columns, bare_numbers, columns_of
+from muster.exchange.sites.keys import CIRCLE, ROLE, SKIP, WITH_PLACE, keys_of
+from muster.exchange.sites.roles import Roles, forbidden_by_name, names_role
 from muster.exchange.sites.shapes import from_text
+from muster.exchange.sites.undecided import findings_of
 from muster.exchange.sites.value_fates import IN_DEGREES, IN_METRES, OF_PLACES, ValueFates
 from muster.mission.errors import Finding
 
@@ -42,6 +44,10 @@ class Entry:
         another name by which references may mean it.
     holes, middle
         of an area of a plan, what else the plan has of it: its holes, and where its task is.
+    reason
+        what decided its role.
+    named_by
+        of a robot, the name by which `--as` means it, or all of its layer.
     """
 
     role: str
@@ -55,6 +61,8 @@ class Entry:
     also: str | None = None
     holes: tuple[Entry, ...] = ()
     middle: Entry | None = None
+    reason: str = ""
+    named_by: str = ""
 
     def finding(self, key: str, value: object, expected: str) -> Finding:
         """What is wrong with the value of a key."""
@@ -87,47 +95,60 @@ def entries_of(
     notes += [f"{layer.title}: {note}" for note in layer.notes]
     drawn = {id(feature.source) for feature in layer.features if feature.geometry is not None}
     features = list(_with_shapes(_without_empty(layer, notes), findings))
-    by_role: dict[str, list[Feature]] = {}
-    for feature in features:
-        by_role.setdefault(roles.role(layer, feature, default, findings), []).append(feature)
+    decided = [(feature, roles.decide(layer, feature, default, findings)) for feature in features]
+    by_role = _by_role(layer, decided, findings, notes)
     found: list[Entry] = []
     unread: dict[str, list[str]] = {}
-    for role, members in by_role.items():
+    for role, chosen in by_role.items():
+        members = [feature for feature, _ in chosen]
         columns = columns_of(layer, role, given, findings, members)
-        if role in AT_POINTS and not columns.wrong.isdisjoint(OF_PLACES):
+        if role in WITH_PLACE and not columns.wrong.isdisjoint(OF_PLACES):
             continue
-        if role in AT_POINTS and not _has_places(members, columns):
+        if role in WITH_PLACE and not _has_places(members, columns):
             if not _passes_over(layer, default, notes):
                 findings.append(_without_places(layer))
             for feature in members:
                 feature.source.pass_over("has no place, as nothing in its table has")
             continue
+        if taken := bare_numbers(columns, members):
+            notes.append(f"{layer.title}: numbers without a unit are taken so: {', '.join(taken)}")
         fates = ValueFates(role, columns, drawn)
-        for feature in members:
+        for feature, decision in chosen:
             feature.source.keep(fates.of(feature))
-            found += _entry(role, feature, columns, findings)
+            found += [replace(e, reason=decision.reason) for e in _entry(role, feature, columns, findings)]
         for heading in fates.unread(members):
             unread.setdefault(heading, []).append(role)
+    found = [_forbidden(layer, entry) for entry in found]
     filled = {heading for feature in features for heading in feature.values}
     unread |= {heading: list(by_role) for heading in _without_meaning(layer, list(by_role)) if heading not in filled}
-    found = _without_flying(layer, found, notes)
     if unread:
         notes.append(f"{layer.title}: not read: {_told_unread(layer, unread, list(by_role))}")
     return found
 
 
-def _without_flying(layer: Layer, entries: list[Entry], notes: list[str]) -> list[Entry]:
-    """The entries; a no-fly zone is forbidden to robots in the air alone, unless it says to whom it is."""
-    found = [
-        replace(e, values={**e.values, "forbidden_to": ["air"]})
-        if e.role == "zone" and "forbidden_to" not in e.values and is_no_fly(layer, e.feature)
-        else e
-        for e in entries
-    ]
-    changed = [entry.told for entry, before in zip(found, entries, strict=True) if entry is not before]
-    if changed:
-        notes.append(f"{layer.title}: no-fly zones are forbidden to robots in the air alone: {some_of(changed)}")
+def _by_role(
+    layer: Layer, decided: Sequence[tuple[Feature, Decision]], findings: list[Finding], notes: list[str]
+) -> dict[str, list[tuple[Feature, Decision]]]:
+    """The features by their roles; those that nothing decides are findings, those passed over are noted."""
+    findings += findings_of(layer, [pair for pair in decided if pair[1].role is None], len(decided))
+    found: dict[str, list[tuple[Feature, Decision]]] = {}
+    skipped: dict[str, list[str]] = {}
+    for feature, decision in decided:
+        if decision.role == SKIP:
+            skipped.setdefault(decision.reason, []).append(feature.where or f"line {feature.line}")
+            feature.source.pass_over(decision.reason)
+        elif decision.role is not None:
+            found.setdefault(decision.role, []).append((feature, decision))
+    notes += [f"{layer.title}: passed over, {reason}: {some_of(names)}" for reason, names in skipped.items()]
     return found
+
+
+def _forbidden(layer: Layer, entry: Entry) -> Entry:
+    """The entry; a closed area whose name says to whom it is forbidden with that. Others are forbidden to all."""
+    if entry.role not in ("zone", CIRCLE) or "forbidden_to" in entry.values:
+        return entry
+    kinds = forbidden_by_name(layer, entry.feature)
+    return replace(entry, values={**entry.values, "forbidden_to": kinds}) if kinds else entry
 
 
 def _without_meaning(layer: Layer, roles: Sequence[str]) -> set[str]:
@@ -236,7 +257,7 @@ def _entry(role: str, feature: Feature, columns: Columns, findings: list[Finding
     own = {key: value for key, value in values.items() if key not in (*OF_PLACES, "z", "wkt")}
     entry = Entry(role, feature, columns, own)
     geometry = feature.geometry
-    if role not in AT_POINTS:
+    if role not in WITH_PLACE:
         return [replace(entry, geometry=geometry)]
     if geometry is None:
         placed = _placed(entry, values, findings) if len(findings) == before else None

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from muster.exchange.sites.cells import CellError, NoValue
+from muster.exchange.sites.cells import CellError, NoValue, is_bare_number, moment, pairs
 from muster.exchange.sites.features import Feature, Layer
 from muster.exchange.sites.keys import ROLES, SiteKey, keys_of
 from muster.exchange.sites.units import ALL_UNITS, UNITS, units_text
@@ -38,11 +39,15 @@ _SUBJECTS = frozenset(
 
 @dataclass(frozen=True)
 class Column:
-    """A heading, the key that it means, and what one unit of its numbers is in SI units."""
+    """A heading, the key that it means, and what one unit of its numbers is in SI units.
+
+    `factor` is not a number where the heading says no unit, and the key needs one; `is_bare` is whether it says none.
+    """
 
     heading: str
     key: SiteKey
     factor: float
+    is_bare: bool = False
 
     def value(self, feature: Feature, findings: list[Finding]) -> object:
         """The value of a feature; None where it has none, or, with a finding, a wrong one."""
@@ -98,18 +103,22 @@ def columns_of(
         for column in meanings:
             is_chosen = column is not None and column.key.name in chosen and not mine
             gives_way = column is not None and column.key.name in found and heading not in used
-            if column is None or is_chosen or gives_way:
+            if column is None or is_chosen or gives_way or (not mine and _is_other(column, members)):
                 unread.append(heading)
+            elif column.key.name in found and column.key.name in _LABELS and not mine:
+                first = found[column.key.name]
+                found[column.key.name], other = (column, first) if _is_exact(column) else (first, column)
+                unread.append(other.heading)
             elif column.key.name in found:
-                other = found[column.key.name].heading
-                expected = f"one column that says {column.key.name}: --column {column.key.name}={other}"
-                findings.append(_of_layer(layer, heading, f"means {column.key.name}, as {other} does", expected))
+                first = found[column.key.name]
+                expected = f"one column that says {column.key.name}: --column {column.key.name}={first.heading}"
+                findings.append(
+                    _of_layer(layer, heading, f"means {column.key.name}, as {first.heading} does", expected)
+                )
             elif column.factor == 0:
                 wrong.add(column.key.name)
-                told = units_text(column.key.dimension)
-                findings.append(
-                    _of_layer(layer, heading, "a unit that does not fit", f"{told}, or nothing in brackets")
-                )
+                told = column.key.right or f"{units_text(column.key.dimension)}, or nothing in brackets"
+                findings.append(_of_layer(layer, heading, "a unit that does not fit", told))
             else:
                 found[column.key.name] = column
     if found.keys().isdisjoint(("id", "name")) and "name" in keys:
@@ -118,6 +127,45 @@ def columns_of(
             unread.remove(subject)
             found["name"] = Column(subject, keys["name"], 1.0)
     return Columns(found, tuple(dict.fromkeys(unread)), frozenset(wrong))
+
+
+_LABELS = ("id", "name", "type", "kind")
+"""Keys of words, of which a layer may have more than it needs: the heading that is the key itself is read."""
+
+
+def _is_exact(column: Column) -> bool:
+    return column.heading.strip().casefold() == column.key.name
+
+
+def _is_other(column: Column, members: Sequence[Feature]) -> bool:
+    """Return whether a heading that often means something else does so here: none of its cells can be read."""
+    if _bare_name(column.heading) not in column.key.rare or not members:
+        return False
+    findings: list[Finding] = []
+    read = [column.value(feature, findings) for feature in members if column.heading in feature.values]
+    return bool(findings) and all(value is None for value in read)
+
+
+def _bare_name(heading: str) -> str:
+    return "".join(_WORD.findall(heading.casefold()))
+
+
+def bare_numbers(columns: Columns, members: Sequence[Feature]) -> list[str]:
+    """Return the headings under which numbers stand without a unit, each with the unit that they are taken to have."""
+    found = []
+    for column in columns.by_key.values():
+        unit = _UNIT_TAKEN.get(column.key.dimension)
+        cells = (feature.values.get(column.heading) for feature in members)
+        is_said = column.key.read in _MOMENTS or column.key.name in _IN_METRES
+        if unit and column.is_bare and not is_said and any(map(is_bare_number, cells)):
+            found.append(f"{column.heading} in {unit}")
+    return found
+
+
+_UNIT_TAKEN = {"time": "s", "length": "m", "speed": "m/s", "mass": "kg or pieces"}
+_MOMENTS = (moment, pairs)
+_IN_METRES = ("x", "y")
+"""Places of the map frame, which is in metres."""
 
 
 def means_something(heading: str) -> bool:
@@ -162,38 +210,53 @@ def _names(key: SiteKey) -> tuple[str, ...]:
 
 def _explicit(heading: str, key: SiteKey) -> Column:
     """The column that a user names; its factor is 0 where it has a unit that does not fit the key."""
-    told = (factor for _, factor in _readings(heading, key) if factor != 1.0)
-    return Column(heading, key, next(told, 1.0) if key.dimension else 1.0)
+    stated = [factor for _, factor, is_bare in _readings(heading, key) if not is_bare]
+    if not key.dimension or not stated:
+        return Column(heading, key, math.nan if key.needs_unit else 1.0, is_bare=True)
+    return Column(heading, key, stated[0])
 
 
 def _meaning(heading: str, keys: Mapping[str, SiteKey]) -> Column | None:
-    """The column that a heading is; its factor is 0 where it has a unit that does not fit the key."""
+    """The column that a heading is; its factor is 0 where it has a unit that does not fit the key.
+
+    A heading that says no unit means a key that needs one only if it means no other.
+    """
     wrong: Column | None = None
+    without: Column | None = None
     for key in keys.values():
-        for name, factor in _readings(heading, key):
+        for name, factor, is_bare in _readings(heading, key):
             if name in _names(key):
-                if factor:
-                    return Column(heading, key, factor)
-                wrong = wrong or Column(heading, key, 0.0)
-    return wrong
+                if math.isnan(factor):
+                    without = without or Column(heading, key, factor, is_bare=True)
+                elif factor:
+                    return Column(heading, key, factor, is_bare)
+                else:
+                    wrong = wrong or Column(heading, key, 0.0)
+    return without or wrong
 
 
-def _readings(heading: str, key: SiteKey) -> Iterator[tuple[str, float]]:
-    """The names that a heading may be, the likeliest first, each with the factor of the unit beside it."""
+def _readings(heading: str, key: SiteKey) -> Iterator[tuple[str, float, bool]]:
+    """The names that a heading may be, the likeliest first, each with the factor of the unit beside it.
+
+    The third is whether the heading says no unit.
+    """
     bracketed = _BRACKETED.match(heading)
     base, unit = (bracketed[1], bracketed[2].casefold()) if bracketed and bracketed[1] else (heading, "")
     units = UNITS[key.dimension]
-    unstated = key.unstated.get(heading.strip().casefold(), 1.0)
+    own_name = heading.strip().casefold() == key.name
+    default = math.nan if key.needs_unit and not own_name else 1.0
+    unstated = key.unstated.get(heading.strip().casefold(), default)
     words = [word.casefold() for word in _WORD.findall(_CAMEL.sub(" ", base))]
     for start in (0, 1) if len(words) > 1 and words[0] in _SUBJECTS else (0,):
         own = words[start:]
         is_wrong = unit in ALL_UNITS or (unit and key.dimension and not key.is_free)
-        yield "".join(own), units.get(unit, 0.0 if is_wrong else unstated)
+        is_bare = not own_name and not unit and unstated == default
+        yield "".join(own), units.get(unit, 0.0 if is_wrong else unstated), is_bare
         if not unit and len(own) > 1:
             beside = own[-1] if len(own) < 3 or own[-2:] not in (["km", "h"], ["m", "s"]) else f"{own[-2]}/{own[-1]}"
             name = own[: -2 if "/" in beside else -1]
             if beside in ALL_UNITS:
-                yield "".join(name[:-1] if name[-1:] == ["in"] else name), units.get(beside, 0.0)
+                yield "".join(name[:-1] if name[-1:] == ["in"] else name), units.get(beside, 0.0), False
 
 
 def _of_layer(layer: Layer, heading: str, value: str, expected: str) -> Finding:

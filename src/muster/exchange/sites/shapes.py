@@ -89,6 +89,25 @@ def require_valid(rings: Sequence[Sequence[Sequence[float]]]) -> shapely.Polygon
     return area
 
 
+def mended(rings: Sequence[Sequence[Sequence[float]]]) -> list[shapely.Polygon]:
+    """Return areas that contain all that a ring encloses in any sense, where its sides cross; holes are filled.
+
+    Raises
+    ------
+    ValueError
+        if the ring encloses nothing.
+    """
+    import shapely
+
+    line = shapely.LineString([*rings[0], rings[0][0]]) if len(rings[0]) > 1 else shapely.LineString()
+    faces = shapely.get_parts(shapely.polygonize([shapely.node(line)]))
+    whole = shapely.union_all(list(faces))
+    found = [shapely.Polygon(one.exterior) for one in shapely.get_parts(whole) if one.area > 0]
+    if not found:
+        raise ValueError("no area")
+    return found
+
+
 def without_holes(area: shapely.Polygon) -> list[shapely.Polygon]:
     """The same area as polygons without holes: cut through the middle of a hole, as often as there are any."""
     import shapely

@@ -8,12 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from muster.exchange.sites.builder import Builder, SiteOptions
-from muster.exchange.sites.entries import Entry, entries_of
+from muster.exchange.sites.decisions import BY, LINE, POINT
+from muster.exchange.sites.entries import Entry, entries_of, some_of
 from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.headings import given_columns
 from muster.exchange.sites.identities import identified
+from muster.exchange.sites.keys import CIRCLE
 from muster.exchange.sites.plan_areas import joined_areas
 from muster.exchange.sites.readers import reader_of
+from muster.exchange.sites.robot_kinds import with_kind
 from muster.exchange.sites.roles import Roles
 from muster.exchange.sites.site_ledger import ledger_of, left_out
 from muster.exchange.sites.times import require_alike
@@ -87,12 +90,12 @@ def read_site(
     found: list[tuple[Layer, str | None]] = [*layers]
     if robots is not None:
         found += [(layer, "robot") for layer in reader_of(robots)(robots)]
-    entries, notes = _entries(found, options)
+    entries, notes, decided = _entries(found, options)
     there = _there(base, team)
     main = base.source.file if base is not None else str(files[0] if files else robots)
     if not there.get("robots") and not any(entry.role == "robot" for entry in entries):
         raise refused(main, None, "robots", "missing", _ROBOTS)
-    builder = Builder(entries, there, options)
+    builder = Builder(entries, there, options, is_new=base is None)
     builder.built.data["name"] = Path(main).stem if base is None else base.name
     built = builder.build()
     data = built.data
@@ -103,10 +106,13 @@ def read_site(
     mission = mission_from(data, source, [], base.travel_tables if base is not None else None)
     left_out(entries, data)
     ledger = ledger_of([layer for layer, _ in found])
-    return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes), ledger)
+    return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes, *decided), ledger)
 
 
-def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -> tuple[list[Entry], list[str]]:
+def _entries(
+    layers: Sequence[tuple[Layer, str | None]], options: SiteOptions
+) -> tuple[list[Entry], list[str], list[str]]:
+    """The entries of all layers, what there is to say of how they were read, and what words decided of them."""
     whole = [layer for layer, _ in layers]
     roles = Roles.of(options.kinds)
     roles.require_used(whole)
@@ -114,23 +120,38 @@ def _entries(layers: Sequence[tuple[Layer, str | None]], options: SiteOptions) -
     findings: list[Finding] = []
     notes: list[str] = []
     entries: list[Entry] = []
+    decided: list[str] = []
     for layer, default in layers:
-        found = entries_of(layer, roles, default, columns, findings, notes)
+        read = entries_of(layer, roles, default, columns, findings, notes)
+        found = [with_kind(entry, layer, roles) for entry in read]
         require_alike(found, findings)
         entries += identified(layer, found, columns, notes)
+        decided += _decisions(layer, entries[len(entries) - len(found) :])
     entries = joined_areas(entries)
     if findings:
         raise MissionError(sorted(findings, key=lambda finding: (finding.file, finding.line or 0)))
     if whole and not entries:
         raise refused(whole[0].file, None, "", "nothing to read", "points, areas or lines")
-    return entries, notes
+    return entries, notes, decided
+
+
+def _decisions(layer: Layer, entries: Sequence[Entry]) -> list[str]:
+    """What words, or no words, decided of the features of a layer, one line for each role and reason."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for entry in entries:
+        if entry.reason.startswith(BY) or entry.reason in (POINT, LINE):
+            groups.setdefault((entry.role, entry.reason), []).append(entry.told)
+    return [f"{layer.title}: {some_of(names)}: {_NOUNS[role][0]}, {reason}" for (role, reason), names in groups.items()]
 
 
 def _there(base: Mission | None, team: Mission | None) -> dict[str, Any]:
     """The data of the mission to which the site is added."""
     if base is not None:
         return file_data(base)
-    return {} if team is None else {key: value for key, value in file_data(team).items() if key in _FROM_TEAM}
+    if team is None:
+        return {}
+    found = {key: value for key, value in file_data(team).items() if key in _FROM_TEAM}
+    return found | ({"rules": {"usage": team.rules.usage}} if team.rules.usage != "distance" else {})
 
 
 def _counts(layers: Sequence[tuple[Layer, str | None]], entries: Sequence[Entry]) -> tuple[str, ...]:
@@ -151,4 +172,5 @@ _NOUNS: Mapping[str, tuple[str, ...]] = {
     "boundary": ("boundary", "boundaries"),
     "survey": ("area to survey", "areas to survey"),
     "lane": ("line of lanes", "lines of lanes"),
+    CIRCLE: ("round zone",),
 }

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, File, Header, HTTPException, Query, Request, Response, UploadFile
+from fastapi import APIRouter, Depends, File, Form, Header, HTTPException, Query, Request, Response, UploadFile
 from pydantic import Field
 
 from muster.exchange.mission_control import MissionEntry, MissionVersion, NotFoundError, VersionEntry
@@ -30,6 +30,7 @@ from muster.server.api.parameter_types import (
     VersionNumber,
 )
 from muster.server.api.responses import Responses, errors, file_described, file_response, with_location
+from muster.server.services.uploads import answers_of
 
 router = APIRouter(prefix="/missions", tags=["missions"], route_class=BoundedRoute)
 
@@ -38,6 +39,8 @@ name: yard
 robots: [{id: r_0, position: [0, 0]}]
 tasks: [{id: gate, position: [4, 3]}]
 """
+_Kind = Annotated[str, Field(max_length=400)]
+_KINDS = "What features of a site are, as NAME=KIND: a file, layer or feature, and task, robot, air, zone, survey, ..."
 _WITH_ETAG: Responses = {200: {"headers": {"ETag": {"description": "Its version.", "schema": {"type": "string"}}}}}
 _IfMatch = Annotated[
     str | None, Header(max_length=100, pattern=r'^"[0-9]{1,9}"$', description="The ETag of the version it is based on.")
@@ -146,9 +149,17 @@ async def upload(
     who: TheUser,
     response: Response,
     file: Annotated[UploadFile, File(description="YAML, CSV, an instance file (TSPLIB, VRPLIB, ...), or .plan.")],
+    kinds: Annotated[list[_Kind], Form(alias="as", max_length=200, description=_KINDS)] = [],  # noqa: B006
+    height_m: Annotated[float | None, Form(gt=0, le=1e4, description="From which areas are surveyed.")] = None,
+    fov_deg: Annotated[float | None, Form(gt=0, lt=180, description="Width of the picture of their cameras.")] = None,
+    width_m: Annotated[float | None, Form(gt=0, le=1e4, description="Width of their tool, without a camera.")] = None,
 ) -> MissionText:
-    """A file of any format that Muster reads; it is converted to a mission file."""
-    made = await services.missions.upload(who, _base_name(file.filename), await file.read())
+    """A file of any format that Muster reads; it is converted to a mission file.
+
+    Where nothing says what a feature of a site is the answer is 400: a line for each such feature names what decides.
+    """
+    answers = answers_of("; ".join(kinds), height_m=height_m, fov_deg=fov_deg, width_m=width_m)
+    made = await services.missions.upload(who, _base_name(file.filename), await file.read(), **answers)
     return _made(response, made)
 
 

@@ -215,8 +215,8 @@ class Missions:
 
         `beside` are further files that the file needs, or those of a site that are added to it. The mission is called
         `name`, in its text too; without that as its text says. `options` are those of the worker task `convert`:
-        `robots` and `suitability` (names of files of `beside`), `salesmen`, `depot`. What was read and chosen becomes
-        the note of the version.
+        `robots` and `suitability` (names of files of `beside`), `salesmen`, `depot`, and what `answers_of` returns.
+        What was read and chosen becomes the note of the version.
 
         Raises
         ------

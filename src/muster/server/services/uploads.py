@@ -77,6 +77,31 @@ def site_files(text: str, names: Iterable[str]) -> list[str]:
     return [name for name in names if PurePath(name).suffix.lower().lstrip(".") in READERS and name not in text]
 
 
+def answers_of(kinds: str, **survey: float | None) -> dict[str, Any]:
+    """What a user says of a site, as arguments of the worker task `convert`; without what is not said.
+
+    Parameters
+    ----------
+    kinds
+        what features are: `Search areas=survey; drones=air`.
+    survey
+        `height_m`, `fov_deg` and `width_m` of areas to survey.
+
+    Raises
+    ------
+    ParameterError
+        for a text that does not name a feature and its kind.
+    """
+    found = {}
+    for text in filter(None, map(str.strip, kinds.replace("\n", ";").split(";"))):
+        name, equals, kind = text.removeprefix("--as ").strip("\"' ").rpartition("=")
+        if not equals or not name or not kind:
+            raise ParameterError(f"as: {shown(text)}; expected NAME=KIND, as Search areas=survey")
+        found[name.strip()] = kind.strip()
+    stated = {key: value for key, value in survey.items() if value is not None}
+    return ({"kinds": found} if found else {}) | stated
+
+
 def findings_of(errors: list[dict[str, Any]]) -> list[Finding]:
     """The findings of a worker."""
     return [Finding(**error) for error in errors]

@@ -57,3 +57,31 @@ def test_what_was_read_of_the_files_of_a_site_is_said_before_they_are_opened(wat
         page.get_by_text(words).first.wait_for()
     page.get_by_role("button", name="Open it").click()
     page.wait_for_url("**/plan/South-roof")
+
+
+AREA = b"""{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"name": "West"}, "geometry":
+{"type": "Polygon", "coordinates": [[[8, 47], [8.001, 47], [8.001, 47.001], [8, 47]]]}}]}"""
+
+
+def test_what_a_site_does_not_say_is_asked_and_answered_without_choosing_its_files_again(watched, page):
+    watched.open("/")
+    page.get_by_role("button", name="New mission").click()
+    page.set_input_files(
+        "input[type=file]",
+        [
+            {"name": "fields.geojson", "mimeType": "application/json", "buffer": AREA},
+            {"name": "robots.csv", "mimeType": "text/csv", "buffer": b"id,lat,lon,kind\nr_0,47.0001,8.0001,air\n"},
+        ],
+    )
+    asked = page.get_by_text("undecided: no word says what it is; expected --as West=zone")
+    asked.wait_for()
+    page.get_by_text("What a site's files do not say").click()
+    page.get_by_label("What features are").fill("West=survey")
+    page.get_by_label("Height of surveys, m").fill("40")
+    page.get_by_label("Width of the picture of their cameras, degrees").fill("60")
+    page.get_by_label("Name", exact=True).fill("West field")
+    page.get_by_role("button", name="Read them again").click()
+    asked.wait_for(state="detached")
+    page.get_by_text("fields.geojson: 1 area to survey").wait_for()
+    page.get_by_role("button", name="Open it").click()
+    page.wait_for_url("**/plan/West-field")

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from muster.mission.circles import enclosing
 from muster.server.work.editing import changes
 from muster.server.work.editing.edits import EditError, data_of
 
@@ -145,3 +146,21 @@ def test_stations_are_placed_moved_set_and_dropped_like_tasks() -> None:
 def test_a_delivery_lets_go_of_a_task_that_goes() -> None:
     text = changes.set_cell(TEXT, ("tasks", 1, "delivers"), "9", "8")
     assert "delivers" not in data_of(changes.drop(text, "task", "9"))["tasks"][1]
+
+
+ROUND = """\
+schema: muster/1
+map:
+  boundary: [[-9, -9], [9, -9], [9, 9], [-9, 9]]
+  zones: [{circle: {center: [1, 2], radius_m: 3}}]
+robots: [{id: r, position: [-8, -8]}]
+tasks: [{id: a, position: [8, 8]}]
+"""
+
+
+def test_a_circle_is_taken_out_and_not_dragged():
+    with pytest.raises(EditError, match="zone 1 is a circle; change that in the text"):
+        changes.move(ROUND, {"what": "zone", "id": 0, "corner": 3}, 1, 1)
+    assert "circle" not in changes.drop(ROUND, "zone", 0, enclosing((1, 2), 3))
+    with pytest.raises(EditError, match="another one by now"):
+        changes.drop(ROUND, "zone", 0, enclosing((1, 2), 4))

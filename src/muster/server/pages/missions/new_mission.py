@@ -16,6 +16,7 @@ from muster.planning.loading import CONVERTED
 from muster.server.pages.buttons import once
 from muster.server.pages.notices import end_warning, errors_shown, warn
 from muster.server.pages.visitor import the_services, the_user
+from muster.server.services.uploads import answers_of
 from muster.server.work import WorkError
 
 _UNNAMED = "my mission"
@@ -129,12 +130,19 @@ def _uploading(name_of: Callable[[], str], work: _Work) -> None:
             ui.label(words)
     salesmen = ui.number("Robots, for a problem of TSPLIB", value=3, min=1, precision=0)
     salesmen.props("outlined dense").classes("full")
+    answers = _Answers()
+    files: dict[str, bytes] = {}
+
+    async def read() -> None:
+        with work.seen(f"Reading {', '.join(files)} …"):
+            await _upload(files, int(salesmen.value or 3), name_of(), answers)
 
     async def take(event: events.MultiUploadEventArguments) -> None:
-        files = {file.name: await file.read() for file in event.files}
+        files.clear()
+        files.update({file.name: await file.read() for file in event.files})
+        again.visible = True
         upload.reset()  # else a file that is chosen once more, with others, is left out as already there
-        with work.seen(f"Reading {', '.join(files)} …"):
-            await _upload(files, int(salesmen.value or 3), name_of())
+        await read()
 
     upload = ui.upload(
         label="Choose or drop files",
@@ -146,6 +154,31 @@ def _uploading(name_of: Callable[[], str], work: _Work) -> None:
     )
     upload.on("rejected", lambda event: warn(refused(event.args)), js_handler=_REJECTED)
     upload.props(f'accept="{_ACCEPT}" flat bordered').classes("full")
+    again = ui.button("Read them again", on_click=once(read)).props("outline dense")
+    again.visible = False
+
+
+class _Answers:
+    """What a user says of a site where its files do not: fields that are shown on demand."""
+
+    def __init__(self) -> None:
+        with ui.element("details").classes("more small"):
+            with ui.element("summary"):
+                ui.label("What a site's files do not say")
+            self._kinds = ui.input("What features are", placeholder="Search areas=survey; drones=air")
+            self._kinds.props("outlined dense stack-label hint='As messages say it after --as'").classes("full")
+            self._height = _metric("Height of surveys, m")
+            self._fov = _metric("Width of the picture of their cameras, degrees")
+            self._width = _metric("Width of their tool, m, without a camera")
+
+    def given(self) -> dict[str, Any]:
+        """The answers, as arguments for reading; raises ParameterError for what is none."""
+        numbers = {"height_m": self._height.value, "fov_deg": self._fov.value, "width_m": self._width.value}
+        return answers_of(self._kinds.value or "", **numbers)
+
+
+def _metric(label: str) -> ui.number:
+    return ui.number(label, min=0).props("outlined dense").classes("full")
 
 
 def refused(files: Sequence[tuple[str, str, int]]) -> str:
@@ -178,10 +211,11 @@ async def named(text: str, name: str) -> str:
         return text
 
 
-async def _upload(files: dict[str, bytes], salesmen: int, title: str) -> None:
+async def _upload(files: dict[str, bytes], salesmen: int, title: str, answers: _Answers) -> None:
     with errors_shown():
         name, beside = sorted_out(list(files))
         options = options_of(name, beside, salesmen)
+        options |= answers.given() if PurePath(name).suffix.lower() in (*YAML_SUFFIXES, *_SITES) else {}
         rest = {other: data for other, data in files.items() if other != name}
         upload = the_services().missions.upload
         made = await upload(the_user(), name, files[name], rest, name=title or None, **options)

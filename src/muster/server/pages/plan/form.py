@@ -10,7 +10,7 @@ from nicegui import background_tasks, ui
 
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import OBJECTIVES, Robot, Rules, Station, Task
-from muster.mission.records import specified
+from muster.mission.records import instead_of, specified
 from muster.mission.value_types import Number, Whole
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import warn, words_of
@@ -98,9 +98,7 @@ def _explained(model: type[Any], columns: Sequence[Column]) -> tuple[Column, ...
     """Columns with what the format says of their keys."""
     words = {one.name: str(one.metadata["doc"]) for one in specified(model)}
     for one in specified(model):
-        if "instead" in one.metadata:
-            key, _, doc = one.metadata["instead"]
-            words[key] = doc
+        words |= {key: doc for key, _, doc in instead_of(one)}
     return tuple(
         replace(column, hint="; ".join(filter(None, (words.get(column.key, ""), column.hint)))) for column in columns
     )

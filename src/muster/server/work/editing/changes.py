@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from muster.mission.circles import SIDES, enclosing
 from muster.server.work.editing.edits import EditError, append, data_of, remove, set_value, set_values
 from muster.server.work.editing.nodes import Path
 from muster.server.work.editing.zones import add_zone
@@ -22,6 +23,8 @@ def move(text: str, one: Mapping[str, Any], x: float, y: float) -> str:
     """
     if one["what"] == "zone":
         corner: Path = ("map", "zones", int(one["id"]), "polygon", int(one["corner"]))
+        if "circle" in _at(data_of(text), corner[:3]):
+            raise EditError(f"zone {int(one['id']) + 1} is a circle; change that in the text")
         if isinstance(_at(data_of(text), corner[:-1]), dict):
             raise EditError(f"zone {int(one['id']) + 1} is placed in degrees (lat_lon); change that in the text")
         was = one.get("from")
@@ -94,7 +97,12 @@ def _let_go(text: str, key: str, name: str) -> str:
 
 
 def _is_of(zone: Any, corners: Sequence[Sequence[float]]) -> bool:
-    """Whether a zone as it is written has those corners; of one in degrees, as many."""
+    """Whether a zone as it is written has those corners; of one in degrees, as many; of a circle, those around it."""
+    circle = zone.get("circle") if isinstance(zone, dict) else None
+    if isinstance(circle, dict):
+        center = circle.get("center")
+        known = enclosing(center, circle["radius_m"]) if isinstance(center, list) else []
+        return len(corners) == SIDES if not known else known == [list(c) for c in corners]
     polygon = zone.get("polygon") if isinstance(zone, dict) else None
     if isinstance(polygon, dict) and isinstance(polygon.get("lat_lon"), list):
         return len(polygon["lat_lon"]) == len(corners)

@@ -17,6 +17,8 @@ from muster.planning.loading import CONVERTED, is_site_file, load_noted
 from muster.server.work.missions import written_files
 
 _MISSIONS = (*YAML_SUFFIXES, *CONVERTED)
+_ANSWERS = ("kinds", "height_m", "fov_deg", "width_m")
+"""What a user says of a site, as `read_site` has it."""
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")
 
 
@@ -26,8 +28,9 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     `name` is which of `files` (base64, by name) is the mission: a task-list CSV or a file of a site, perhaps with
     `robots` and `suitability`, which name others of them, and all other files of a site are added; an instance file,
     perhaps with `salesmen` and `depot`, of which TSPLIB needs the first; a `.plan` of QGroundControl, of which all
-    `.plan` files are taken together; a mission in YAML, to which the files named by `site` are added. `notes` are what
-    was read from files of a site, what was chosen, and what was not read; `ledger` has the fate of every element.
+    `.plan` files are taken together; a mission in YAML, to which the files named by `site` are added. `kinds`,
+    `height_m`, `fov_deg` and `width_m` are what a user says of a site, as `read_site` has it. `notes` are what was read
+    from files of a site, what was chosen, and what was not read; `ledger` has the fate of every element.
     """
     name, files = arguments["name"], arguments["files"]
     options = {key: arguments[key] for key in _OPTIONS if arguments.get(key) is not None}
@@ -42,9 +45,10 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
     site = arguments.get("site", ())
     others = [one for one in site or _others_of_site(name, files) if one not in options.values()]
     if site or others or is_site_file(path):
-        beside = {key: options[key] for key in ("robots", "suitability") if key in options}
+        beside: dict[str, Any] = {key: options[key] for key in ("robots", "suitability") if key in options}
+        beside |= {key: arguments[key] for key in _ANSWERS if arguments.get(key) is not None}
         found = read_site(name, *others, **beside)
-        kept = sorted(set(files) - {name, *others, *beside.values()}) if site else []
+        kept = sorted(set(files) - {name, *others, *options.values()}) if site else []
         return _answer(found.mission, kept, (*found.counts, *found.notes, *summary_lines(found.ledger)), found.ledger)
     noted = load_noted(_folder_of_plans(files) if path.suffix.lower() == ".plan" else path, **options)
     needs = sorted(set((noted.mission.travel or {}).values()))

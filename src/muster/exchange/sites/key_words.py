@@ -1,0 +1,33 @@
+"""Headings of names and of energy in the languages of those who write tables: lower case, without spaces and marks."""
+
+from __future__ import annotations
+
+_NAMES = """
+    title label bezeichnung nom nombre nome naam nazwa nazev název navn namn isim adı имя название назва όνομα ονομα
+    اسم الاسم نام שם नाम नम 名称 名稱 名前 이름
+"""
+_BATTERY = """
+    battery batterycapacity batterylevel batterytime batterylife akku akkukapazitat akkukapazität batterie bateria
+    batería batteria accu batteri pil batarya акб батарея аккумулятор акумулятор μπαταρία بطارية باتری סוללה 电池 電池
+    バッテリー 배터리 energy stateofcharge soc chargelevel
+"""
+_ENDURANCE = """
+    endurance flighttime flyingtime maxflighttime maxendurance runtime operatingtime drivetime hovertime flugzeit
+    flugdauer akkulaufzeit laufzeit autonomie autonomia autonomía tempsdevol tiempodevuelo tempodivolo tempodevoo
+    vliegtijd czaslotu dobaletu flytid flygtid flyvetid uçuşsüresi времяполета времяполёта часпольоту χρόνοςπτήσης 续航
+    续航时间 航続時間 飛行時間 飞行时间 비행시간 체공시간 مدةالطيران مداومتپروازی זמןטיסה
+"""
+_RANGE = """
+    range maxrange flightrange reichweite portée portee alcance raggiodazione bereik zasięg zasieg dosah dolet
+    rekkevidde räckvidd rackvidd rækkevidde menzil дальность дальністьпольоту дальність εμβέλεια 航程 航続距離 항속거리
+    المدى برد טווח
+"""
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(text.split())
+
+
+NAMES, ENDURANCE, RANGE = _words(_NAMES), _words(_ENDURANCE), _words(_RANGE)
+BATTERY = _words(_BATTERY)
+"""Of what may be a time, a length, or neither."""
