@@ -82,7 +82,7 @@ def run(parser, trial, sum_up=lambda figures: "", seeds_of=seeds_of, cpu_limit_s
 def _reports(trial, seeds, processes, cpu_limit_s):
     """The reports, as they come; failures are told at once, on standard error, above a line of progress."""
     begin, fail = time.monotonic(), 0
-    for done, report in enumerate(_tried(trial, seeds, processes, cpu_limit_s), 1):
+    for done, report in enumerate(tried(trial, seeds, processes, cpu_limit_s), 1):
         fail += bool(report.failures)
         _say(*(f"seed {report.seed}: {failure}" for failure in (*report.failures, *report.notes)))
         if done % 50 == 0 or done == len(seeds):
@@ -91,7 +91,7 @@ def _reports(trial, seeds, processes, cpu_limit_s):
     sys.stderr.write("\n")
 
 
-def _tried(trial, seeds, processes, cpu_limit_s):
+def tried(trial, seeds, processes, cpu_limit_s):
     """Yield the report of each seed, as processes make them. A seed with which its process ends is a failure."""
     context, left = get_context("spawn"), iter(seeds)
     workers = {}  # by the connection to each process: the process, and its seed

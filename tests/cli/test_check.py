@@ -90,6 +90,7 @@ def test_in_json(muster):
             "proven": True,
         },
         "unknown": False,
+        "shortfalls": [],
         "unseen": [],
         "blocked": [],
         "cut_off": [],
@@ -117,6 +118,7 @@ def test_when_all_can_be_done(muster):
         "impossible": [],
         "conflict": None,
         "unknown": False,
+        "shortfalls": [],
         "unseen": [],
         "blocked": [],
         "cut_off": [],
@@ -171,7 +173,8 @@ def test_no_time(muster):
 def test_errors_in_json_have_all_keys(muster):
     code, out, err = muster("check", write("schema: muster/1\n"), "--format", "json")
     assert (code, err) == (2, "")
-    assert list(json.loads(out)) == ["errors", "impossible", "conflict", "unknown", "unseen", "blocked", "cut_off"]
+    keys = ["errors", "impossible", "conflict", "unknown", "shortfalls", "unseen", "blocked", "cut_off"]
+    assert list(json.loads(out)) == keys
 
 
 SEARCH = """\
@@ -356,3 +359,35 @@ def test_robots_that_touch_are_found_among_all_pairs(seed):
         if a.kind == b.kind and math.dist(a.position, b.position) < a.radius_m + b.radius_m
     ]
     assert _touching(robots) == pairs
+
+
+def test_too_much_work_is_said_first(tmp_path, monkeypatch, muster):
+    """Before the tasks that can never be done, and before anything is searched for; `explain` says it too."""
+    monkeypatch.chdir(tmp_path)
+    Path("m.yaml").write_text(
+        """schema: muster/1
+name: crates
+robots:
+  - {id: r_0, position: [0, 0], available_until_s: 100}
+  - {id: r_1, position: [5, 0], available_until_s: 100}
+tasks:
+  - {id: a, position: [1, 0], duration_s: 60}
+  - {id: b, position: [2, 0], duration_s: 40, robots_needed: 2}
+  - {id: c, position: [3, 0], duration_s: 70}
+  - {id: d, position: [4, 0], requires: [wings]}
+""",
+        encoding="utf-8",
+    )
+    short = [
+        "proven: 210 robot-seconds of work in 200 of shift: 10 robot-seconds short before any travel",
+        "  least to add: 10 robot-seconds of shift, or 1 more robot; or leave out at least 1 task",
+    ]
+    assert muster("check", "m.yaml")[1].splitlines()[1:3] == short
+    assert muster("check", "m.yaml", "--time-limit", "0")[1].splitlines()[1:3] == short
+    assert muster("check", "m.yaml", "--require-complete")[0] == 3
+    data = json.loads(muster("check", "m.yaml", "--format", "json")[1])
+    assert (data["shortfalls"][0]["lacking"], data["unknown"]) == (10, False)
+    muster("solve", "m.yaml", "--iterations", "50", "-o", "plan.json")
+    assert muster("explain", "m.yaml", "plan.json")[1].splitlines()[:2] == short
+    explained = json.loads(muster("explain", "m.yaml", "plan.json", "--format", "json")[1])
+    assert explained["shortfalls"] == data["shortfalls"]

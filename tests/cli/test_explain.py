@@ -137,7 +137,7 @@ def test_the_smallest_change_for_each_task_left_out(shed, muster):
 
 def test_the_smallest_changes_in_json(shed, muster):
     data = json.loads(muster("explain", *shed, "--format", "json")[1])
-    assert list(data) == ["ignored", "unassigned", "smallest", "cut_short"]
+    assert list(data) == ["ignored", "shortfalls", "unassigned", "smallest", "cut_short"]
     kinds = {item["task"]: (item["remedy"]["robot"], item["remedy"]["kinds"]) for item in data["smallest"]}
     assert kinds == {
         "c": ("r_0", ["capacity"]),

@@ -6,17 +6,18 @@ import pytest
 
 from muster.mission.plan import Plan, Route
 from muster.verification import verify
+from tests import trials
 from tests.judged_plans import JudgedPlans
 from tests.mixed_missions.missions import RULES, mixed_mission
 from tests.mixed_missions.trial import trial
 
 pytest.importorskip("ortools", reason="needs the extra exact")
-CHUNK = 30
+CHUNK = 15
 DECIDED = (7, 11, 60, 190, 293, 381, 430, 480, 501, 609, 738, 1130, 1398, 1467)
 """Seeds of which something was wrong once: crashes, reasons that are refuted, plans that the judge rejects."""
 
 
-@pytest.mark.parametrize("first", [0, *(pytest.param(k * CHUNK, marks=pytest.mark.long) for k in range(1, 6))])
+@pytest.mark.parametrize("first", [0, *(pytest.param(k * CHUNK, marks=pytest.mark.long) for k in range(1, 11))])
 def test_nothing_that_is_said_is_refuted(first):
     reports = [trial(seed) for seed in range(first, first + CHUNK)]
     assert {report.seed: report.failures for report in reports if report.failures} == {}
@@ -83,3 +84,14 @@ def test_what_goes_wrong_is_a_failure(monkeypatch):
     assert any("is below the quick bound" in failure for failure in trial(whole).failures)
     monkeypatch.setattr("tests.mixed_missions.trial.lower_bound", lambda problem: 1 / 0)
     assert "ZeroDivisionError: division by zero" in trial(whole).failures
+
+
+def _endless_at_one(seed):
+    while seed == 1:
+        pass
+    return trials.Report(seed)
+
+
+def test_a_trial_that_never_ends_is_a_failure_and_the_others_go_on():
+    reports = {report.seed: report.failures for report in trials.tried(_endless_at_one, range(3), 1, 0.3)}
+    assert reports == {0: [], 1: ["its process ended: more than 0.3 s of CPU time"], 2: []}

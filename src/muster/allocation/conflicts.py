@@ -23,6 +23,7 @@ from muster.mission.clock import Clock, SystemClock
 
 _LEFT_OUT_TRIED = 5
 _OVERTIME_S = 0.2
+_MOST_PAIRS = 2_000_000  # of robot and task, up to which sums of work are taken without a time limit
 _BEFORE_PROOFS = 1  # seed of the last search before proofs are tried
 
 
@@ -92,6 +93,15 @@ def together(problem: Problem, judge: Judge, *, time_limit: float = 2.0, clock: 
         if left() == 0.0:
             break
     return Together(unknown=True)
+
+
+def without_search(problem: Problem) -> Together:
+    """Return what sums of work alone prove, at once; in a very large problem that is not looked at."""
+    if len(problem.robots) * len(problem.tasks) > _MOST_PAIRS:
+        return Together(unknown=True)
+    lost = {item.task for item in impossible(problem)}
+    short = shortfalls(problem, [j for j, task in enumerate(problem.tasks) if task.id not in lost])
+    return Together(unknown=not short, shortfalls=short)
 
 
 def _proven(

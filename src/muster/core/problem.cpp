@@ -207,25 +207,22 @@ void Problem::find_inseparable() {
     for (const int earlier : prerequisites(task)) arc(unit(task), unit(earlier));
     if (partner_[task] >= 0) arc(unit(task), unit(partner_[task]));
   }
-  const auto reached = [&](int from, const std::vector<std::vector<int>>& next) {
-    std::vector<char> seen(units(), 0);
-    std::vector<int> found{from};
-    seen[from] = 1;
+  std::vector<int> ahead(units(), -1), behind(units(), -1);  // the last task from which a unit was reached
+  const auto reach = [&](int task, const std::vector<std::vector<int>>& next, std::vector<int>& from) {
+    std::vector<int> found{unit(task)};
+    from[unit(task)] = task;
     for (std::size_t k = 0; k < found.size(); ++k) {
       for (const int other : next[found[k]]) {
-        if (!std::exchange(seen[other], 1)) found.push_back(other);
+        if (std::exchange(from[other], task) != task) found.push_back(other);
       }
     }
-    return std::pair{found, seen};
+    return found;
   };
   for (int task = 0; task < tasks_; ++task) {
     if (partner_[task] < 0 || !whole[unit(task)].empty()) continue;
-    const auto ahead = reached(unit(task), needs);
-    const auto behind = reached(unit(task), needed);
-    std::vector<int> group;
-    for (const int other : ahead.first) {
-      if (behind.second[other]) group.push_back(other);
-    }
+    reach(task, needed, behind);
+    std::vector<int> group = reach(task, needs, ahead);
+    std::erase_if(group, [&](int other) { return behind[other] != task; });
     for (const int other : group) whole[other] = in_order(group);
   }
   for (const auto& group : whole) {

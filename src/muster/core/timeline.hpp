@@ -186,7 +186,6 @@ class Timeline {
   bool forward();
   void backward();
   void renew_budget();
-  bool within_budget() { return !has_within_ || --budget_ >= 0; }
   bool settle_cycles();
   double earliest_begin(int unit);
   double latest_begin(int unit);
@@ -210,7 +209,7 @@ class Timeline {
   // What prerequisites and dependants ask for: when a task ends, and the tail of a unit; -inf where they are absent.
   std::vector<double> ends_, tails_;
   UnitQueue forward_, backward_;
-  int budget_ = 0;  // where maximum lags make cycles: units that a propagation still looks at before it gives up
+  int budget_ = 0;  // units that a propagation still looks at before it gives up
   std::vector<double> works_;
   // Undo.
   int step_ = 1;

@@ -21,6 +21,7 @@ bool Timeline::settle() {
 
 bool Timeline::settle_begins() {
   if (has_within_ && !(forward_.empty() && backward_.empty())) return settle_cycles();
+  renew_budget();
   return forward();
 }
 
@@ -134,7 +135,7 @@ bool Timeline::forward() {
     const int unit = forward_.pop();
     Node& node = nodes_[unit];
     if (node.visits.empty()) continue;
-    if (!within_budget()) return false;
+    if (--budget_ < 0) return false;
     const double begin = earliest_begin(unit);
     const Visit& first = visits_[node.visits.front()];
     const bool changed = begin != node.begin || first.leave != begin + work_[first.place];
@@ -158,7 +159,7 @@ void Timeline::backward() {
     const int unit = backward_.pop();
     Node& node = nodes_[unit];
     if (node.visits.empty()) continue;
-    if (!within_budget()) return backward_.clear();
+    if (--budget_ < 0) return backward_.clear();
     const double latest = has_limits_ ? latest_begin(unit) : kNever;
     const double tail = has_tails_ ? longest_tail(unit) : 0.0;
     const Visit& first = visits_[node.visits.front()];
@@ -186,12 +187,12 @@ bool Timeline::settle_cycles() {
   return true;
 }
 
-// In a graph with cycles a fixpoint is found after each unit was looked at some times, or there is none.
+// Without cycles each unit is looked at about once. In a graph with cycles a fixpoint is found after each unit was
+// looked at some times, or there is none.
 void Timeline::renew_budget() {
-  if (!has_within_) return;
-  const auto present_units =
-      static_cast<int>(std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); }));
-  budget_ = 1000 + 64 * present_units;
+  const auto units =
+      has_within_ ? std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); }) : std::ssize(nodes_);
+  budget_ = 1000 + 64 * static_cast<int>(units);
 }
 
 void Timeline::drop_queues() {

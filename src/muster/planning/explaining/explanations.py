@@ -6,15 +6,14 @@ from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from muster.allocation.allocator import Routes, routes_of
+from muster.allocation.allocator import routes_of
+from muster.allocation.conflicts import without_search
 from muster.allocation.explanations import Alternative, alternatives, unassigned
-from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
-from muster.allocation.proofs import is_small_enough
 from muster.allocation.remedies import remedies, smallest_as_is
 from muster.allocation.remedy import Remedy
 from muster.allocation.stop import Stop
-from muster.allocation.work_shortfall import Shortfall, shortfalls
+from muster.allocation.work_shortfall import Shortfall
 from muster.mission.auction_book import Award
 from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.model import Mission
@@ -133,7 +132,8 @@ def left_out(mission: Mission, plan: Plan, ignore: Collection[str], stop: Stop) 
     """Explain why tasks are left out of a plan that fits the mission, as far as there is time."""
     problem = Problem.compile(mission, plan.objective, ignore)
     routes = routes_of(problem, plan)
-    short = _shortfalls(problem, routes)
+    missing_any = len({j for route in routes for j in route}) < len(problem.tasks)
+    short = without_search(problem).shortfalls if missing_any else ()
     for_reasons = None if stop.time_left_s is None else _FOR_REASONS * stop.time_left_s
     missing = unassigned(problem, routes, stop.part(time_limit=for_reasons, iterations=None).due)
     changes: dict[str, Remedy | None] = {}
@@ -144,14 +144,6 @@ def left_out(mission: Mission, plan: Plan, ignore: Collection[str], stop: Stop) 
         changes[item.task] = found
     cut_short = stop.due() or not all(item.reasons for item in missing)
     return LeftOut(problem, missing, changes, cut_short, short)
-
-
-def _shortfalls(problem: Problem, routes: Routes) -> tuple[Shortfall, ...]:
-    """Proofs by sums of work that tasks are left out by every plan; none is looked for in a very large problem."""
-    if len({j for route in routes for j in route}) == len(problem.tasks) or not is_small_enough(problem):
-        return ()
-    lost = {item.task for item in impossible(problem)}
-    return shortfalls(problem, [j for j, task in enumerate(problem.tasks) if task.id not in lost])
 
 
 def one_task(mission: Mission, plan: Plan, task: str, ignore: Collection[str], stop: Stop) -> OneTask:

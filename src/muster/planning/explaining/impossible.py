@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from muster.allocation.conflicts import Conflict, Together, together
+from muster.allocation.conflicts import Conflict, Together, together, without_search
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
@@ -91,8 +91,10 @@ def possible(mission: Mission, *, ignored: Sequence[str] = (), time_limit: float
     budget = Stop(time_limit=time_limit)
     problem = Problem.compile(mission, ignored=ignored).ready()  # which reads the map
     lost, unseen, blocked = impossible(problem), unseen_searches(problem), blocked_ways(problem)
-    cut_off, all_others = cut_off_stations(problem), Together(unknown=True)
-    if budget.time_left_s is not None:
+    cut_off = cut_off_stations(problem)
+    if budget.time_left_s is None:
+        all_others = without_search(problem)
+    else:
         all_others = together(problem, admits, time_limit=budget.time_left_s)
     return Possible(lost, all_others, unseen, blocked, cut_off)
 
