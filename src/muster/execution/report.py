@@ -342,7 +342,8 @@ def broken_off(report: Report, account: Account, reason: str) -> Report:
     """The report of a mission that ends before it is over: tasks under way are lost too, for that reason."""
     told = {*report.tasks_done, *(task for task, _ in report.tasks_lost)}
     under_way = tuple((task.id, reason) for task in account.ledger.open if task.id not in told)
-    return compared_in_part(replace(report, tasks_lost=report.tasks_lost + under_way), account)
+    lost, remarks = report.tasks_lost + under_way, (*report.remarks, IN_PART)
+    return compared_in_part(replace(report, tasks_lost=lost, remarks=remarks), account)
 
 
 def compared_in_part(report: Report, account: Account) -> Report:
@@ -351,7 +352,7 @@ def compared_in_part(report: Report, account: Account) -> Report:
     robots = tuple(replace(row, usage_planned=planned.get(row.robot, 0.0)) for row in report.robots)
     of_usage = objective_values(planned.values(), (), ()) if report.objective.name in _OF_USAGE else {}
     objective = replace(report.objective, planned=of_usage.get(report.objective.name))
-    return replace(report, robots=robots, objective=objective, remarks=(*report.remarks, IN_PART))
+    return replace(report, robots=robots, objective=objective)
 
 
 def _robot(account: Account, robot: str, used: float) -> RobotReport:

@@ -389,6 +389,7 @@ def test_a_plan_that_was_cut_short_is_not_carried_out_unless_that_is_accepted(st
                 run = (await runs.start(ADA, plan, speed=None, accept_partial=True)).id
                 await watched(runs, run)
                 return await runs.get(run)
+            return None
 
     found = asyncio.run(story())
     assert found is None or len(found.report["tasks_done"]) == 6
