@@ -14,8 +14,8 @@ from muster.cli import exits
 from muster.mission.errors import MusterError
 
 
-class CutShortError(MusterError):
-    """A plan that was cut short is not carried out."""
+class IncompletePlanError(MusterError):
+    """A plan that leaves tasks out is not carried out: it was cut short, or has to be complete."""
 
 
 class Ending(Enum):
