@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exit_codes import IncompletePlanError, Ending, Invocation, exit_code
+from muster.cli.exit_codes import Ending, IncompletePlanError, Invocation, exit_code
 from muster.mission.errors import MusterError
 from muster.mission.value_types import shown
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.cli.exit_codes import IncompletePlanError, Ending, exit_code_if, note_ending
+from muster.cli.exit_codes import Ending, IncompletePlanError, exit_code_if, note_ending
 from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
 from muster.cli.options import (
     Finite,
