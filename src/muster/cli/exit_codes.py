@@ -34,7 +34,7 @@ class Ending(Enum):
         exits.STILL_MOVING,
         "a real robot still flies or drives, is armed, or did or was when it was last heard",
         "`fly`, `ros`, `ros2`",
-        "flies; at (",
+        "; at (",
         "entry `final_states` of the run",
     )
     INTERNAL_ERROR = (exits.INTERNAL_ERROR, "an error of Muster itself", "all", "internal error:", "500; run `failed`")

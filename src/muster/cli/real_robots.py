@@ -31,7 +31,7 @@ from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
 from muster.cli.tables import sequence
 from muster.mission.counting import counted
-from muster.mission.errors import MusterError
+from muster.mission.errors import IncompletePlanError, MusterError
 from muster.mission.event_descriptions import was_cancelled
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
@@ -165,8 +165,8 @@ def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> P
 
     Raises
     ------
-    CutShortError
-        if planning was cut short, and that is not accepted.
+    IncompletePlanError
+        if planning was cut short, and that is not accepted, or a task is left out with --require-complete.
     """
     from muster.planning.solving import answer
 
@@ -175,10 +175,14 @@ def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> P
 
 
 def require_whole(plan: Plan, options: RealRunOptions) -> Plan:
-    """Return a plan; raise `CutShortError` if planning was cut short, and that is not accepted."""
+    """Return a plan; raise `IncompletePlanError` if it was cut short or is not complete, and that is not accepted."""
     from muster.verification.required import require_whole as required
 
     required(plan, accept_partial=options.accept_partial)
+    if options.require_complete and not plan.complete:
+        known = plan.tasks_completed is not None and plan.tasks_total is not None
+        counts = f"{plan.tasks_completed} of {plan.tasks_total}" if known else "not all"
+        raise IncompletePlanError(f"{counts} tasks are planned; nothing was started; expected all (--require-complete)")
     return plan
 
 

@@ -5,7 +5,8 @@
     │   ├── MissionError      a mission, from a file or built in Python
     │   └── PlanError         a plan file
     ├── NotSupportedError     the mission is right, but asks for what this version cannot do
-    ├── CutShortError         a plan that planning did not finish is not carried out unless that is accepted
+    ├── IncompletePlanError   a plan that leaves tasks out is not carried out where all are asked for
+    │   └── CutShortError     a plan that planning did not finish is not carried out unless that is accepted
     ├── ParameterError        a parameter of an algorithm or function is out of its range
     ├── PluginError           a package that extends Muster cannot be used
     ├── TransformError        the tree of frames cannot say where a frame is
@@ -76,7 +77,11 @@ class NotSupportedError(InputError):
     """The mission is right, but asks for what this version of Muster cannot do."""
 
 
-class CutShortError(MusterError):
+class IncompletePlanError(MusterError):
+    """A plan that leaves tasks out is not carried out where all are asked for."""
+
+
+class CutShortError(IncompletePlanError):
     """A plan was cut short by its time limit, and is not carried out unless that is accepted."""
 
 
