@@ -25,7 +25,7 @@ from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, passed_over
 from muster.mission.model import Mission
 from muster.mission.plan import tie_order
-from muster.mission.text_files import read_text
+from muster.mission.text_files import LARGEST_FILE, read_text
 
 _TWICE = passed_over("stands in the parameters too", minor=True)
 _RALLY = passed_over("is a point to go to in an emergency: Muster's drones return or land")
@@ -130,7 +130,7 @@ class _Reading:
         )
 
     def _json(self) -> Tracked:
-        text = read_text(self._file)
+        text = read_text(self._file, LARGEST_FILE)
         require_moderate_json(text, str(self._file))
         try:
             data = parse_tracked(text)

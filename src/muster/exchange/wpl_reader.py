@@ -25,7 +25,7 @@ from muster.mission.csv_files import number
 from muster.mission.import_ledger import Fate, LedgerBook, passed_over, read_as
 from muster.mission.instance_files import WAY_POINTS
 from muster.mission.number_rows import Row, text_rows
-from muster.mission.text_files import read_text
+from muster.mission.text_files import LARGEST_FILE, read_text
 
 _VERSIONS = ("110", "120")
 _COLUMNS = ("number", "current", "frame", "command", *(f"parameter {k}" for k in range(1, 5)))
@@ -47,7 +47,7 @@ def read_wpl(path: Path) -> ReadFlights:
     MissingExtraError
         if pymap3d is not installed.
     """
-    head, *rows = text_rows(read_text(path)) or [Row(1, ())]
+    head, *rows = text_rows(read_text(path, LARGEST_FILE)) or [Row(1, ())]
     fields = PlanFields(path, head.line)
     if " ".join(head.words[:2]) != WAY_POINTS or head.words[2:] not in [[version] for version in _VERSIONS]:
         raise fields.refused_as("", " ".join(head.words) or "empty", f"{WAY_POINTS} {' or '.join(_VERSIONS)}")
