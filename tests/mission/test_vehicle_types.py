@@ -115,6 +115,13 @@ COSTS = f"{DEPOTS}\nVEHICLES_FIXED_COST_SECTION\n1 9\n2 9"
         ("SDVRPTW", CAPACITY, f"{DEPOTS}\nVEHICLES_ALLOWED_CLIENTS_SECTION\n1 3\n2 3", "no vehicle for customer 4"),
         ("MDVRPTW", CAPACITY, DURATIONS, "no longest duration beside time windows"),
         ("MDVRPTW", CAPACITY, COSTS, "VEHICLES_FIXED_COST_SECTION: not supported"),
+        (
+            "MDVRPTW",
+            f"{CAPACITY}\nVEHICLES_MAX_DURATION : 90",
+            DEPOTS,
+            ": 90; expected no longest duration beside time",
+        ),
+        ("MDVRPTW", f"{CAPACITY}\nVEHICLES_FIXED_COST : 90", DEPOTS, "VEHICLES_FIXED_COST: not supported; expected"),
     ],
 )
 def test_what_a_mission_cannot_say_is_refused(kind, head, sections, said, tmp_path):
@@ -124,6 +131,11 @@ def test_what_a_mission_cannot_say_is_refused(kind, head, sections, said, tmp_pa
 def test_a_fleet_of_unlike_vehicles_is_as_large_as_the_file_says(tmp_path):
     told = refusal(write(tmp_path), salesmen=3)
     assert "salesmen: 3; expected 2, as each vehicle of the file has values of its own" in told
+
+
+def test_limits_of_all_vehicles_are_those_of_robots(tmp_path):
+    head = f"{CAPACITY}\nVEHICLES_MAX_DISTANCE : 70\nVEHICLES_MAX_DURATION : 500"
+    assert [robot.work_capacity for robot in muster.load(write(tmp_path, head=head)).robots] == [70, 70]
 
 
 @pytest.mark.parametrize("name", ["comment.vrp", "two-depots.vrp"])

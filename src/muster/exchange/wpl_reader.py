@@ -98,8 +98,10 @@ def _command(path: Path, row: Row, k: int) -> Command:
 
 
 def _home(first: Command) -> Degrees | None:
-    """The place of the first item, where it is home."""
-    if first.command != qgc.NAV_WAYPOINT or first.frame not in _ABSOLUTE or not any(first.params[4:6]):
+    """The place of the first item, where it is home: a way point at an absolute height, at which nothing is done."""
+    if first.command != qgc.NAV_WAYPOINT or first.frame not in _ABSOLUTE:
+        return None
+    if any(first.params[:4]) or not any(first.params[4:6]):  # a way point of the flight, or home that is not set
         return None
     return first.fields.place(first.params[4:], "latitude")
 

@@ -28,6 +28,7 @@ _REASONS: dict[str, Fate] = {
     **dict.fromkeys(("missionConfig", "waypointHeadingParam", "waypointTurnParam", "globalWaypointTurnMode"), _FLIGHT),
     **dict.fromkeys(("globalWaypointHeadingParam", "useStraightLine", "globalUseStraightLine", "distance"), _FLIGHT),
     **dict.fromkeys(("templateType", "templateId", "waylineId", "duration", "createTime", "updateTime"), _FLIGHT),
+    "startActionGroup": passed_over("is done before the first way point"),
     **dict.fromkeys(("useGlobalHeadingParam", "useGlobalTurnParam", "gimbalPitchMode", "isRisky"), _FLIGHT),
 }
 _CAMERA_ACTIONS = (
