@@ -45,7 +45,8 @@ MIXED = writers.geojson(
 KML = writers.kml(
     "<name>doc</name><Style id='s'><LineStyle><color>ff</color></LineStyle></Style>",
     "<Placemark id='p'><name>mast</name><description>a text</description><TimeStamp><when>2027</when></TimeStamp>"
-    "<ExtendedData><Data name='duration'><value>90</value></Data><Data name='colour'><value>red</value></Data>"
+    "<ExtendedData><Data name='duration' id='d'><displayName>Time</displayName><value>90</value></Data>"
+    "<Data name='colour'><value>red</value></Data>"
     "<Data name='empty'><value/></Data></ExtendedData>"
     "<Point><coordinates>8.5417,47.377,30</coordinates></Point></Placemark>",
     "<Placemark><name>camera</name><LookAt><range>3</range></LookAt></Placemark>",
@@ -112,7 +113,10 @@ def test_elements_of_kml_have_their_reasons(tmp_path, robots):
     assert lost["property colour: means nothing for a task"] == 3
     assert lost["<Placemark>: has no point, line or area"] == 4
     assert lost["<NetworkLink>: has no point, line or area"] == 3
+    assert lost["property duration: stands beside the value"] == 1
+    assert lost["property duration: has no meaning here"] == 1  # the attribute id
     read = rows_of(read_site(file, robots=robots).ledger, file, "read")
+    assert read["property duration: duration_s"] == 2
     assert read["<Point> <coordinates>: places without their heights: altitudeMode does not say what they are"] == 1
 
 
