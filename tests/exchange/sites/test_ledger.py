@@ -13,6 +13,7 @@ from tests.raw_counts import raw_count
 import muster
 from muster.exchange.sites.keys import ROLES, keys_of
 from muster.mission.errors import MissionError
+from muster.mission.import_ledger import summary_lines
 from muster.mission.yaml_writer import file_data
 from muster.planning.importing import read_site
 
@@ -141,6 +142,15 @@ def test_a_member_that_stands_twice_is_named(tmp_path, robots):
     lost = rows_of(ledger, file)
     assert lost["properties.name: stands again later in the same object"] == 1
     assert lost["properties.duration: stands again later in the same object"] == 2
+
+
+def test_a_name_that_cannot_be_printed_is_escaped_and_cut(tmp_path, robots):
+    file = tmp_path / "site.geojson"
+    point = writers.feature("Point", [8.5417, 47.377], name="a")
+    file.write_text(writers.geojson(point, **{"\x1b[31m\n": 1, "x" * 500: 2}), encoding="utf-8")
+    lines = list(summary_lines(read_site(file, robots=robots).ledger))
+    assert all(line.isprintable() and len(line) < 300 + len(str(file)) for line in lines)
+    assert any("\\x1b[31m\\n" in line for line in lines)
 
 
 SHAPES = {
