@@ -87,7 +87,7 @@ class Placemark:
                     child.take(passed_over("stands beside the value"))
                 told = element.text.strip() if element.name == "SimpleData" else element.told("value")
                 if key in values:
-                    element.fate = passed_over(f"stands beside another {key}")
+                    element.fate = passed_over("stands beside another value of this name")
                 elif told:
                     values[key] = told
                     element.value = source, key
