@@ -147,6 +147,16 @@ def test_instances_of_others_are_read(name):
     assert not plan.unassigned
 
 
+@pytest.mark.parametrize("remark", ["# x : 3", "// DIMENSION : 9", "% x", "! x", "; x"])
+def test_remarks_of_any_kind_are_passed_over(remark, tmp_path):
+    text = (CASES / "comment.vrp").read_text(encoding="utf-8").replace("# a remark", remark)
+    (tmp_path / "a.vrp").write_text(text.replace("2 10 0", "2 10 0 # here").replace(": 10", ": 10 // each"), "utf-8")
+    found = load_noted(tmp_path / "a.vrp")
+    assert [(task.id, task.load) for task in found.mission.tasks] == [("2", 4), ("3", 5), ("4", 6)]
+    assert found.mission.robots[0].load_capacity == 10
+    assert_complete(found, tmp_path / "a.vrp")
+
+
 @pytest.mark.parametrize("depot", ["1", "0001", "01"])
 def test_zeros_before_the_number_of_a_node_say_nothing(depot):
     mission = muster.load(CASES / "zeros.tsp", salesmen=1, depot=depot)

@@ -174,9 +174,11 @@ class Source:
     one of them, and a feature is kept if one of them is.
     """
 
-    __slots__ = ("_dropped", "_fates", "_kept")
+    __slots__ = ("_dropped", "_fates", "_kept", "needs_height")
 
     def __init__(self) -> None:
+        self.needs_height = False
+        """Whether the feature is of a flight, whose height must not be left out."""
         self._fates: Mapping[str, Fate] | None = None
         self._kept = False
         self._dropped: Fate | None = None

@@ -117,6 +117,7 @@ class _WayPoint:
         if hover := self._hover(where):
             values["duration_s"] = hover
         geometry = Geometry("point", ((((*place[:2], self._height(where)),),),), over_ground)
+        self._source.needs_height = True
         return Feature(values, self._file, self._mark.line, where, geometry, self._source)
 
     def _height(self, where: str) -> float:
