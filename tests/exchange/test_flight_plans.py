@@ -265,6 +265,21 @@ def test_each_other_command_is_named_or_refused_by_name(command, tmp_path):
         assert f"mission.items[1].command: {name}; expected one of NAV_WAYPOINT" in refusal(tmp_path, data)
 
 
+def test_an_older_item_has_its_place_apart(tmp_path):
+    old = item(16, FIRST, 4) | {"coordinate": FIRST}
+    old["params"] = old["params"][:4]
+    found = read(tmp_path, plan(old, item(16, SECOND) | {"coordinate": SECOND}))
+    assert places(found.mission) == {"x-1": (56, 111, 20), "x-2": (112, 223, 20)}
+    assert raw_count(tmp_path / "x.plan") == sum(row.count for row in found.ledger.rows)
+    told = refusal(tmp_path, plan(item(16, FIRST) | {"coordinate": SECOND}))
+    assert "mission.items[0].coordinate: " in told
+
+
+def test_a_file_of_a_fence_alone_is_a_robot_without_tasks(tmp_path):
+    mission = read(tmp_path, plan() | {"geoFence": {"version": 2, "polygons": [fence_polygon()]}}).mission
+    assert (len(mission.robots), mission.tasks, len(mission.map.boundary)) == (1, (), 4)
+
+
 def test_an_item_that_waits_for_a_pilot_is_refused(tmp_path):
     data = plan(item(16, FIRST) | {"autoContinue": False})
     assert "mission.items[0].autoContinue: false; expected true: no wait for a pilot" in refusal(tmp_path, data)

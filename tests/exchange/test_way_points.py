@@ -78,6 +78,7 @@ def test_a_vehicle_that_stays_on_the_ground_is_no_drone(tmp_path):
             "route.txt:3: parameter 1: -4.0; expected seconds of at least 0",
         ),
         ((HOME, "1 0 0 5001 4 0 0 0 59.911 10.751 0 1"), "command: MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION (5001)"),
+        (("0 1 0 16 0.15 0 0 0 47.37 8.54 550 1", POINT), "expected home: a way point in frame 0; or a take-off"),
         (("0 1 0 16 0 0 0 0 0 0 0 1", POINT), "expected home: a way point in frame 0; or a take-off with a place"),
         ((), "route.txt:1: no items; expected a line for each item"),
     ],

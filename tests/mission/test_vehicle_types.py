@@ -115,6 +115,13 @@ COSTS = f"{DEPOTS}\nVEHICLES_FIXED_COST_SECTION\n1 9\n2 9"
         ("SDVRPTW", CAPACITY, f"{DEPOTS}\nVEHICLES_ALLOWED_CLIENTS_SECTION\n1 3\n2 3", "no vehicle for customer 4"),
         ("MDVRPTW", CAPACITY, DURATIONS, "no longest duration beside time windows"),
         ("MDVRPTW", CAPACITY, COSTS, "VEHICLES_FIXED_COST_SECTION: not supported"),
+        (
+            "MDVRPTW",
+            f"{CAPACITY}\nVEHICLES_MAX_DURATION : 90",
+            DEPOTS,
+            ": 90; expected no longest duration beside time",
+        ),
+        ("MDVRPTW", f"{CAPACITY}\nVEHICLES_FIXED_COST : 90", DEPOTS, "VEHICLES_FIXED_COST: not supported; expected"),
     ],
 )
 def test_what_a_mission_cannot_say_is_refused(kind, head, sections, said, tmp_path):
@@ -126,6 +133,11 @@ def test_a_fleet_of_unlike_vehicles_is_as_large_as_the_file_says(tmp_path):
     assert "salesmen: 3; expected 2, as each vehicle of the file has values of its own" in told
 
 
+def test_limits_of_all_vehicles_are_those_of_robots(tmp_path):
+    head = f"{CAPACITY}\nVEHICLES_MAX_DISTANCE : 70\nVEHICLES_MAX_DURATION : 500"
+    assert [robot.work_capacity for robot in muster.load(write(tmp_path, head=head)).robots] == [70, 70]
+
+
 @pytest.mark.parametrize("name", ["comment.vrp", "two-depots.vrp"])
 def test_instances_of_others_are_read(name):
     found = load_noted(CASES / name)
@@ -133,6 +145,16 @@ def test_instances_of_others_are_read(name):
     plan = muster.solve(found.mission, iterations=100, seed=1)
     assert muster.verify(found.mission, plan).valid
     assert not plan.unassigned
+
+
+@pytest.mark.parametrize("remark", ["# x : 3", "// DIMENSION : 9", "% x", "! x", "; x"])
+def test_remarks_of_any_kind_are_passed_over(remark, tmp_path):
+    text = (CASES / "comment.vrp").read_text(encoding="utf-8").replace("# a remark", remark)
+    (tmp_path / "a.vrp").write_text(text.replace("2 10 0", "2 10 0 # here").replace(": 10", ": 10 // each"), "utf-8")
+    found = load_noted(tmp_path / "a.vrp")
+    assert [(task.id, task.load) for task in found.mission.tasks] == [("2", 4), ("3", 5), ("4", 6)]
+    assert found.mission.robots[0].load_capacity == 10
+    assert_complete(found, tmp_path / "a.vrp")
 
 
 @pytest.mark.parametrize("depot", ["1", "0001", "01"])

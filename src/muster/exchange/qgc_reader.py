@@ -25,7 +25,7 @@ from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, passed_over
 from muster.mission.model import Mission
 from muster.mission.plan import tie_order
-from muster.mission.text_files import read_text
+from muster.mission.text_files import LARGEST_FILE, read_text
 
 _TWICE = passed_over("stands in the parameters too", minor=True)
 _RALLY = passed_over("is a point to go to in an emergency: Muster's drones return or land")
@@ -69,14 +69,14 @@ class _Document:
 
     def __init__(self, root: Tracked) -> None:
         self._root = root
-        self.commands: dict[int, Command] = {}
-        """By the id of their items."""
+        self.commands: dict[int, tuple[Command, int]] = {}
+        """By the id of their items, each with how many parameters stand in its list."""
 
     def enter(self, book: LedgerBook) -> None:
         """Give the ledger every member and parameter."""
         enter_json(book, self._root, self._fate)
-        for command in self.commands.values():
-            for k, value in enumerate(command.params):
+        for command, own in self.commands.values():
+            for k, value in enumerate(command.params[:own]):
                 if value is not None:
                     kind = name_of(command.command)
                     kind += "" if command.whole else f" {param_of(command.command, k)}"
@@ -84,7 +84,7 @@ class _Document:
 
     def _fate(self, item: Tracked, _: str) -> Fate | None:
         command = self.commands.get(id(item))
-        return None if command is None else command.whole
+        return None if command is None else command[0].whole
 
 
 class _Reading:
@@ -130,7 +130,7 @@ class _Reading:
         )
 
     def _json(self) -> Tracked:
-        text = read_text(self._file)
+        text = read_text(self._file, LARGEST_FILE)
         require_moderate_json(text, str(self._file))
         try:
             data = parse_tracked(text)
@@ -176,10 +176,10 @@ class _Reading:
             kind = item.get("complexItemType", item.get("type")) if isinstance(item, Tracked) else item
             expected = '"SimpleItem", or a survey: scans and landing patterns are not read'
             raise self._fields.refused(f"{at}.type", kind, expected)
-        number, params, sequence = item.get("command"), item.get("params"), item.get("doJumpId")
+        number, sequence = item.get("command"), item.get("doJumpId")
         if not isinstance(number, int) or isinstance(number, bool):
             raise self._fields.refused(f"{at}.command", number, "a number of MAV_CMD")
-        names = {j: f"{at}.params[{j}]" for j in range(7)}
+        names: dict[int | str, str] = {j: f"{at}.params[{j}]" for j in range(7)}
         others = {key: f"{at}.{key}" for key in ("command", "frame")}
         command = Command(
             self._fields,
@@ -187,17 +187,27 @@ class _Reading:
             sequence if isinstance(sequence, int) else None,
             number,
             item.get("frame"),
-            params if isinstance(params, list) else (),
+            self._params(item, at),
             names | others | {"place": f"{at}.params[4:]"},
         )
-        if len(command.params) != 7:
-            raise self._fields.refused(f"{at}.params", params, "a list of 7")
         if item.get("autoContinue", True) is not True:
             raise self._fields.refused(f"{at}.autoContinue", item["autoContinue"], "true: no wait for a pilot")
         item.label = name_of(number)
         item.say(_TWICE, "Altitude", "AltitudeMode", "AMSLAltAboveTerrain")
-        self._document.commands[id(item)] = command
+        self._document.commands[id(item)] = command, len(item["params"])
         return command
+
+    def _params(self, item: Tracked, at: str) -> list[Any]:
+        """The seven parameters of a command; older files have the place apart, as `coordinate`."""
+        params, place = item.get("params"), item.peek("coordinate")
+        if isinstance(params, list) and len(params) == 4 and isinstance(place, list) and len(place) == 3:
+            return [*params, *item["coordinate"]]
+        if not isinstance(params, list) or len(params) != 7:
+            raise self._fields.refused(f"{at}.params", params, "a list of 7")
+        if place is not None and place != params[4:]:
+            raise self._fields.refused(f"{at}.coordinate", place, "the place in the parameters")
+        item.say(_TWICE, "coordinate")
+        return params
 
     def _speed(self, mission: Tracked, vehicle: Vehicle, flight: Flight) -> float:
         """The slowest speed of a flight: of those that items set, and that of the plan where none is set at first."""

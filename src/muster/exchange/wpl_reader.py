@@ -25,7 +25,7 @@ from muster.mission.csv_files import number
 from muster.mission.import_ledger import Fate, LedgerBook, passed_over, read_as
 from muster.mission.instance_files import WAY_POINTS
 from muster.mission.number_rows import Row, text_rows
-from muster.mission.text_files import read_text
+from muster.mission.text_files import LARGEST_FILE, read_text
 
 _VERSIONS = ("110", "120")
 _COLUMNS = ("number", "current", "frame", "command", *(f"parameter {k}" for k in range(1, 5)))
@@ -47,7 +47,7 @@ def read_wpl(path: Path) -> ReadFlights:
     MissingExtraError
         if pymap3d is not installed.
     """
-    head, *rows = text_rows(read_text(path)) or [Row(1, ())]
+    head, *rows = text_rows(read_text(path, LARGEST_FILE)) or [Row(1, ())]
     fields = PlanFields(path, head.line)
     if " ".join(head.words[:2]) != WAY_POINTS or head.words[2:] not in [[version] for version in _VERSIONS]:
         raise fields.refused_as("", " ".join(head.words) or "empty", f"{WAY_POINTS} {' or '.join(_VERSIONS)}")
@@ -98,8 +98,10 @@ def _command(path: Path, row: Row, k: int) -> Command:
 
 
 def _home(first: Command) -> Degrees | None:
-    """The place of the first item, where it is home."""
-    if first.command != qgc.NAV_WAYPOINT or first.frame not in _ABSOLUTE or not any(first.params[4:6]):
+    """The place of the first item, where it is home: a way point at an absolute height, at which nothing is done."""
+    if first.command != qgc.NAV_WAYPOINT or first.frame not in _ABSOLUTE:
+        return None
+    if any(first.params[:4]) or not any(first.params[4:6]):  # a way point of the flight, or home that is not set
         return None
     return first.fields.place(first.params[4:], "latitude")
 

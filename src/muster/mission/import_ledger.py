@@ -38,6 +38,7 @@ def passed_over(because: str, *, minor: bool = False, noted: bool = False) -> Fa
     return Fate("passed over", because, minor, noted)
 
 
+_LONGEST = 60
 UNKNOWN = passed_over("has no meaning here")
 EMPTY = passed_over("is empty", minor=True)
 
@@ -68,6 +69,12 @@ class LedgerRow:
     first: str = ""
     minor: bool = False
     noted: bool = False
+
+    @property
+    def told(self) -> str:
+        """The kind as lines for people have it: short, and without characters that cannot be printed."""
+        plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in self.kind[:_LONGEST])
+        return plain if len(self.kind) <= _LONGEST else f"{plain} ..."
 
     def as_dict(self) -> dict[str, Any]:
         """Return the row as JSON has it."""
@@ -167,9 +174,11 @@ class Source:
     one of them, and a feature is kept if one of them is.
     """
 
-    __slots__ = ("_dropped", "_fates", "_kept")
+    __slots__ = ("_dropped", "_fates", "_kept", "needs_height")
 
     def __init__(self) -> None:
+        self.needs_height = False
+        """Whether the feature is of a flight, whose height must not be left out."""
         self._fates: Mapping[str, Fate] | None = None
         self._kept = False
         self._dropped: Fate | None = None
@@ -227,7 +236,7 @@ def summary_lines(ledger: Ledger, most: int = 8) -> Iterator[str]:
         reasons: dict[tuple[str, str], dict[str, int]] = {}
         for row in ledger.not_read:
             if row.file == file and not row.minor and not row.noted:
-                reasons.setdefault((row.how, row.said), {})[row.kind] = row.count
+                reasons.setdefault((row.how, row.said), {})[row.told] = row.count
         for (how, because), kinds in reasons.items():
             told = [
                 kind if count == 1 else f"{kind} ({count:,} elements)" for kind, count in list(kinds.items())[:most]

@@ -10,12 +10,11 @@ from pathlib import Path as FilePath
 from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import passed_over
 from muster.mission.line_fates import LineFates
-from muster.mission.number_rows import Row, row_numbers
+from muster.mission.number_rows import REMARKS, Row, row_numbers, without_remark
 from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 
 _END = "_SECTION"
-_REMARK = "#"
 _TEXTS = ("COMMENT", "NAME")
 """Keywords that say nothing of the mission, and may stand several times."""
 _A_TEXT, _AT_END = passed_over("is a text for people", minor=True), passed_over("stands after EOF")
@@ -119,13 +118,16 @@ def read_keyword_file(path: FilePath, what: str = "TSPLIB", fates: LineFates | N
         words = text.split()
         if not words:
             continue
-        if ended or words[0].startswith(_REMARK):
+        if ended or words[0].startswith(REMARKS):
             fates.say(line, "line" if ended else "remark", _AT_END if ended else _A_TEXT)
             continue
         if words == ["EOF"]:
             ended = True
             fates.say(line, "EOF")
             continue
+        is_text = any(text.lstrip().upper().startswith(keyword) for keyword in _TEXTS)
+        text = text if is_text else without_remark(text)
+        words = text.split()
         title = text.strip().rstrip(" :").upper()
         if title.endswith(_END) and len(title.split()) == 1:
             if title in titles:

@@ -40,9 +40,22 @@ def read_row(path: FilePath, row: Row, columns: Sequence[str], field: str = "") 
     return values
 
 
+REMARKS = ("#", "//", "%", "!", ";")
+"""What a remark begins with, at the beginning of a line; within a line it is `#` or `//` alone."""
+
+
 def text_rows(text: str) -> list[Row]:
-    """The lines of a text that hold something."""
-    return [Row(line, words) for line, words in ((k, t.split()) for k, t in enumerate(text.splitlines(), 1)) if words]
+    """The lines of a text that hold something but a remark, without remarks at their ends."""
+    lines = ((k, without_remark(line).split()) for k, line in enumerate(text.splitlines(), 1))
+    return [Row(line, words) for line, words in lines if words]
+
+
+def without_remark(line: str) -> str:
+    """A line without a remark at its end; empty where it is one."""
+    if line.lstrip().startswith(REMARKS):
+        return ""
+    ends = [at for mark in REMARKS[:2] if (at := line.find(f" {mark}")) >= 0]
+    return line[: min(ends)] if ends else line
 
 
 def node_number(word: str) -> str:

@@ -7,12 +7,14 @@ from pathlib import Path
 from muster.mission.errors import Finding, MissionError
 
 LARGEST_FILE = 32 * 2**20
-"""Bytes of an input file, and of all files that are uploaded with one mission."""
+"""Bytes of a file of another program, and of all files that are uploaded with one mission."""
+_LARGEST_TEXT = 256 * 2**20
+"""Bytes of a mission, a plan or a table: a travel table of 5,000 places has as many."""
 
 
-def read_text(path: Path) -> str:
+def read_text(path: Path, most: int = _LARGEST_TEXT) -> str:
     """The text of an input file; what stands in the way is a MissionError, not an OSError."""
-    data = bytes_of(path)
+    data = bytes_of(path, most)
     try:
         return data.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
@@ -22,15 +24,15 @@ def read_text(path: Path) -> str:
         ) from None
 
 
-def bytes_of(path: Path) -> bytes:
+def bytes_of(path: Path, most: int = LARGEST_FILE) -> bytes:
     """The bytes of an input file of bounded size; what stands in the way is a MissionError."""
     try:
         with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-        if len(data) <= LARGEST_FILE:
+            data = file.read(most + 1)
+        if len(data) <= most:
             return data
-        told, most = f"more than {LARGEST_FILE // 2**20} MiB", f"at most {LARGEST_FILE // 2**20} MiB"
-        raise MissionError([Finding(str(path), None, "", told, most)])
+        limit = f"{most // 2**20} MiB"
+        raise MissionError([Finding(str(path), None, "", f"more than {limit}", f"at most {limit}")])
     except OSError as error:
         raise MissionError([Finding(str(path), None, "", error.strerror or str(error), "a file to read")]) from None
     except ValueError as error:

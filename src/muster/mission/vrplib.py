@@ -30,7 +30,7 @@ from muster.mission.model import Mission
 from muster.mission.number_rows import Row, is_whole, node_number, read_row
 from muster.mission.tsplib import tabled
 from muster.mission.value_types import shown
-from muster.mission.vrplib_fleet import FLEET_SECTIONS, NEEDED, OwnVehicle, own_vehicles, robots_for
+from muster.mission.vrplib_fleet import FLEET_SECTIONS, NEEDED, OwnVehicle, limits_of_all, own_vehicles, robots_for
 from muster.mission.weighted_nodes import NODE_SECTIONS, WeightedNodes, weighted_nodes
 
 TYPES = ("CVRP", "VRP", "DCVRP", "DVRP", "VRPTW", "CVRPTW", "PDPTW", "MDVRP", "MDCVRP", "MDVRPTW", *NEEDED)
@@ -39,6 +39,7 @@ _WINDOW, _SERVICE, _PAIRS = "TIME_WINDOW_SECTION", "SERVICE_TIME_SECTION", "PICK
 _SECTIONS = (*NODE_SECTIONS, _DEMAND, _DEPOT, _WINDOW, _SERVICE, _PAIRS, *FLEET_SECTIONS)
 _FIELDS = {DEMAND: _DEMAND, READY: _WINDOW, DUE: _WINDOW, SERVICE: _SERVICE}
 """The sections that tell of a customer's demand and times."""
+_NO_DURATION = "no longest duration beside time windows, or all of the depot's: a robot's hours are those of the clock"
 _PAIR = ("number", "demand", "earliest", "latest", "service time", "pickup", "delivery")
 
 
@@ -54,11 +55,12 @@ def read_vrplib(path: FilePath, salesmen: int | None = None, fates: LineFates | 
     if file.value("TYPE") not in TYPES:
         raise MissionError([file.wrong("TYPE", " or ".join(TYPES))])
     file.require_known_sections(_SECTIONS)
+    distance, duration = limits_of_all(file)
     limit = file.number("DISTANCE")
     timed = any(name in file.sections for name in (_WINDOW, _SERVICE, _PAIRS)) or "SERVICE_TIME" in file.head
     in_file = file.number("VEHICLES")
     own = own_vehicles(file, None if in_file is None else fleet(path, file.line("VEHICLES"), "VEHICLES", in_file, None))
-    graph = weighted_nodes(file, exact=timed or limit is not None or bool(own))
+    graph = weighted_nodes(file, exact=timed or bool(limit or distance or duration or own))
     depots = _depots(file, graph, own)
     everyone = _customers(file, graph, depots)
     customers = [customer for name, customer in everyone.items() if name not in depots]
@@ -83,7 +85,7 @@ def read_vrplib(path: FilePath, salesmen: int | None = None, fates: LineFates | 
             customers=customers,
             vehicles=vehicles,
             capacity=capacity,
-            robot=kind | _limits(limit, timed=timed_customers),
+            robot=kind | _limits(limit, timed=timed_customers) | _of_all(file, depots, everyone, distance, duration),
             mission=travel,
             tables=tables,
             own=[_robot(file, vehicle, everyone, timed=timed_customers) for vehicle in own],
@@ -97,6 +99,25 @@ def _limits(limit: float | None, *, timed: bool) -> dict[str, Any]:
     if limit is None:
         return {}
     return {"work_capacity": limit} if timed else {"available_until_s": limit}
+
+
+def _of_all(
+    file: KeywordFile,
+    depots: Sequence[str],
+    everyone: Mapping[str, Customer],
+    distance: float | None,
+    duration: float | None,
+) -> dict[str, Any]:
+    """VEHICLES_MAX_DISTANCE and VEHICLES_MAX_DURATION as limits of robots."""
+    found: dict[str, Any] = {} if distance is None else {"work_capacity": distance}
+    if duration is None:
+        return found
+    windows = [window for name in depots if (window := everyone[name].window) is not None]
+    if any(customer.window is not None for customer in everyone.values()):
+        if not windows or any(duration < close - opens for opens, close in windows):
+            raise MissionError([file.wrong("VEHICLES_MAX_DURATION", _NO_DURATION)])
+        return found
+    return found | {"available_until_s": duration}
 
 
 def _robot(file: KeywordFile, vehicle: OwnVehicle, everyone: Mapping[str, Customer], *, timed: bool) -> dict[str, Any]:
@@ -113,8 +134,8 @@ def _robot(file: KeywordFile, vehicle: OwnVehicle, everyone: Mapping[str, Custom
         found["work_capacity"] = vehicle.distance
     if vehicle.duration is not None and timed:
         section = "VEHICLES_MAX_DURATION_SECTION"
-        expected = "no longest duration beside time windows: a robot's hours are those of the clock"
-        raise MissionError([Finding(str(file.path), file.line(section), section, f"{vehicle.duration:g}", expected)])
+        value = f"{vehicle.duration:g}"
+        raise MissionError([Finding(str(file.path), file.line(section), section, value, _NO_DURATION)])
     if vehicle.duration is not None:
         found["available_until_s"] = vehicle.duration
     return found

@@ -16,6 +16,9 @@ from muster.mission.value_types import shown
 
 _DEPOTS, _CAPACITIES, _ALLOWED = "VEHICLES_DEPOT_SECTION", "CAPACITY_SECTION", "VEHICLES_ALLOWED_CLIENTS_SECTION"
 _DISTANCES, _DURATIONS = "VEHICLES_MAX_DISTANCE_SECTION", "VEHICLES_MAX_DURATION_SECTION"
+_DISTANCE, _DURATION = "VEHICLES_MAX_DISTANCE", "VEHICLES_MAX_DURATION"
+"""Keywords with one limit for all vehicles."""
+_OF_ALL = ("VEHICLES", _DISTANCE, _DURATION)
 FLEET_SECTIONS = (_DEPOTS, _CAPACITIES, _ALLOWED, _DISTANCES, _DURATIONS)
 NEEDED = {"SDVRP": _ALLOWED, "SDVRPTW": _ALLOWED, "HFVRP": _CAPACITIES, "HFVRPTW": _CAPACITIES, "HVRP": _CAPACITIES}
 """Types of files with the section without which they are something else: SDVRP may be split deliveries."""
@@ -63,6 +66,20 @@ def own_vehicles(file: KeywordFile, count: int | None) -> list[OwnVehicle]:
         )
         for k in range(number)
     ]
+
+
+def limits_of_all(file: KeywordFile) -> tuple[float | None, float | None]:
+    """Return the longest distance and the longest duration that the head states for all vehicles.
+
+    Raises
+    ------
+    MissionError
+        for another keyword of vehicles, which may change what is asked.
+    """
+    other = next((key for key in file.head if key.startswith("VEHICLE") and key not in _OF_ALL), None)
+    if other is not None:
+        raise MissionError([Finding(str(file.path), file.line(other), other, "not supported", ", ".join(_OF_ALL))])
+    return file.number(_DISTANCE), file.number(_DURATION)
 
 
 def _column(file: KeywordFile, section: str, count: int | None) -> list[Row]:

@@ -13,6 +13,7 @@ from tests.raw_counts import raw_count
 import muster
 from muster.exchange.sites.keys import ROLES, keys_of
 from muster.mission.errors import MissionError
+from muster.mission.import_ledger import summary_lines
 from muster.mission.yaml_writer import file_data
 from muster.planning.importing import read_site
 
@@ -45,7 +46,8 @@ MIXED = writers.geojson(
 KML = writers.kml(
     "<name>doc</name><Style id='s'><LineStyle><color>ff</color></LineStyle></Style>",
     "<Placemark id='p'><name>mast</name><description>a text</description><TimeStamp><when>2027</when></TimeStamp>"
-    "<ExtendedData><Data name='duration'><value>90</value></Data><Data name='colour'><value>red</value></Data>"
+    "<ExtendedData><Data name='duration' id='d'><displayName>Time</displayName><value>90</value></Data>"
+    "<Data name='colour'><value>red</value></Data>"
     "<Data name='empty'><value/></Data></ExtendedData>"
     "<Point><coordinates>8.5417,47.377,30</coordinates></Point></Placemark>",
     "<Placemark><name>camera</name><LookAt><range>3</range></LookAt></Placemark>",
@@ -112,7 +114,10 @@ def test_elements_of_kml_have_their_reasons(tmp_path, robots):
     assert lost["property colour: means nothing for a task"] == 3
     assert lost["<Placemark>: has no point, line or area"] == 4
     assert lost["<NetworkLink>: has no point, line or area"] == 3
+    assert lost["property duration: stands beside the value"] == 1
+    assert lost["property duration: has no meaning here"] == 1  # the attribute id
     read = rows_of(read_site(file, robots=robots).ledger, file, "read")
+    assert read["property duration: duration_s"] == 2
     assert read["<Point> <coordinates>: places without their heights: altitudeMode does not say what they are"] == 1
 
 
@@ -137,6 +142,15 @@ def test_a_member_that_stands_twice_is_named(tmp_path, robots):
     lost = rows_of(ledger, file)
     assert lost["properties.name: stands again later in the same object"] == 1
     assert lost["properties.duration: stands again later in the same object"] == 2
+
+
+def test_a_name_that_cannot_be_printed_is_escaped_and_cut(tmp_path, robots):
+    file = tmp_path / "site.geojson"
+    point = writers.feature("Point", [8.5417, 47.377], name="a")
+    file.write_text(writers.geojson(point, **{"\x1b[31m\n": 1, "x" * 500: 2}), encoding="utf-8")
+    lines = list(summary_lines(read_site(file, robots=robots).ledger))
+    assert all(line.isprintable() and len(line) < 300 + len(str(file)) for line in lines)
+    assert any("\\x1b[31m\\n" in line for line in lines)
 
 
 SHAPES = {

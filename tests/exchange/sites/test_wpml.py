@@ -78,6 +78,13 @@ def test_absolute_heights_are_over_the_altitude_of_the_origin(mode, noted, tmp_p
     assert any("EGM96" in note for note in found.notes) == noted
 
 
+def test_absolute_heights_are_refused_where_robots_have_none(tmp_path):
+    with pytest.raises(MissionError, match=r"height: 50 m; expected heights of all robots and places \(alt\)"):
+        read(tmp_path, flight(mark(), mode="WGS84"))
+    flat = read_site(tmp_path / "way.wpml", robots=tmp_path / "robots.csv", origin=ORIGIN, flat=True)
+    assert flat.mission.dimensions == 2
+
+
 def test_a_template_has_a_height_of_all_and_those_of_its_own(tmp_path):
     system = "<wpml:waylineCoordinateSysParam><wpml:heightMode>relativeToStartPoint</wpml:heightMode>"
     system += "</wpml:waylineCoordinateSysParam><wpml:globalHeight>80</wpml:globalHeight>"

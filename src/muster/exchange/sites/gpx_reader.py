@@ -70,7 +70,7 @@ def _values(element: Element, *, own: bool) -> dict[str, object]:
     for one in () if extensions is None else extensions.within():
         if one.text.strip() and not one.children:
             if one.name in told:
-                one.take(passed_over(f"stands beside another {one.name}"))
+                one.take(passed_over("stands beside another value of this name"))
             else:
                 told[one.name] = one.text.strip()
                 one.value = source, one.name

@@ -82,13 +82,17 @@ class Placemark:
         for element in self._mark.within():
             if element.name in ("ExtendedData", "SchemaData"):
                 element.take()
-            if element.name in ("Data", "SimpleData") and (key := element.attributes.get("name", "").strip()):
+            if element.name in ("Data", "SimpleData") and (key := element.attribute("name").strip()):
+                for child in element.children:
+                    child.take(passed_over("stands beside the value"))
                 told = element.text.strip() if element.name == "SimpleData" else element.told("value")
                 if key in values:
-                    element.fate = passed_over(f"stands beside another {key}")
+                    element.fate = passed_over("stands beside another value of this name")
                 elif told:
                     values[key] = told
                     element.value = source, key
+                    if (value := element.first("value")) is not None:
+                        value.fate = None
                 else:
                     element.fate = EMPTY
         return values

@@ -104,7 +104,7 @@ def read_site(
         data["suitability"] = suitability_table(suitability, built.places)
     source = Source(main, built.places, built.fields)
     mission = mission_from(data, source, [], base.travel_tables if base is not None else None)
-    left_out(entries, data)
+    left_out(entries, data, flat=options.flat)
     ledger = ledger_of([layer for layer, _ in found])
     return SiteMission(mission, _counts(found, builder.read), (*notes, *built.notes, *decided), ledger)
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import HEIGHT, Document, Layer
+from muster.mission.errors import MissionError
 from muster.mission.import_ledger import Ledger, LedgerBook, joined
 
 _ROUTE = "is a route of a plan: Muster plans it anew"
@@ -14,17 +15,28 @@ _TO_NOBODY = "is a zone that is forbidden to nobody"
 _FLAT = "heights are left out, as some places have none or --flat says so"
 
 
-def left_out(entries: Sequence[Entry], data: Mapping[str, Any]) -> None:
-    """Mark what was made to entries, and is not in the data of the mission after all."""
+def left_out(entries: Sequence[Entry], data: Mapping[str, Any], *, flat: bool) -> None:
+    """Mark what was made to entries, and is not in the data of the mission after all.
+
+    Raises
+    ------
+    MissionError
+        if heights of a flight are left out, and a user has not said so (`flat`).
+    """
     groups = ("robots", "tasks", "stations")
-    flat = not any(len(one["position"]) == 3 for group in groups for one in data.get(group, ()))
+    in_plane = not any(len(one["position"]) == 3 for group in groups for one in data.get(group, ()))
     for entry in entries:
         source = entry.feature.source
         if entry.role == "route":
             source.drop(_ROUTE)
         elif entry.role == "zone" and entry.values.get("forbidden_to") == []:
             source.drop(_TO_NOBODY)
-        elif flat and entry.height is not None:
+        elif in_plane and entry.height is not None:
+            if source.needs_height and not flat:
+                expected = (
+                    "heights of all robots and places (alt) beside absolute ones; or --flat, which leaves them out"
+                )
+                raise MissionError([entry.feature.finding("height", f"{entry.height:g} m", expected)])
             headings = [column.heading for key, column in entry.columns.by_key.items() if key in ("alt", "z")]
             source.lose(_FLAT, HEIGHT, *headings)
 

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from muster.exchange.sites.features import HEIGHT, Feature, Geometry, Layer, layer_of, refused
 from muster.exchange.sites.kml_reader import Placemark
 from muster.exchange.sites.xml_elements import Element, XmlDocument
+from muster.mission.csv_files import number
 from muster.mission.import_ledger import Fate, Source, passed_over
 
 _RELATIVE = "relativeToStartPoint"
@@ -28,6 +29,7 @@ _REASONS: dict[str, Fate] = {
     **dict.fromkeys(("missionConfig", "waypointHeadingParam", "waypointTurnParam", "globalWaypointTurnMode"), _FLIGHT),
     **dict.fromkeys(("globalWaypointHeadingParam", "useStraightLine", "globalUseStraightLine", "distance"), _FLIGHT),
     **dict.fromkeys(("templateType", "templateId", "waylineId", "duration", "createTime", "updateTime"), _FLIGHT),
+    "startActionGroup": passed_over("is done before the first way point"),
     **dict.fromkeys(("useGlobalHeadingParam", "useGlobalTurnParam", "gimbalPitchMode", "isRisky"), _FLIGHT),
 }
 _CAMERA_ACTIONS = (
@@ -56,7 +58,8 @@ def wpml_layers(root: Element, file: str, others: Sequence[str]) -> list[Layer]:
         if element.name in _REASONS:
             element.take(_REASONS[element.name])
     notes = []
-    speeds = sorted({e.text.strip() for e in root.within() if e.name in _SPEEDS and e.text.strip()}, key=_size)
+    told = {number(e.text.strip()) for e in root.within() if e.name in _SPEEDS}
+    speeds = [f"{speed:g}" for speed in sorted(value for value in told if isinstance(value, float))]
     if speeds:
         notes.append(f"its drone flies at {' and '.join(speeds)} m/s: robots say how fast they are (speed_mps)")
     folders: dict[str, list[Feature]] = {}
@@ -114,6 +117,7 @@ class _WayPoint:
         if hover := self._hover(where):
             values["duration_s"] = hover
         geometry = Geometry("point", ((((*place[:2], self._height(where)),),),), over_ground)
+        self._source.needs_height = True
         return Feature(values, self._file, self._mark.line, where, geometry, self._source)
 
     def _height(self, where: str) -> float:
@@ -176,8 +180,3 @@ class _WayPoint:
 
 def _at(where: str, field: str) -> str:
     return f"{where}, {field}" if where else field
-
-
-def _size(told: str) -> tuple[int, str]:
-    """The order of numbers as texts, shorter ones first."""
-    return len(told.partition(".")[0]), told

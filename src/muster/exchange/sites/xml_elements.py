@@ -115,14 +115,17 @@ class XmlDocument:
                 source, heading = element.value
                 inherited = source.fate(heading, heading)
                 parent = parent if heading == HEIGHT else f"{_PROPERTY}{heading}"
-            fate = inherited or element.fate or _REASONS.get(element.name, UNKNOWN)
+            is_value = inherited is not None and inherited.how == "read"
+            left_out = element.fate is not None and element.fate.how != "read" and is_value
+            fate = (None if left_out else inherited) or element.fate or _REASONS.get(element.name, UNKNOWN)
             where = f"line {element.line}"
             kind = parent if within or parent.startswith(_PROPERTY) else f"{parent}<{element.name}>"
             book.add(kind, fate, where)
             if fate.how != "read":
                 inherited = fate
             for name in element.attributes:
-                own = inherited or (_READ if name in element.taken else UNKNOWN)
+                own = _READ if name in element.taken else UNKNOWN
+                own = own if inherited is None or inherited.how == "read" else inherited
                 book.add(kind if inherited or kind.startswith(_PROPERTY) else f"{kind} {name}", own, where)
             around = "" if element.name in _GROUPS else f"<{element.name}> "
             around = kind if kind.startswith(_PROPERTY) else around
