@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from muster.mission.errors import Finding, MissionError
+from muster.mission.near_matches import near_file
 
 
 def read_text(path: Path) -> str:
@@ -18,7 +19,9 @@ def read_text(path: Path) -> str:
             [Finding(str(path), line, "", f"byte {error.start} is not UTF-8", "a text in UTF-8")]
         ) from None
     except OSError as error:
-        raise MissionError([Finding(str(path), None, "", error.strerror or str(error), "a file to read")]) from None
+        near = near_file(path) if isinstance(error, FileNotFoundError) else ""
+        expected = f"a file to read{near}"
+        raise MissionError([Finding(str(path), None, "", error.strerror or str(error), expected)]) from None
     except ValueError as error:
         raise MissionError([Finding(str(path), None, "", str(error), "a file to read")]) from None
 
