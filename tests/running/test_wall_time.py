@@ -143,6 +143,26 @@ def test_a_deadline_passes_in_a_pause():
     assert max(used.values()) < 3.0
 
 
+def test_a_deadline_passes_while_somebody_else_lets_robots_stand():
+    """As on ROS 1, where the fleet's own clock stands still in a pause."""
+    there, wall = mission(SOON, ANY), Wall()
+    fleet = wall.fleet(there)
+    live = Live(there, muster.solve(there, iterations=50), fleet, wall=wall)
+    live.look()
+    fleet.paused = True
+    for _ in range(40):
+        live.look()
+        wall.more_s += 1.0
+    assert live.time_s == pytest.approx(40.0)
+    assert live.executor.now_s < 1.0
+    fleet.paused = False
+    while not live.done:
+        live.look()
+        live.hear(live.time_s + 0.2)
+        assert 40.0 <= live.time_s < 100.0
+    assert live.result().tasks_done == ("any",)
+
+
 @pytest.mark.parametrize(("jumps_s", "done"), [(3600.0, ("any",)), (-3600.0, ("any", "soon"))])
 def test_the_clock_of_a_machine_that_slept_is_set_forward_and_no_clock_goes_back(jumps_s, done):
     there, wall = mission(SOON, ANY), Wall()

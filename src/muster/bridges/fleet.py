@@ -45,7 +45,7 @@ class Fleet(Protocol):
 
     @property
     def time_s(self) -> float:
-        """Seconds of a clock in real time that never goes back and never stops; telemetry is stamped by it."""
+        """Seconds of a clock in real time that never goes back; telemetry is stamped by it."""
         ...
 
     def advance(self, until_s: float) -> Sequence[Event]:

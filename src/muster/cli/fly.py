@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
-from contextlib import closing
+from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING, Literal
 
 import click
@@ -99,13 +99,19 @@ def command(
     """
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.settings import Settings
+    from muster.running.claim_locks import robots_claimed
+    from muster.server.runs.robot_claims import claims_of
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
     given = read_given_plan(options, loaded)
+    claims = claims_of("mavlink", {"endpoints": _by_robot(endpoints)})
     settings = Settings(arm=arm, offboard=offboard, local_frame=local_frame, low_battery=low_battery / 100)
-    fleet = MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)
-    with closing(fleet), signals_interrupt(), LastLines(fleet.final_states) as last_lines:
+    with ExitStack() as stack:
+        stack.enter_context(robots_claimed(claims))
+        fleet = stack.enter_context(closing(MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)))
+        stack.enter_context(signals_interrupt())
+        last_lines = stack.enter_context(LastLines(fleet.final_states))
         start = start_in_time(loaded, fleet, options)
         plan = given or planned(options, loaded, start)
         if not options.quiet:

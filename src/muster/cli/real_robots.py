@@ -311,9 +311,8 @@ class LastLines:
         Whether robots were commanded.
     """
 
-    def __init__(self, final_states: Callable[[], Sequence[FinalState]]) -> None:
-        self._final_states = final_states
-        self.begun = False
+    def __init__(self, final_states: Callable[[], Sequence[FinalState]], *, begun: bool = False) -> None:
+        self._final_states, self.begun = final_states, begun
 
     def __enter__(self) -> LastLines:
         return self

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from muster.cli.exit_codes import Ending, exit_code, gravest, this_invocation
+from muster.cli.exit_codes import gravest
 from muster.cli.exits import DONE, INTERRUPTED
 from muster.cli.options import (
     Finite,
@@ -252,7 +252,7 @@ def _one(controller: Controller, work: _Work, children: NodeProcesses) -> int:
             code = reported(mission, report, work.options, controller.halt, _LEFT, states)
         elif not children.fault and controller.halt.is_set():
             click.echo("interrupted" if mission is None else f"interrupted; {_LEFT}", err=True)
-            code = exit_code(Ending.INTERRUPTED, *this_invocation().endings)
+            code = INTERRUPTED
     except MusterError as error:
         if not work.stay and not children.fault:
             raise
@@ -265,17 +265,10 @@ def _one(controller: Controller, work: _Work, children: NodeProcesses) -> int:
 def _through(
     mission: Mission, controller: Controller, work: _Work, children: NodeProcesses
 ) -> tuple[Report, list[FinalState]] | None:
-    """Wait for robots, plan, and carry the plan out; None if halted before the beginning."""
-    from muster.bridges.final_state import final_states_by_telemetry
-
+    """Open the fleet, carry the mission out, and close the fleet; None if halted before the beginning."""
     fleet = work.fleet_of(mission)
-
-    def states() -> list[FinalState]:
-        return [] if children.fault else final_states_by_telemetry(fleet, mission)
-
     try:
-        with LastLines(states) as last_lines:
-            return _carried_out(mission, controller, work, fleet, states, last_lines)
+        return _carried_out(mission, controller, work, fleet, children)
     finally:
         fleet.stop()
         if children.fault:
@@ -285,14 +278,10 @@ def _through(
 
 
 def _carried_out(
-    mission: Mission,
-    controller: Controller,
-    work: _Work,
-    fleet: Ros1Fleet,
-    states: Callable[[], list[FinalState]],
-    last_lines: LastLines,
+    mission: Mission, controller: Controller, work: _Work, fleet: Ros1Fleet, children: NodeProcesses
 ) -> tuple[Report, list[FinalState]] | None:
-    """Carry a mission out with a fleet that is open; None if halted before the beginning."""
+    """Wait for robots, plan, and carry the plan out; None if halted before the beginning."""
+    from muster.bridges.final_state import final_states_by_telemetry
     from muster.running.live import wait_for_robots
     from muster.running.wall_time import planned_from
 
@@ -300,20 +289,22 @@ def _carried_out(
     start = start_in_time(mission, fleet, options)
     wait_for_robots(fleet, controller.halt, work.wait_s)
     if controller.halt.is_set():
-        last_lines.tell()
         return None
     there = from_here(mission, fleet)
     plan = work.plan or controller.plan(planned_from(there, start.seconds()), _as_data(options))
     if plan is None or controller.halt.is_set():
-        last_lines.tell()
         return None
     require_whole(plan, options)
-    last_lines.begun = True
     controller.carry_out(fleet)
     observers: list[Recorder] = [controller.mission_topics]
     if work.marked_in is not None:
         from muster.bridges.ros1.markers import Markers
 
         observers.append(Markers(there, work.marked_in))
-    report = carried_out(there, plan, fleet, options, controller.halt, observers)
-    return report, states()
+
+    def states() -> list[FinalState]:
+        return [] if children.fault else final_states_by_telemetry(fleet, there)
+
+    with LastLines(states, begun=True):
+        report = carried_out(there, plan, fleet, options, controller.halt, observers)
+        return report, states()

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from muster.cli.exits import INTERRUPTED
 from muster.cli.options import Finite, MissionFile, mission_argument
 from muster.cli.real_robots import (
     LastLines,
@@ -75,14 +76,18 @@ def command(
     """
     from muster.bridges.final_state import final_states_by_telemetry
     from muster.bridges.ros2.fleet import Ros2Fleet
+    from muster.bridges.ros2.middleware import domain_or_own
     from muster.bridges.ros2.open_middleware import open_middleware
     from muster.bridges.ros2.port import Arrival
+    from muster.running.claim_locks import robots_claimed
     from muster.running.live import wait_for_robots
+    from muster.server.runs.robot_claims import claims_of
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
     given = read_given_plan(options, loaded)
-    with ctrl_c_halts(TO_END) as halt:
+    claims = claims_of("ros2", {"namespace": namespace, "domain": domain_or_own(domain)})
+    with ctrl_c_halts(TO_END) as halt, robots_claimed(claims):
         fleet = Ros2Fleet(
             loaded,
             middleware=open_middleware(by, domain),
@@ -92,17 +97,18 @@ def command(
             targets=None if targets is None else targets.settings(),
             joins=not known_only,
         )
-
-        def states() -> list[FinalState]:
-            return final_states_by_telemetry(fleet, loaded, fleet.not_told)
-
-        with closing(fleet), LastLines(states) as last_lines:
+        with closing(fleet):
             start = start_in_time(loaded, fleet, options)
             wait_for_robots(fleet, halt, wait_s, _NEEDED[give])
             there = from_here(loaded, fleet)
             plan = given or planned(options, there, start)
             if halt.is_set():
-                raise KeyboardInterrupt  # nothing was sent
-            last_lines.begun = True
-            report = carried_out(there, plan, fleet, options, halt)
-            return reported(there, report, options, halt, "the robots were told to stay where they are", states())
+                click.echo("interrupted; nothing was sent", err=True)
+                return INTERRUPTED
+
+            def states() -> list[FinalState]:
+                return final_states_by_telemetry(fleet, there, fleet.not_told)
+
+            with LastLines(states, begun=True):
+                report = carried_out(there, plan, fleet, options, halt)
+                return reported(there, report, options, halt, "the robots were told to stay where they are", states())

@@ -230,6 +230,9 @@ class Action:
         `run.resume`, `run.speed`, `run.cancel`, `run.event`, `login`, `refused`, ...
     outcome
         empty until it is known; `done`, or why the action was refused.
+    kept
+        whether the database has it. What a run is told while the database is away takes effect, and is held by the
+        server's memory alone: it is lost if the server ends before the database is back.
     """
 
     id: int
@@ -242,3 +245,4 @@ class Action:
     run: int | None = None
     applied_s: float | None = None
     outcome: str = ""
+    kept: bool = True

@@ -6,7 +6,7 @@ from muster.execution.executor import Executor
 from muster.execution.monitor import Limits
 from muster.execution.reallocation import Reallocation, Revision
 from muster.execution.record import ExecutionEvent, Observer, Recorder
-from muster.execution.report import Report, broken_off, report_of
+from muster.execution.report import Report, broken_off, compared_in_part, report_of
 from muster.execution.standing import Standing
 from muster.execution.status import RobotStatus, Status, status_of
 from muster.execution.travel import travel_of, way_of
@@ -26,6 +26,7 @@ __all__ = [
     "Standing",
     "Status",
     "broken_off",
+    "compared_in_part",
     "report_of",
     "rewire",
     "status_of",

@@ -154,7 +154,10 @@ class CompletedWork:
         if robot in self.levels and state.energy is not None:
             share, then = self.levels[robot]
             state.energy.recall(share, self.used.get(robot, then) - then)
-        state.done += [task for task in self.done if robot in ledger.members(task)]
+        for task, deed in self.done.items():
+            if robot in (members := ledger.members(task)):
+                state.done.append(task)
+                state.planned_before += deed.usage[0] / len(members)
         state.at_home = state.at_home and not state.done
         if robot in self.out:
             state.out, state.out_s = self.out[robot]

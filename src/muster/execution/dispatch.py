@@ -437,6 +437,7 @@ class Dispatch:
         self._ledger.usage[task] = sum(state.usage_to_task for state in team), flown
         for state in team:
             state.used_before = state.used
+            state.planned_before += state.usage_to_task
             state.route.pop(0)
             state.done.append(task)
             state.stops.append(task)

@@ -43,7 +43,7 @@ from muster.execution.task_motion import MotionPlanner, Way, straight
 from muster.execution.team_work import break_off
 from muster.execution.traffic_waits import TrafficWaits
 from muster.execution.travel import Travel, travel_of
-from muster.execution.work_figures import at_stations, back_s, shifts_exceeded_s
+from muster.execution.work_figures import at_stations, back_s, planned_so_far, shifts_exceeded_s
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.plan import Plan
@@ -503,6 +503,7 @@ class Executor:
             lost=self.lost(),
             used={name: state.used for name, state in self.crew.items()},
             usage_planned=self.usage_planned,
+            planned_so_far={name: planned_so_far(state) for name, state in self.crew.items()},
             mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
             reallocations=self._plans,
             orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s),

@@ -37,6 +37,11 @@ class StationAccount:
     waited_s: float
 
 
+IN_PART = "not carried out to its end: planned is what was planned of the part that was carried out"
+_OF_USAGE = ("total", "max", "total+max")
+"""Objectives that follow from the robots' usages."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Account:
     """What is known of a mission that was carried out by those who did it.
@@ -47,8 +52,9 @@ class Account:
         by name, and by the plan that the mission began with, None where that does not tell.
     ledger, lost
         of the tasks; why each task is lost that is.
-    used, usage_planned
-        by robot, in the mission's unit: measured; and by the plan that the mission began with, 0 of who joined.
+    used, usage_planned, planned_so_far
+        by robot, in the mission's unit: measured; by the plan that the mission began with, 0 of who joined; and of the
+        part of it that was carried out.
     mission_time_s, reallocations, done_twice
         as in `Report`.
     charges
@@ -73,6 +79,7 @@ class Account:
     usage_planned: Mapping[str, float]
     mission_time_s: float
     reallocations: int
+    planned_so_far: Mapping[str, float] = field(default_factory=dict)
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     charges: Mapping[str, float] = field(default_factory=dict)
     stations: Mapping[str, StationAccount] = field(default_factory=dict)
@@ -335,7 +342,17 @@ def broken_off(report: Report, account: Account, reason: str) -> Report:
     """The report of a mission that ends before it is over: tasks under way are lost too, for that reason."""
     told = {*report.tasks_done, *(task for task, _ in report.tasks_lost)}
     under_way = tuple((task.id, reason) for task in account.ledger.open if task.id not in told)
-    return replace(report, tasks_lost=report.tasks_lost + under_way)
+    lost, remarks = report.tasks_lost + under_way, (*report.remarks, IN_PART)
+    return compared_in_part(replace(report, tasks_lost=lost, remarks=remarks), account)
+
+
+def compared_in_part(report: Report, account: Account) -> Report:
+    """Return the report of a mission that was not carried out to its end: planned is what was planned of that part."""
+    planned = account.planned_so_far
+    robots = tuple(replace(row, usage_planned=planned.get(row.robot, 0.0)) for row in report.robots)
+    of_usage = objective_values(planned.values(), (), ()) if report.objective.name in _OF_USAGE else {}
+    objective = replace(report.objective, planned=of_usage.get(report.objective.name))
+    return replace(report, robots=robots, objective=objective)
 
 
 def _robot(account: Account, robot: str, used: float) -> RobotReport:

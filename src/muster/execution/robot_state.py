@@ -97,6 +97,7 @@ class RobotState:
     work_s: float = 0.0  # how long the current work takes, delays included
     charged: float = 0.0  # usage of works that ended, as far as it was not travelled
     used_before: float = 0.0  # usage at the end of the last task
+    planned_before: float = 0.0  # usage up to then as planned
     usage_to_task: float = 0.0  # from then to the end of the current task, as planned
     busy_s: float = 0.0
     since_s: float = 0.0  # up to when `busy_s` counts

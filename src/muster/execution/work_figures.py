@@ -32,3 +32,10 @@ def shifts_exceeded_s(worked: Iterable[RobotState], now: float) -> dict[str, flo
 def back_s(worked: Iterable[RobotState]) -> tuple[float, ...]:
     """When the robots that worked and are idle now had come to their ends."""
     return tuple(state.begun_s for state in worked if state.activity is Activity.IDLE)
+
+
+def planned_so_far(state: RobotState) -> float:
+    """Return the planned usage of the part of its route that a robot has carried out, the present leg in part."""
+    since = max(0.0, state.used - state.used_before)
+    has_task = bool(state.route) and state.activity in (Activity.DRIVING, Activity.WAITING, Activity.WORKING)
+    return state.planned_before + (min(since, state.usage_to_task) if has_task else since)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from muster.bridges.fleet import Fleet, has_simulated_time
+from muster.bridges.fleet import Fleet, has_simulated_time, is_paused
 from muster.mission.clock import Clock, VirtualClock, WallClock
 from muster.mission.model import Event, Mission
 from muster.motion.port import RobotPort, Telemetry, TranslatedPort
@@ -32,8 +32,8 @@ def start_of(mission: Mission, fleet: Fleet, starts: str, wall: Clock | None = N
 class FleetWithMissionClock:
     """A `Fleet` with the time of the mission; what robots said before the start is of times below 0.
 
-    The fleet's own clock goes on in pauses. Where it falls behind the wall clock it is set forward; where somebody sets
-    the wall clock back, it goes on.
+    The mission's clock goes on in pauses, also where the fleet's stands still. Where the fleet's clock falls behind the
+    wall clock it is set forward; where somebody sets the wall clock back, it goes on.
 
     Parameters
     ----------
@@ -48,6 +48,7 @@ class FleetWithMissionClock:
     def __init__(self, fleet: Fleet, begin_s: float = 0.0, wall: Clock | None = None) -> None:
         self._fleet, self._off_s = fleet, fleet.time_s - begin_s
         self._wall, self._zero_s = wall, 0.0 if wall is None else wall.now() - begin_s
+        self._was_paused = False
         self.ports: Mapping[str, RobotPort] = _Ports(fleet, lambda: self._off_s)
 
     @property
@@ -73,7 +74,10 @@ class FleetWithMissionClock:
     def _since_start_s(self) -> float:
         now = self._fleet.time_s - self._off_s
         behind_s = 0.0 if self._wall is None else self._wall.now() - self._zero_s - now
-        if behind_s <= BEHIND_S:
+        paused = is_paused(self._fleet)
+        may_be_behind_s = 0.0 if paused or self._was_paused else BEHIND_S
+        self._was_paused = paused
+        if behind_s <= may_be_behind_s:
             return now
         self._off_s -= behind_s
         return now + behind_s

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from muster.bridges.fleet import Fleet
+from muster.bridges.fleet import Fleet, is_paused
 from muster.mission.model import Event, Mission, Robot
 from muster.motion.port import RobotPort
 from muster.traffic.manager import LOOK_S, TrafficManager
@@ -23,6 +23,10 @@ class FleetInTraffic:
         self._fleet, self._manager = fleet, manager
         self._look_s = fleet.time_s
         self.ports = _ManagedPorts(fleet, manager, {robot.id: robot for robot in mission.all_robots})
+
+    @property
+    def paused(self) -> bool:
+        return is_paused(self._fleet)
 
     @property
     def time_s(self) -> float:

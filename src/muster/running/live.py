@@ -18,6 +18,7 @@ from muster.execution import (
     Recorder,
     Standing,
     Status,
+    compared_in_part,
     report_of,
     status_of,
     travel_of,
@@ -288,6 +289,7 @@ class Live:
         report = report_of(self.executor.account)
         if not self.done:
             left = ", ".join(task.id for task in self.executor.ledger.open)
+            report = compared_in_part(report, self.executor.account)
             report = replace(report, remarks=(*report.remarks, f"interrupted; not done: {left or 'the ways home'}"))
         return report
 

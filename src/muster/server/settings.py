@@ -7,11 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-
-def data_folder() -> Path:
-    """The user's data folder of Muster (XDG base directories)."""
-    home = os.environ.get("XDG_DATA_HOME") or str(Path.home() / ".local" / "share")
-    return Path(home) / "muster"
+from muster.mission.platforms import data_folder
 
 
 def usual_database() -> str:

@@ -93,6 +93,6 @@ def posed(*at, frame="map"):
     return PoseStamped(Header(frame_id=frame), pose(*at))
 
 
-def moved(*at, ahead=0.0):
+def moved(*at, ahead=0.0, frame="odom"):
     twist = TwistWithCovariance(Twist(Vector3(ahead, 0.0, 0.0), Vector3()))
-    return Odometry(Header(frame_id="odom"), "base_link", PoseWithCovariance(pose(*at)), twist)
+    return Odometry(Header(frame_id=frame), "base_link", PoseWithCovariance(pose(*at)), twist)

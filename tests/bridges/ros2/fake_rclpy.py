@@ -81,11 +81,16 @@ class ReliabilityPolicy:
     RELIABLE, BEST_EFFORT = 1, 2
 
 
+class DurabilityPolicy:
+    TRANSIENT_LOCAL, VOLATILE = 1, 2
+
+
 class QoSProfile:
     def __init__(self, **kwargs):
         assert "history" in kwargs or "depth" in kwargs, "History and/or depth settings are required."
         self.depth = kwargs.pop("depth", 0)
         self.reliability = kwargs.pop("reliability", ReliabilityPolicy.RELIABLE)
+        self.durability = kwargs.pop("durability", DurabilityPolicy.VOLATILE)
         assert not kwargs, kwargs
 
 
@@ -336,7 +341,11 @@ def _modules():
         "rclpy.context": {"Context": Context},
         "rclpy.executors": {"SingleThreadedExecutor": SingleThreadedExecutor},
         "rclpy.node": {"Node": Node},
-        "rclpy.qos": {"QoSProfile": QoSProfile, "ReliabilityPolicy": ReliabilityPolicy},
+        "rclpy.qos": {
+            "QoSProfile": QoSProfile,
+            "ReliabilityPolicy": ReliabilityPolicy,
+            "DurabilityPolicy": DurabilityPolicy,
+        },
         "nav2_msgs": {},
         "nav2_msgs.action": {"NavigateToPose": NavigateToPose},
     }

@@ -6,6 +6,8 @@ import pytest
 from tests.bridges.ros2.fake_middleware import Middleware, Navigator, Told, moved, posed
 
 from muster.bridges.ros2.goals import Nav2Goals, PoseGoals
+from muster.bridges.ros2.map_frame import Ros2MapFrame
+from muster.bridges.ros2.message_types import Header, Quaternion, TFMessage, Time, Transform, TransformStamped, Vector3
 from muster.bridges.ros2.middleware import Outcome
 from muster.bridges.ros2.port import Arrival, Ros2Port, yaw_of
 from muster.mission.errors import ParameterError
@@ -34,7 +36,7 @@ def navigator():
 
 def test_nav2_with_odometry_only_is_heard_after_its_goal_and_holds_to_the_end(navigator):
     robot = There(Nav2Goals(navigator))
-    robot.odometry.append(moved(0.0))
+    robot.odometry.append(moved(0.0, frame="map"))
     robot.hear(0.0)
     robot.port.send([Waypoint((5.0, 0.0, 0.0), hold_s=8.0), Waypoint((5.0, 5.0, 0.0))])
     feedback = navigator.given[0][1]
@@ -51,7 +53,7 @@ def test_nav2_with_odometry_only_is_heard_after_its_goal_and_holds_to_the_end(na
 
 def test_a_hold_ends_by_time_where_nothing_is_heard_and_times_stand_still(navigator):
     robot = There(Nav2Goals(navigator))
-    robot.odometry.append(moved(5.0))
+    robot.odometry.append(moved(5.0, frame="map"))
     robot.hear(0.0)
     robot.port.send([Waypoint((5.0, 0.0, 0.0), hold_s=2.0)])
     navigator.given[0][1].outcome = Outcome("succeeded")
@@ -97,7 +99,52 @@ def test_poses_in_other_frames_and_such_as_are_none_do_not_count():
     robot.poses += [posed(9.0, frame="odom"), posed(math.nan)]
     robot.odometry += [moved(math.inf), moved(3.0)]
     robot.hear(0.0)
+    assert robot.port.telemetry() is None
+    assert robot.port.missing == "its poses are in frame odom, which tf does not tie to map"
+    robot.odometry.append(moved(3.0, frame="map"))
+    robot.hear(0.1)
     assert robot.port.telemetry().position == (3.0, 0.0, 0.0)
+    assert robot.port.missing == ""
+
+
+def test_a_robot_whose_place_on_the_map_is_not_known_is_sent_nowhere():
+    told = Told()
+    robot = There(PoseGoals(told))
+    robot.odometry.append(moved(0.0))
+    robot.hear(0.0)
+    robot.port.send([Waypoint((5.0, 0.0, 0.0))])
+    robot.odometry.append(moved(1.0))
+    robot.hear(1.0)
+    assert told == []
+    robot.poses.append(posed(2.0))
+    robot.hear(2.0)
+    assert told == [(5.0, 0.0)]
+
+
+def test_odometry_counts_where_tf_ties_its_frame_to_the_map():
+    middleware = Middleware()
+    frames = Ros2MapFrame(middleware)
+    there = {"clock": middleware.now, "flat": True, "frames": frames}
+    port = Ros2Port(Robot(id="r", position=(0.0, 0.0)), middleware, "/r", PoseGoals(Told()), Arrival(), **there)
+    middleware.heard["/r/odom"].append(moved(3.0, frame="r/odom"))
+    frames.hear(0.0)
+    port.hear()
+    assert port.telemetry() is None
+    middleware.heard["/tf_static"].append(tied("map", "site", 10.0, 0.0, 0.0))
+    middleware.heard["/tf"].append(tied("site", "r/odom", 0.0, 5.0, math.pi / 2))
+    frames.hear(0.1)
+    middleware.heard["/r/odom"].append(moved(3.0, frame="r/odom"))
+    port.hear()
+    said = port.telemetry()
+    assert said.position == pytest.approx((10.0, 8.0, 0.0))
+    assert said.heading == pytest.approx(math.pi / 2)
+    assert port.missing == ""
+
+
+def tied(parent, child, x, y, turn):
+    rotation = Quaternion(0.0, 0.0, math.sin(turn / 2), math.cos(turn / 2))
+    header = Header(stamp=Time(1, 0), frame_id=parent)
+    return TFMessage((TransformStamped(header, child, Transform(Vector3(x, y, 0.0), rotation)),))
 
 
 def test_who_is_cancelled_stays_where_it_said_last_that_it_is():

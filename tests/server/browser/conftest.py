@@ -46,8 +46,14 @@ def serving(folder):
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory):
-    with serving(tmp_path_factory.mktemp("served")) as origin:
+def served_in(tmp_path_factory):
+    """The folder with the database of the server."""
+    return tmp_path_factory.mktemp("served")
+
+
+@pytest.fixture(scope="module")
+def served(served_in):
+    with serving(served_in) as origin:
         yield origin
 
 

@@ -6,6 +6,7 @@ names a folder.
 
 import json
 import re
+import sqlite3
 
 import pytest
 
@@ -171,6 +172,20 @@ def test_what_nobody_can_do_is_seen_at_once(watched, page, out):
     asked.get_by_role("button", name="Cancel the task").click()
     page.get_by_text("cannot be done").wait_for(state="hidden")
     page.get_by_text("2 cancelled").wait_for()
+
+
+def test_commands_that_only_memory_holds_are_marked_until_the_database_has_them(watched, page, served_in):
+    lock = sqlite3.connect(served_in / "muster.db", isolation_level=None)
+    lock.execute("BEGIN IMMEDIATE")
+    page.keyboard.press(" ")
+    mark = page.locator(".notices .unkept", has_text="not kept")
+    mark.wait_for()
+    lock.execute("COMMIT")
+    lock.close()
+    mark.wait_for(state="detached")
+    page.locator(".run-state[data-state=paused]").wait_for()
+    page.keyboard.press(" ")
+    page.locator(".run-state[data-state=running]").wait_for()
 
 
 def test_who_comes_back_misses_nothing(watched, page):

@@ -20,6 +20,7 @@ import muster
 from muster.exchange.mission_control import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
 from muster.mission.plan_reader import plan_from
+from muster.mission.yaml_writer import yaml_text
 from muster.server.runs.unsaved_actions import number_at
 from muster.server.services.records import Records
 from muster.server.services.runs import Runs
@@ -200,6 +201,7 @@ def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_lat
     assert (store.runs.get(run).state, store.runs.get(run).remark) == ("ended", "")
     assert store.log.last_stretch(run) > 50
     assert action.id < 0 or refuses is FULL  # which may have room for a few bytes
+    assert action.kept == (action.id > 0)
     asked = {action.verb: (action.outcome, action.who) for action in store.actions.list(run=run)}
     assert asked == dict.fromkeys(("run.start", "run.pause", "run.speed", "run.resume"), ("done", "ada"))
 
@@ -230,7 +232,7 @@ def test_a_pause_does_not_wait_for_a_locked_database_and_is_written_once(store):
 
     run, took, unsaved_action = asyncio.run(story())
     assert 0.5 < took[0] < took[1] < 8  # of the database's own patience of 10 s
-    assert all(action.id < 0 for action in unsaved_action)
+    assert all(action.id < 0 and not action.kept for action in unsaved_action)
     asked = [(action.verb, action.outcome) for action in store.actions.list(run=run)]
     assert asked == [(f"run.{verb}", "done") for verb in ("speed", "resume", "pause", "start")]
     at = {action.verb: action.at for action in store.actions.list(run=run)}
@@ -366,3 +368,28 @@ def test_who_is_refused_does_not_wait_for_a_locked_database(store):
 
     assert asyncio.run(story()) < 8  # of the database's own patience of 10 s
     assert [action.outcome for action in store.actions.list()] == ["no run 99"]
+
+
+@pytest.mark.parametrize("world", ["kinematic", "mavlink"])
+def test_a_plan_that_was_cut_short_is_not_carried_out_unless_that_is_accepted(store, world):
+    mission = muster.load("6T-2R")
+    version = store.missions.create(mission.name, yaml_text(mission), {}, {"name": mission.name}, "ada")
+    cut = replace(muster.solve(mission, iterations=10), cut_short=True).as_dict()
+    plan = store.plans.add(version.mission, version.version, "planned", "ada", cut).id
+
+    async def story():
+        async with opened(store, bridges=("mavlink",)) as runs:
+            words = f"^plan {plan}: planning was cut short; expected a whole plan, or accept_partial: true$"
+            with pytest.raises(ConflictError, match=words):
+                await runs.start(ADA, plan, world)
+            with pytest.raises(ConflictError, match=words):
+                await runs.start(ADA, plan, world, accept_partial=False)
+            assert store.runs.list() == []
+            if world == "kinematic":
+                run = (await runs.start(ADA, plan, speed=None, accept_partial=True)).id
+                await watched(runs, run)
+                return await runs.get(run)
+            return None
+
+    found = asyncio.run(story())
+    assert found is None or len(found.report["tasks_done"]) == 6

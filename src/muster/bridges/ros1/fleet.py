@@ -97,7 +97,6 @@ class Ros1Fleet:
         self._now = time_of_ros()
         self.clock = clock or MissionClock(self._now)
         self.simulated_time = isinstance(self._now, Forward)
-        self.paused = False
         self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
         self.topics = topics_in(namespace)
         """The namespace of a robot's topics, such as `/r_0`."""
@@ -132,7 +131,7 @@ class Ros1Fleet:
 
     @property
     def time_s(self) -> float:
-        """See `Fleet`."""
+        """See `Fleet`. It stands still while the fleet pauses; the mission's clock does so for a simulator's alone."""
         return self.clock.time_s
 
     def advance(self, until_s: float) -> Sequence[Event]:
@@ -162,16 +161,21 @@ class Ros1Fleet:
             self._events.append(event)
         self._news.set()
 
+    @property
+    def paused(self) -> bool:
+        """Whether robots stand because somebody wants that."""
+        return self.clock.paused
+
     def pause(self) -> None:
-        """Robots stand until `resume`; the clock goes on."""
+        """Robots stand, and the fleet's clock too, until `resume`."""
         with self._lock:
-            self.paused = True
+            self.clock.pause()
             self._tell_all(Ros1Port.stand)
 
     def resume(self) -> None:
         """Robots go on."""
         with self._lock:
-            self.paused = False
+            self.clock.resume()
 
     def robots_not_ready(self) -> dict[str, str]:
         """Robots of the mission that have not said where they are, and why that may be.
@@ -185,7 +189,7 @@ class Ros1Fleet:
         if isinstance(self._now, Forward) and not self._now.has_begun:
             return dict.fromkeys(self._all(), "/use_sim_time is set, and nothing is on /clock")
         return {
-            name: f"its poses are in frame {port.untied}, which tf does not tie to {self._frame.name}"
+            name: self._frame.untied(port.untied)
             if port.untied
             else f"nothing on {self.topics(name)}/odom or {self._pose_topic(name) or self.topics(name) + '/pose'}"
             for name, port in self._all().items()
@@ -260,10 +264,10 @@ class Ros1Fleet:
 
     def _steer_on(self) -> None:
         """Send velocities to the robots at each interval; on an error they stop, and `advance` raises it."""
-        due_s, turn = self.clock.time_s, 0
+        due_s, turn = self.clock.unpaused_s, 0
         try:
-            while not self._closed.wait(min(_TICK_S, max(0.0, due_s - self.clock.time_s))):
-                now = self.clock.time_s
+            while not self._closed.wait(min(_TICK_S, max(0.0, due_s - self.clock.unpaused_s))):
+                now = self.clock.unpaused_s
                 if now < due_s or rospy.is_shutdown():
                     continue
                 due_s, turn = max(due_s + self._interval_s, now), turn + 1
@@ -280,9 +284,9 @@ class Ros1Fleet:
                     self._tell_all(Ros1Port.stand)
 
     def _steer(self) -> None:
-        steered_robots = [port.steered(within_s=_HEARD_S, paused=self.paused) for port in self._ports.values()]
+        steered_robots = [port.steered(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
         present = [steered for steered in steered_robots if steered is not None]
-        team = self._yielding.arranged(self.clock.time_s, present)
+        team = self._yielding.arranged(self.clock.unpaused_s, present)
         told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}
         for steered in team:
             self._ports[steered.robot.id].speak(steered, told.get(steered.robot.id, STILL))

@@ -13,12 +13,13 @@ from typing import Any, Literal
 from muster.bridges.follower import Follower
 from muster.bridges.pose_port import goal_heading, require_finite
 from muster.bridges.ros1.clock import MissionClock
-from muster.bridges.ros1.map_frame import OWN, MapFrame
+from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.message_conversion import place_and_heading, pose_stamped, tf_of, twist_of
 from muster.bridges.ros1.node import publish
 from muster.bridges.ros1.pose_listener import PoseListener
 from muster.bridges.ros1.ros import PoseStamped, Twist, rospy
 from muster.bridges.steering import STILL, SteeredRobot, Velocity
+from muster.bridges.tied_frames import OWN
 from muster.mission.model import Robot
 from muster.motion.frames import Floats
 from muster.motion.port import Place, Telemetry, Waypoint
@@ -96,7 +97,7 @@ class Ros1Port:
         """
         require_finite(self.robot, waypoints)
         with self._lock:
-            self._stood_s = self._clock.time_s if waypoints else self._stood_s
+            self._stood_s = self._clock.unpaused_s if waypoints else self._stood_s
             order = self._follower.take(waypoints)
             self._commanded = self._commanded or bool(waypoints)
             if not waypoints:
@@ -121,7 +122,7 @@ class Ros1Port:
         said = self._last_word
         if said is None:
             return None
-        stands = paused or self._clock.time_s - self._heard_s > within_s
+        stands = paused or self._clock.unpaused_s - self._heard_s > within_s
         aim = None if stands else self._follower.aim
         arrived = aim is not None and self._follower.is_at(said.position, aim)
         waits = self._follower.waits and not stands
@@ -129,7 +130,7 @@ class Ros1Port:
 
     def speak(self, steered: SteeredRobot, velocity: Velocity) -> None:
         """Tell the robot what it is to do now, and others where it goes."""
-        now = self._clock.time_s
+        now = self._clock.unpaused_s
         if steered.aim is not None:
             self._stood_s = now
         if self._drive == "cmd_vel":
@@ -156,7 +157,7 @@ class Ros1Port:
         """Stand where it is, at once, if it was ever sent anywhere."""
         with self._lock:
             if self._commanded:
-                self._stood_s = self._clock.time_s
+                self._stood_s = self._clock.unpaused_s
                 self._stand_still()
 
     def close(self) -> None:
@@ -197,7 +198,7 @@ class Ros1Port:
         with self._lock:
             self._height = place[2]
             place = (*place[:2], 0.0) if self._flat else place
-            heard_s = self._clock.time_s
+            heard_s = self._clock.unpaused_s
             velocity = self._gone(place, heard_s) if ahead is None else _turned(ahead, matrix)
             self._heard_s = heard_s
             now = self._clock.time_s

@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 from typing import Any, Literal
 
-from muster.bridges.ros1.map_frame import OWN
 from muster.bridges.ros1.message_conversion import stamped_transform
+from muster.bridges.tied_frames import OWN
 from muster.mission.model import Mission, Robot
 from muster.motion.frames import body_in_global
 from muster.perception.camera import mount_of_mission

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from muster.bridges.ros2.map_frame import MAP_FRAME
 from muster.bridges.ros2.message_types import Odometry, PoseStamped
 from muster.bridges.ros2.middleware import Middleware
-from muster.bridges.ros2.port import MAP_FRAME
 from muster.bridges.ros2.sensor_conversion import pose_matrix, stamp_of
 from muster.motion.frames import Floats
 

@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from typing import Any, Generic, TypeVar
 
 from muster.bridges.ros2.description import ROS2, Field, Message, fields_of, from_foreign, to_foreign
-from muster.bridges.ros2.middleware import KEPT, Navigator, domain_or_own, line_of
+from muster.bridges.ros2.middleware import KEPT, LATCHED, Navigator, domain_or_own, line_of
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
 
 M = TypeVar("M", bound=Message)
@@ -123,6 +123,8 @@ class _Dds:
         kept = policy.History.KeepLast(KEPT)
         self._publishing = qos.Qos(old, kept, policy.Reliability.Reliable(10**8))
         self._hearing = qos.Qos(old, kept, policy.Reliability.BestEffort)
+        lasting = (policy.Reliability.Reliable(10**8), policy.Durability.TransientLocal)
+        self._hearing_latched = qos.Qos(old, kept, *lasting)
         self._topic: Any = topic.Topic
         self._writer: Any = pub.DataWriter
         self._reader: Any = sub.DataReader
@@ -134,7 +136,8 @@ class _Dds:
         return self._writer(participant, self._topic(participant, topic, kind), qos=self._publishing)
 
     def reader(self, participant: Any, topic: str, kind: Any) -> Any:
-        return self._reader(participant, self._topic(participant, topic, kind), qos=self._hearing)
+        quality = self._hearing_latched if topic in map(_dds_topic, LATCHED) else self._hearing
+        return self._reader(participant, self._topic(participant, topic, kind), qos=quality)
 
     def publications(self, participant: Any) -> Any:
         """The reader of what others publish, and how (DDS 1.4, 2.2.5: DCPSPublication)."""

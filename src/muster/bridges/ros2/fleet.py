@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal
 from muster.bridges.discovery import topics_in
 from muster.bridges.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster.bridges.ros2.joining import Ros2Newcomers
+from muster.bridges.ros2.map_frame import Ros2MapFrame
 from muster.bridges.ros2.message_types import PoseStamped
 from muster.bridges.ros2.middleware import Middleware
 from muster.bridges.ros2.names import ros_names
@@ -82,6 +83,7 @@ class Ros2Fleet:
         self._give, self._arrival = give, arrival or Arrival()
         self._flat = mission.dimensions == 2
         self._middleware = open_middleware() if middleware is None else middleware
+        self._frames = Ros2MapFrame(self._middleware)
         self._ports: dict[str, Ros2Port] = {}
         try:
             names = ros_names(robot.id for robot in mission.robots)
@@ -107,6 +109,7 @@ class Ros2Fleet:
         """See `Fleet`: returns before, where a way point is passed or a robot joins."""
         while True:
             self._middleware.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
+            self._frames.hear(self.time_s)
             passed = [port.hear() for port in self._ports.values()]
             events = [*self._joined(), *self._found()]
             if events or any(passed) or self.time_s >= until_s:
@@ -164,6 +167,7 @@ class Ros2Fleet:
 
     def _hear_for(self, seconds: float) -> None:
         self._middleware.wait(seconds)
+        self._frames.hear(self.time_s)
         for port in self._ports.values():
             port.hear()
 
@@ -194,6 +198,7 @@ class Ros2Fleet:
             self._arrival,
             flat=self._flat,
             clock=lambda: self.time_s,
+            frames=self._frames,
         )
 
     def _goals(self, topics: str) -> Goals:

@@ -15,6 +15,8 @@ M = TypeVar("M", bound=Message)
 Sent = TypeVar("Sent", bound=Message, contravariant=True)
 
 By = Literal["dds", "rclpy"]
+LATCHED = ("/tf_static",)
+"""Topics whose last messages those get too who listen later."""
 KEPT = 100
 """Messages that are kept until they are taken."""
 _LAST_DOMAIN = 232  # beyond it there are no ports

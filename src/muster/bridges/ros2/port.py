@@ -2,8 +2,10 @@
 
 | topic | type | |
 |---|---|---|
-| `<robot>/pose` | PoseStamped, frame `map` | where it is; its navigation's feedback says so too |
+| `<robot>/pose` | PoseStamped | where it is; its navigation's feedback says so too |
 | `<robot>/odom` | Odometry | where it went from there, once poses have stopped; without any, where it is |
+
+A pose counts if its frame is tied to the map (`tied_frames`); odometry counts also if a pose that counts has tied it.
 """
 
 from __future__ import annotations
@@ -18,15 +20,16 @@ import numpy as np
 from muster.bridges.follower import Follower
 from muster.bridges.pose_port import goal_heading, require_finite, velocity_by
 from muster.bridges.ros2.goals import Goals
+from muster.bridges.ros2.map_frame import MAP_FRAME
 from muster.bridges.ros2.message_types import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
 from muster.bridges.ros2.middleware import Middleware
 from muster.bridges.ros2.odometry_tracking import OdometryTracking
+from muster.bridges.tied_frames import TiedFrames
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
-from muster.motion.frames import angles, flu_to_enu, quaternion_rotation
+from muster.motion.frames import angles, flu_to_enu, pose_of, pose_transform, quaternion_rotation
 from muster.motion.port import Place, Telemetry, Waypoint
 
-MAP_FRAME = "map"
 _FRESH_S = 0.5
 """Who said for longer not where it is, is elsewhere by now: that place is none to stay at."""
 
@@ -63,6 +66,8 @@ class Ros2Port:
         whether the mission is in the plane: heights are then the robot's own affair.
     clock
         seconds of the mission's.
+    frames
+        which frames are tied to the map; None: the map's alone.
     """
 
     def __init__(
@@ -75,6 +80,7 @@ class Ros2Port:
         *,
         flat: bool,
         clock: Callable[[], float],
+        frames: TiedFrames | None = None,
     ) -> None:
         self.body, self.topics, self.goals, self._flat, self._clock = robot, topics, goals, flat, clock
         near = {"arrival_m": arrival.near_m, "turned_rad": arrival.turned_rad}
@@ -83,6 +89,9 @@ class Ros2Port:
         self._odometry = middleware.reader(f"{topics}/odom", Odometry)
         self._said: Telemetry | None = None
         self._odometry_tracking = OdometryTracking()
+        self._frames = TiedFrames(MAP_FRAME) if frames is None else frames
+        self._untied = ""  # a frame in which poses are given that nothing ties to the map
+        self._withheld = False  # whether a goal waits for that
         self._height = 0.0
         self._refused = ""
         self.is_to_stay = False  # and was not told yet
@@ -94,6 +103,8 @@ class Ros2Port:
     @property
     def missing(self) -> str:
         """What is not there of what it needs; empty if all is."""
+        if self._said is None and self._untied:
+            return self._frames.untied(self._untied)
         if self._said is None:
             return f"nothing on {self.topics}/pose or {self.topics}/odom"
         return "" if self.goals.ready else f"no server of {self.topics}/navigate_to_pose"
@@ -143,7 +154,7 @@ class Ros2Port:
         if self._said is not None and (passed or ended is not None):
             order, count = self._follower.order, self._follower.passed
             self._said = replace(self._said, order=order, passed=count, refused=self._refused)
-        if passed:
+        if passed or (self._withheld and self._said is not None):
             self._speak()
         if self.is_to_stay:
             self._let_stay()
@@ -163,8 +174,8 @@ class Ros2Port:
         return any(passed)
 
     def _take_pose(self, pose: PoseStamped, now: float) -> bool:
-        found = _place_and_heading(pose.pose)
-        if found is None or pose.header.frame_id.lstrip("/") != MAP_FRAME:
+        found = self._on_map(pose.header, pose.pose)
+        if found is None:
             return False
         self._odometry_tracking.tie(now, *found)
         return self._is_at(*found, now, None)
@@ -172,12 +183,29 @@ class Ros2Port:
     def _take_odometry(self, odometry: Odometry, now: float) -> bool:
         """Who is localised does not go by odometry, as long as that lasts."""
         found = _place_and_heading(odometry.pose.pose)
-        there = None if found is None else self._odometry_tracking.reckon(now, *found)
+        if found is None:
+            return False
+        there = self._odometry_tracking.reckon(now, *found)
+        if not self._odometry_tracking.is_tied:
+            there = self._on_map(odometry.header, odometry.pose.pose)
         if there is None:
             return False
         linear = odometry.twist.twist.linear
         x, y, z = flu_to_enu([linear.x, linear.y, linear.z], there[1]).tolist()
         return self._is_at(*there, now, (x, y, z))
+
+    def _on_map(self, header: Header, pose: Pose) -> tuple[Place, float] | None:
+        """Return place and heading on the map; None if they are no numbers, or nothing ties their frame to the map."""
+        found = _place_and_heading(pose)
+        if found is None:
+            return None
+        place, heading = found
+        matrix = self._frames.to_map(header.frame_id, pose_transform((*place, 0.0, 0.0, heading)))
+        self._untied = header.frame_id if matrix is None else ""
+        if matrix is None:
+            return None
+        x, y, z, _, _, turned = map(float, pose_of(matrix))
+        return (x, y, z), turned
 
     def _is_at(self, place: Place, heading: float, now: float, velocity: Place | None) -> bool:
         """It is there; returns whether it has passed a way point with that."""
@@ -191,9 +219,13 @@ class Ros2Port:
         return passed
 
     def _speak(self) -> None:
-        """Give the way point to which it is to go; its heading, where none is wanted, is that of the way there."""
+        """Give the way point to which it is to go; its heading, where none is wanted, is that of the way there.
+
+        A robot that says where it is in a frame that is not tied to the map gets none until it is tied.
+        """
         aim = self._follower.aim
-        if aim is None:
+        self._withheld = self._said is None and bool(self._untied)
+        if aim is None or self._withheld:
             return
         self.goals.give(self._stamped(aim.position, goal_heading(aim, self._said)))
 

@@ -15,7 +15,7 @@ from typing import Any, Generic, TypeVar
 
 from muster.bridges.ros2.description import Message, from_foreign, to_foreign
 from muster.bridges.ros2.message_types import PoseStamped
-from muster.bridges.ros2.middleware import KEPT, Navigation, Outcome, domain_or_own, line_of
+from muster.bridges.ros2.middleware import KEPT, LATCHED, Navigation, Outcome, domain_or_own, line_of
 from muster.mission.errors import MissingExtraError, NetworkError
 
 M = TypeVar("M", bound=Message)
@@ -53,6 +53,9 @@ class RclpyMiddleware:
         self._executor.add_node(self._node)
         self._reliable = qos.QoSProfile(depth=KEPT, reliability=qos.ReliabilityPolicy.RELIABLE)
         self._any = qos.QoSProfile(depth=KEPT, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
+        durability = getattr(qos, "DurabilityPolicy", None)  # before Foxy rclpy had another name for it
+        lasting = {} if durability is None else {"durability": durability.TRANSIENT_LOCAL}
+        self._latched = qos.QoSProfile(depth=KEPT, reliability=qos.ReliabilityPolicy.RELIABLE, **lasting)
 
     def writer(self, topic: str, message: type[M]) -> RclpyWriter[M]:
         """See `Middleware`."""
@@ -61,7 +64,8 @@ class RclpyMiddleware:
     def reader(self, topic: str, message: type[M]) -> RclpyReader[M]:
         """See `Middleware`."""
         reader = RclpyReader(message)
-        self._node.create_subscription(_class_of(message), topic, reader.hear, self._any)
+        quality = self._latched if topic in LATCHED else self._any
+        self._node.create_subscription(_class_of(message), topic, reader.hear, quality)
         return reader
 
     def navigator(self, action: str) -> RclpyNavigator:

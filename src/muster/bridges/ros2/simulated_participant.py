@@ -14,6 +14,7 @@ from typing import Any
 
 import click
 
+from muster.bridges.ros2.map_frame import MAP_FRAME
 from muster.bridges.ros2.message_types import (
     Header,
     Odometry,
@@ -31,7 +32,7 @@ from muster.bridges.ros2.message_types import (
 from muster.bridges.ros2.middleware import Middleware
 from muster.bridges.ros2.names import ros_name
 from muster.bridges.ros2.open_middleware import open_middleware
-from muster.bridges.ros2.port import MAP_FRAME, yaw_of
+from muster.bridges.ros2.port import yaw_of
 from muster.bridges.simulated_body import SimulatedBody
 from muster.bridges.simulated_program import Wanted, robot_options, run, wanted
 from muster.motion.frames import enu_to_flu

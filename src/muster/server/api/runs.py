@@ -34,7 +34,8 @@ class NewRun(Body):
     settings: dict[Name, Any] = Field(
         default={},
         max_length=50,
-        description="`seed`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`; a bridge has its own.",
+        description="`seed`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`; a bridge has its own. "
+        "`accept_partial`: also a plan that was cut short. `starts`: `now` shifts the times of a run of real robots.",
     )
 
 

@@ -7,15 +7,38 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from muster.mission.errors import MusterError
+from muster.running.fleets import declared_claims
+from muster.running.worlds import WORLDS
+
 
 def claims_of(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
     """What a run claims, in words; nothing in a simulated world.
 
     On ROS 1 that is a namespace, whichever the master, for one master goes by many names. On ROS 2 it is a namespace
     of a domain. Over MAVLink it is each line (a UDP port that is listened at, an address that is called, a device),
-    whichever systems are on it: two processes do not share one.
+    whichever systems are on it: two processes do not share one. A fleet of another package declares its claims by
+    `muster.running.fleets.claims`; one that does not is claimed as a whole.
+
+    Raises
+    ------
+    PluginError
+        if a fleet of another package cannot be loaded, or declares what is no list of texts.
     """
-    return frozenset(_CLAIMS[world](settings)) if world in _CLAIMS else frozenset()
+    if world in WORLDS:
+        return frozenset()
+    if world in _CLAIMS:
+        return frozenset(_CLAIMS[world](settings))
+    declared = declared_claims(world, settings)
+    return frozenset({f"fleet {world}"}) if declared is None else declared
+
+
+def claims_as_far_as_known(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
+    """As `claims_of`; the whole fleet where its package cannot be loaded any more."""
+    try:
+        return claims_of(world, settings)
+    except MusterError:
+        return frozenset({f"fleet {world}"})
 
 
 def _ros1(settings: Mapping[str, Any]) -> Iterator[str]:

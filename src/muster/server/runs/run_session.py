@@ -264,8 +264,14 @@ class RunSession:
             self.log_writer.later(partial(self._store.actions.settle, number, outcome, applied_s))
         elif action is not None:  # it could not be written when it was requested
             action = replace(action, outcome=outcome, applied_s=applied_s)
-            self.log_writer.later(partial(self._store.actions.keep, action))
-        self.subscribers.publish_action({"id": number, "outcome": outcome})
+            self.log_writer.later(partial(self._keep, action, asyncio.get_running_loop()))
+        self.subscribers.publish_action({"id": number, "outcome": outcome, "kept": number > 0})
+
+    def _keep(self, action: Action, loop: asyncio.AbstractEventLoop) -> None:
+        """Write an action that only memory held, in the thread of the log's writer, and publish that it is kept."""
+        self._store.actions.keep(action)
+        kept = {"id": action.id, "outcome": action.outcome, "kept": True}
+        loop.call_soon_threadsafe(self.subscribers.publish_action, kept)
 
     def _finish(self) -> None:
         state: RunState = "failed" if self._failed else "cancelled" if self._cancelled else "ended"

@@ -23,12 +23,13 @@ if TYPE_CHECKING:
     from muster.execution import Standing
 
 _PLANNING = {"seed": int, "ignore": list, "planning": dict, "stay": bool, "until_s": float, "traffic": str}
-_REAL = {**_PLANNING, "starts": str}
+_PLAN = {"accept_partial": bool}
+_REAL = {**_PLANNING, **_PLAN, "starts": str}
 _ROS = {"namespace": str, "arrival_m": float, "wait_s": float, "known_only": bool}
 _WORLD = {"dt_s": float, "avoidance": str, "law": str, "noise": dict, "pose": str, "localise": dict}
 SETTINGS: Mapping[str, Mapping[str, type]] = {
-    "kinematic": {**_PLANNING, **_WORLD},
-    "physics": {**_PLANNING, **_WORLD},
+    "kinematic": {**_PLANNING, **_WORLD, **_PLAN},
+    "physics": {**_PLANNING, **_WORLD, **_PLAN},
     "ros1": {
         **_REAL,
         "master": str,

@@ -25,9 +25,11 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
+from muster.running.claim_locks import robots_claimed
 from muster.running.worlds import WORLDS
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
+from muster.server.runs.robot_claims import claims_as_far_as_known
 from muster.server.runs.run_loop import RunLoop, WorldRun
 from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
@@ -35,6 +37,8 @@ from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
 from muster.traffic.names import DEFAULT
 
+_ENDS_WITHIN_S = 30.0
+"""Seconds within which another run of the same robots, which is over, tells them to stand and ends."""
 STRETCH_S, REAL_STRETCH_S = 5.0, 1.0
 """Seconds of mission time a stretch of tracks: of real robots a crash loses what is not yet kept."""
 
@@ -85,6 +89,7 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
     with ExitStack() as stack:
         if real:
             stack.enter_context(alone(Path(begin["lock"]), begin["run"]))
+            stack.enter_context(robots_claimed(_claims_here(begin["world"], begin["settings"]), _ENDS_WITHIN_S))
         os.chdir(folder)
         mission = mission_of(begin["mission"])
         outbox.send({"type": "mission", "mission": _shown(mission)})
@@ -107,6 +112,11 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
                 run_loop.catch_up(log, begin["until_s"])
             outbox.send({"type": "going"})
             run_loop.run()
+
+
+def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
+    """What the run claims on this machine; on ROS 1 the master ends the first of two nodes /muster."""
+    return frozenset() if world == "ros1" else claims_as_far_as_known(world, settings)
 
 
 def _world_run(

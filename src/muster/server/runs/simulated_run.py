@@ -34,6 +34,7 @@ class SimulatedRun:
         noise = Noise(**how.pop("noise", {}))
         how["standing"] = standing_of({"stay": how.pop("stay", False), "until_s": how.pop("until_s", math.inf)})
         how["ignore"] = plan.ignored
+        how.pop("accept_partial", None)  # the plan was accepted
         how["planning"] = checked_options(how.get("planning", {}))
         self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)
         self._quanta = 0

@@ -23,5 +23,13 @@ def number_at(at: datetime) -> int:
 def unsaved_action(who: User, verb: str, data: Mapping[str, Any], run: int, at: datetime) -> Action:
     """An action that is not in the database."""
     return Action(
-        id=number_at(at), at=at, who=who.name, role=who.role, address=who.address, verb=verb, data=data, run=run
+        id=number_at(at),
+        at=at,
+        who=who.name,
+        role=who.role,
+        address=who.address,
+        verb=verb,
+        data=data,
+        run=run,
+        kept=False,
     )

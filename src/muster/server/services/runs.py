@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User
 from muster.mission.errors import MusterError, ParameterError
 from muster.running.worlds import WORLDS
-from muster.server.runs.robot_claims import claims_of
+from muster.server.runs.robot_claims import claims_as_far_as_known, claims_of
 from muster.server.runs.run_session import TOO_LATE, RunSession
 from muster.server.runs.run_settings import require_action, require_speed, require_world
 from muster.server.runs.subscribers import Subscribers
@@ -82,7 +82,8 @@ class Runs:
         ForbiddenError, NotFoundError, ParameterError
             if the user may only watch; there is no such plan; the world, speed or a setting is wrong.
         ConflictError
-            if another run commands some of the robots (`claims_of`), or another request had the key.
+            if another run commands some of the robots (`claims_of`), the plan was cut short and that is not accepted,
+            or another request had the key.
         BusyError
             if the most runs are under way.
         """
@@ -104,7 +105,7 @@ class Runs:
             speed = require_speed(speed)
             if world not in WORLDS and speed != 1.0:
                 raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
-            claims = claims_of(world, settings)
+            claims = await asyncio.to_thread(claims_of, world, settings)  # which may load a package
             self._require_unclaimed(claims)
             if self.under_way + len(self._beginning) >= self._settings.runs:
                 raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
@@ -264,6 +265,8 @@ class Runs:
         request: RequestKey | None,
     ) -> Run:
         entry = self._store.plans.get(plan)
+        if entry.plan.get("cut_short") and not settings.get("accept_partial"):
+            raise ConflictError(f"plan {plan}: planning was cut short; expected a whole plan, or accept_partial: true")
         return self._store.runs.add(
             entry.mission,
             entry.mission_version,
@@ -328,4 +331,4 @@ class Runs:
 
 
 def _claims(run: Run) -> frozenset[str]:
-    return claims_of(run.world, run.settings)
+    return claims_as_far_as_known(run.world, run.settings)

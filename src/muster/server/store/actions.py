@@ -42,7 +42,7 @@ class ActionTable:
         It gets an id now, unless it was written after all.
         """
         assert action.run is not None
-        row = {key: value for key, value in vars(action).items() if key != "id"}
+        row = {key: value for key, value in vars(action).items() if key not in ("id", "kept")}
         with self._database.writing() as connection:
             there = _of_that_time(connection, action.run, action.at)
             write = insert(actions) if there is None else update(actions).where(actions.c.id == there.id)

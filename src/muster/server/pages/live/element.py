@@ -52,7 +52,7 @@ class RunView(Element, component="live.js", esm={"muster-live": "js"}, default_c
         token = event.args.get("token")
         try:
             action = await self._runs.act(self._who, self._run, str(event.args["verb"]), dict(event.args["data"]))
-            told = {"action": action.id, "outcome": action.outcome}
+            told = {"action": action.id, "outcome": action.outcome, "kept": action.kept}
         except MusterError as error:
             told = {"error": words_of(error)}
         except Exception:

@@ -82,6 +82,7 @@ export class LiveView {
     if (what === "states" || what === "entry") this.ground.move();
     if (what === "entry") this.notices.happened(message);
     if (what === "action") this.notices.outcome(message.id, message.outcome, this.team.time);
+    if (what === "action" && message.kept) this.notices.kept(message.id);
     if (what === "entry" && message.kind === "command") this.notices.outcome(message.data.action, message.data.outcome, message.time_s);
     this.waiting ??= setTimeout(() => this.showPanels(), PANELS_MS);
   }

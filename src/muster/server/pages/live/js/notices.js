@@ -13,6 +13,7 @@ export class Notices {
     this.byAction = new Map(); // action id -> notice
     this.outcomes = new Map(); // action id -> outcome, which may come before its id is known
     this.undoable = []; // notices that can be undone, newest last
+    this.unkept = new Map(); // action id -> notice of a command that only the server's memory holds
     this.element = html("ul", { class: "notices", role: "status", "aria-live": "polite", "aria-label": "Commands" });
   }
 
@@ -28,7 +29,7 @@ export class Notices {
   }
 
   // The desk's answer: the action's id and perhaps its outcome already, or why it was refused at once.
-  answer({ token, action, outcome, error }, time) {
+  answer({ token, action, outcome, error, kept }, time) {
     const notice = this.asked.get(token);
     this.asked.delete(token);
     if (!notice) return;
@@ -36,9 +37,23 @@ export class Notices {
       this.settle(notice, error, time);
       return;
     }
+    if (kept === false) this.markUnkept(action, notice);
     const known = outcome || this.outcomes.get(action);
     if (known) this.settle(notice, known, time);
     else this.byAction.set(action, notice);
+  }
+
+  markUnkept(id, notice) {
+    const title = "The database is away: this command is lost if the server ends before the database is back";
+    notice.unkept = html("span", { class: "unkept", title }, "⚠ not kept");
+    notice.state.before(notice.unkept);
+    this.unkept.set(id, notice);
+  }
+
+  // The database is back, and has what was asked for.
+  kept(id) {
+    this.unkept.get(id)?.unkept.remove();
+    this.unkept.delete(id);
   }
 
   // Told twice: by the log, where nothing is missed, and as it becomes known; the first counts.
@@ -64,7 +79,7 @@ export class Notices {
       const change = () => { this.drop(notice); notice.again(); };
       notice.state.after(button("Change it …", change, { class: "again" }));
     }
-    if (done) setTimeout(() => notice.element.remove(), notice.undo ? CAN_BE_UNDONE_MS : STAYS_MS);
+    if (done && !notice.unkept) setTimeout(() => notice.element.remove(), notice.undo ? CAN_BE_UNDONE_MS : STAYS_MS);
   }
 
   // What has happened anyway need not be taken back any more, nor what became of a task that is cancelled or done.
