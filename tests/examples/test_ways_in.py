@@ -11,6 +11,7 @@ import sysconfig
 from pathlib import Path
 
 import pytest
+from tools.docs_check.consoles import elided_lines
 
 import muster
 
@@ -37,9 +38,10 @@ def run():
             capture_output=True,
             encoding="utf-8",
             check=False,
-            env=os.environ | {"PATH": path},
+            env=os.environ | {"PATH": path, "COLUMNS": "80"},
         )
         assert done.returncode == 0, done.stdout + done.stderr
+        assert elided_lines(done.stdout) == []
         return done.stdout
 
     return run
@@ -57,8 +59,14 @@ def plant(tmp_path_factory, run):
 def test_a_researcher_compares_an_allocator_of_her_own(tmp_path):
     code = block("Compare methods")
     (tmp_path / "notebook.py").write_text(code, encoding="utf-8")
-    done = subprocess.run([sys.executable, "notebook.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    narrow = os.environ | {"COLUMNS": "80"}
+    done = subprocess.run(
+        [sys.executable, "notebook.py"], cwd=tmp_path, capture_output=True, text=True, check=False, env=narrow
+    )
     assert done.returncode == 0, done.stderr
+    assert elided_lines(done.stdout) == []
+    assert max(map(len, done.stdout.splitlines())) <= 80
+    assert all(name in done.stdout for name in ("one_after_another", "greedy", "search", "gap_mean"))
     with (tmp_path / "comparison.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     assert {row["allocator"] for row in rows} == {"one_after_another", "greedy", "search"}

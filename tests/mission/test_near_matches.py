@@ -4,7 +4,7 @@ import difflib
 
 import pytest
 
-from muster.mission.near_matches import did_you_mean
+from muster.mission.near_matches import did_you_mean, near_file
 
 IDS = [f"task_{k}" for k in range(20_000)]
 
@@ -47,3 +47,44 @@ def test_many_known_words_cost_no_more_comparisons_than_a_few(monkeypatch):
 
 def test_swapped_letters_are_nearer_than_others():
     assert did_you_mean("cvs", ["csv", "ics"]) == did_you_mean("cvs", ["ics", "csv"]) == "; did you mean 'csv'?"
+
+
+@pytest.mark.parametrize(
+    ("word", "known", "meant"),
+    [
+        ("jobs", ["robots", "tasks", "stations"], "tasks"),
+        ("Vehicles", ["robots", "tasks"], "robots"),
+        ("cbba", ["auction", "consensus-bundle", "combinatorial-auction"], "consensus-bundle"),
+        ("CBBA", ["auction", "consensus-bundle"], "consensus-bundle"),
+        ("depends on", ["prerequisites", "deadline_s"], "prerequisites"),
+        ("time-windows", ["window_s", "tasks"], "window_s"),
+        ("no_fly_zones", ["boundary", "zones"], "zones"),
+        ("minmax", ["total", "max", "makespan"], "max"),
+    ],
+)
+def test_words_of_the_field_mean_what_is_called_otherwise_here(word, known, meant):
+    assert did_you_mean(word, known) == f"; did you mean '{meant}'?"
+
+
+def test_a_word_of_the_field_means_nothing_where_its_meaning_is_not_known():
+    assert did_you_mean("cbba", ["one", "two"]) == ""
+
+
+@pytest.mark.parametrize(
+    ("asked", "there", "near"),
+    [
+        ("mission.yml", ["mission.yaml", "mission.json"], "mission.yaml"),
+        ("mission.yaml", ["mission.json", "other.yaml"], "mission.json"),
+        ("misison.yaml", ["mission.yaml"], "mission.yaml"),
+        ("Harbour.yaml", ["harbour.yaml"], "harbour.yaml"),
+        ("quay.yaml", ["plan.json"], None),
+    ],
+)
+def test_the_nearest_file_is_named(asked, there, near, tmp_path):
+    for name in there:
+        (tmp_path / name).touch()
+    assert near_file(tmp_path / asked) == (f"; did you mean '{tmp_path / near}'?" if near else "")
+
+
+def test_a_folder_that_is_not_there_has_no_near_files(tmp_path):
+    assert near_file(tmp_path / "none" / "mission.yaml") == ""

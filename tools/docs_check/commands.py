@@ -13,6 +13,8 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+COLUMNS, README_COLUMNS = 120, 80
+"""The width of terminals for which pages show output; a newcomer's is that of the README."""
 LIMIT_S = 180.0
 """A command that takes longer fails. It is generous: on a busy machine a command of 20 s may take two minutes."""
 
@@ -37,13 +39,13 @@ def without_remark(command: str) -> str:
     return re.sub(r"\s+#.*", "", command)
 
 
-def run_command(command: str, folder: Path, limit_s: float = LIMIT_S) -> Ran:
+def run_command(command: str, folder: Path, limit_s: float = LIMIT_S, columns: int = COLUMNS) -> Ran:
     """Run a command in a folder, with the environment's programs first on the path and without a terminal."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     variables = {
         **os.environ,
         "PATH": path,
-        "COLUMNS": "120",
+        "COLUMNS": str(columns),
         "XDG_DATA_HOME": str(folder / ".data"),
         "ROOT": str(ROOT),
     }

@@ -23,6 +23,11 @@ def compare_console(shown: list[str], ran: Ran, *, masks: bool) -> str:
     return "\n".join(difflib.unified_diff(want, got, "page", "command", lineterm="", n=1)) or ran.err
 
 
+def elided_lines(printed: str) -> list[str]:
+    """Return the rows of printed tables in which a column of dots stands for figures that did not fit."""
+    return [line for line in printed.splitlines() if re.search(r"\S\s+\.\.\.(?! and )(\s|$)", line)]
+
+
 def _lines(lines: list[str], masks: bool) -> list[str]:
     kept = [line.rstrip() for line in lines if line.strip()]
     return [_TIME.sub("#", line) for line in kept] if masks else kept

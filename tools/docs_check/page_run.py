@@ -21,8 +21,8 @@ from typing import Any
 import yaml
 
 from tools.docs_check import outcomes as o
-from tools.docs_check.commands import ROOT, command_lines, look_up, run_command, without_remark
-from tools.docs_check.consoles import compare_console
+from tools.docs_check.commands import COLUMNS, README_COLUMNS, ROOT, command_lines, look_up, run_command, without_remark
+from tools.docs_check.consoles import compare_console, elided_lines
 from tools.docs_check.measured import load, numbers, unknown_numbers
 from tools.docs_check.outcomes import Outcome
 from tools.docs_check.pages import Item, read_page
@@ -54,6 +54,7 @@ def timed_check(path: Path) -> tuple[float, list[Outcome]]:
 class _PageRun:
     def __init__(self, path: Path, name: str, folder: Path) -> None:
         self._path, self._name, self._folder = path, name, folder
+        self._columns = README_COLUMNS if path.name == "README.md" else COLUMNS
         module = types.ModuleType("__docs__")  # whose name dataclasses look up
         sys.modules[module.__name__] = module
         self._names: dict[str, Any] = module.__dict__
@@ -90,7 +91,7 @@ class _PageRun:
 
     def _setup(self, item: Item, where: str) -> Iterator[Outcome]:
         for command in command_lines(item.text):
-            ran = run_command(command, self._folder)
+            ran = run_command(command, self._folder, columns=self._columns)
             if ran.code:
                 yield Outcome(o.FAILED, "setup", where, f"{command}: exit code {ran.code}\n{ran.out}{ran.err}")
 
@@ -135,11 +136,13 @@ class _PageRun:
         wrong = look_up(command)
         if wrong is not None:
             return Outcome(o.FAILED if wrong else o.LOOKED_UP, "command", where, wrong)
-        ran = run_command(command, self._folder)
+        ran = run_command(command, self._folder, columns=self._columns)
         if ran.code:
             return Outcome(
                 o.FAILED, "command", where, f"{command}\nexit code {ran.code}\n{ran.out[-2000:]}{ran.err[-2000:]}"
             )
+        if elided := self._elided(ran.out):
+            return Outcome(o.FAILED, "command", where, f"{command}\nfigures left out for want of width: {elided[0]}")
         return Outcome(o.RUN, "command", where)
 
     def _stored(self, name: str, command: str, where: str) -> Outcome:
@@ -157,7 +160,7 @@ class _PageRun:
         masks = item.marker("mask") is not None
         for part in re.split(r"^\$ ", item.text, flags=re.MULTILINE)[1:]:
             command, *shown = part.splitlines()
-            ran = run_command(command, self._folder)
+            ran = run_command(command, self._folder, columns=self._columns)
             differs = compare_console(shown, ran, masks=masks)
             yield Outcome(
                 o.FAILED if differs else o.COMPARED, "output", where, f"$ {command}\n{differs}" if differs else ""
@@ -173,7 +176,13 @@ class _PageRun:
         finally:
             os.chdir(before)
             self._printed = out.getvalue()
-        yield Outcome(o.RUN, "block", where)
+        elided = self._elided(self._printed)
+        detail = f"figures left out for want of width: {elided[0]}" if elided else ""
+        yield Outcome(o.FAILED if elided else o.RUN, "block", where, detail)
+
+    def _elided(self, printed: str) -> list[str]:
+        """Return the rows that leave figures out in a newcomer's terminal, which the README is read in."""
+        return elided_lines(printed) if self._columns == README_COLUMNS else []
 
     def _text(self, item: Item, where: str) -> Iterator[Outcome]:
         if item.marker("output") is None:
@@ -219,7 +228,7 @@ class _PageRun:
     def _region(self, item: Item, where: str) -> Iterator[Outcome]:
         kind, _, source = item.markers[0].rest.partition(" ")
         if kind == "by":
-            ran = run_command(source, self._folder)
+            ran = run_command(source, self._folder, columns=self._columns)
             if ran.code:
                 yield Outcome(o.FAILED, "numbers", where, f"{source}: exit code {ran.code}\n{ran.err}")
                 return

@@ -128,6 +128,8 @@ class ServerBackend:
             raise ParameterError(f"plan: {type(plan).__name__}; expected a Plan for a server")
         settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "traffic": traffic, "law": law}
         settings["ignore"] = list(ignore)
+        if plan.cut_short:
+            settings["accept_partial"] = True  # or the verb has refused the plan
         if planning is not None and (replanning := _replanning(planning)):
             settings["planning"] = replanning
         if amounts := {kind: amount for kind, amount in asdict(noise).items() if amount}:

@@ -15,6 +15,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import PLAN_SCHEMA, STOP_TIMES, Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.rules import OBJECTIVES
 from muster.mission.sol_files import is_sol, read_sol
+from muster.mission.swapped import MISSION_AS_PLAN, is_mission
 from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 
@@ -36,6 +37,8 @@ def read_plan(path: str | Path, mission: Mission | None = None) -> Plan:
         raise PlanError(error.findings) from None
     if mission is not None and (file.suffix.lower() == ".sol" or is_sol(text)):
         return read_sol(file, mission)
+    if is_mission(text):
+        raise PlanError([Finding(str(file), None, "schema", '"muster/1"', MISSION_AS_PLAN)])
     try:
         data = json.loads(text)
     except json.JSONDecodeError as error:

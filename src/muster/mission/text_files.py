@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from muster.mission.errors import Finding, MissionError
+from muster.mission.near_matches import near_file
 
 LARGEST_FILE = 32 * 2**20
 """Bytes of a file of another program, and of all files that are uploaded with one mission."""
@@ -34,7 +35,9 @@ def bytes_of(path: Path, most: int = LARGEST_FILE) -> bytes:
         limit = f"{most // 2**20} MiB"
         raise MissionError([Finding(str(path), None, "", f"more than {limit}", f"at most {limit}")])
     except OSError as error:
-        raise MissionError([Finding(str(path), None, "", error.strerror or str(error), "a file to read")]) from None
+        near = near_file(path) if isinstance(error, FileNotFoundError) else ""
+        expected = f"a file to read{near}"
+        raise MissionError([Finding(str(path), None, "", error.strerror or str(error), expected)]) from None
     except ValueError as error:
         raise MissionError([Finding(str(path), None, "", str(error), "a file to read")]) from None
 

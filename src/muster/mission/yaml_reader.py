@@ -20,6 +20,7 @@ from muster.mission.garbage import collector_paused
 from muster.mission.json_reader import JsonPlaces, json_data
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.source import Place, Source
+from muster.mission.swapped import PLAN_AS_MISSION, is_plan
 from muster.mission.text_files import read_text
 from muster.mission.value_types import Fault, Path, shown
 
@@ -62,6 +63,8 @@ def parse_yaml(
     data, source, faults = parse_data(text, path, "a mission: schema, robots, tasks")
     if (foreign := foreign_form(data)) is not None:
         raise MissionError([Finding(str(path), None, "", *foreign)])
+    if is_plan(data):
+        raise MissionError([Finding(str(path), None, "schema", shown(data.get("schema")), PLAN_AS_MISSION)])
     if robots is not None and not data.get("robots"):
         data["robots"] = list(robots(_dimensions(data.get("tasks"))))
     if "schema" not in data:

@@ -12,7 +12,8 @@ from muster.mission.errors import Finding, MissionError, ParameterError
 from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
+from muster.mission.near_matches import did_you_mean, near_file
+from muster.mission.swapped import PLAN_AS_MISSION
 
 if TYPE_CHECKING:
     from muster.exchange.flight_missions import ReadFlights
@@ -102,6 +103,8 @@ def load_noted(
         from muster.mission.thesis_csv import read_csv
 
         return Noted(read_csv(path, Path(str(robots)), None if suitability is None else Path(suitability)))
+    if suffix == ".sol":
+        raise MissionError([Finding(str(path), None, "", "a plan (.sol)", PLAN_AS_MISSION)])
     fates = LineFates()
     if form == TSPLIB:
         from muster.mission.tsplib import read_tsplib
@@ -181,7 +184,8 @@ def _found(path_or_name: str | Path) -> Path:
     if path.is_file() or (shipped is None and (path.exists() or named_as_file)):
         return path
     if shipped is None:
-        expected = f"a file, or the name of a shipped mission{did_you_mean(str(path_or_name), mission_names())}"
+        near = did_you_mean(str(path_or_name), mission_names()) or near_file(path)
+        expected = f"a file, or the name of a shipped mission{near}"
         raise MissionError([Finding(str(path_or_name), None, "", "no such file or mission", expected)])
     return shipped
 
