@@ -68,7 +68,8 @@ class Layer:
     """Features that have their headings in common: a table, a sheet, a folder.
 
     `name` is that of the sheet, folder or layer, if there is one; `headings` are in the order of the file;
-    `passed_over` is what has no place in a mission; `notes` are what else is to be said of it.
+    `passed_over` is what has no place in a mission; `notes` are what else is to be said of it; `around` are the names
+    of the folders and of the document in which the layer is, the innermost first.
     """
 
     file: str
@@ -77,6 +78,7 @@ class Layer:
     features: tuple[Feature, ...]
     passed_over: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    around: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -97,10 +99,10 @@ def with_name(where: str, values: Mapping[str, object]) -> str:
     return f"{where} ({name})".strip() if name else where
 
 
-def layer_of(file: str, name: str, features: list[Feature]) -> Layer:
+def layer_of(file: str, name: str, features: list[Feature], around: tuple[str, ...] = ()) -> Layer:
     """A layer whose headings are those of its features."""
     headings = dict.fromkeys(heading for feature in features for heading in feature.values)
-    return Layer(file, name, tuple(headings), tuple(features))
+    return Layer(file, name, tuple(headings), tuple(features), around=around)
 
 
 def refused(file: str, line: int | None, field: str, value: object, expected: str) -> MissionError:

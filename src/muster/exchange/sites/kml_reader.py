@@ -40,25 +40,31 @@ def read_kmz_layers(path: Path) -> Sequence[Layer]:
 
 def _layers(data: bytes, file: str) -> list[Layer]:
     root = parse_xml(data, file, "kml", _WHAT)
-    groups: dict[str, list[Feature]] = {}
+    groups: dict[tuple[str, ...], list[Feature]] = {}
     lost = [element for element in root.within() if element.name in _PASSED_OVER]
-    for folder, mark in _placemarks(root, ""):
+    for folder, around, mark in _placemarks(root, "", ()):
         features = list(_Placemark(mark, folder, file).features())
-        groups.setdefault(folder, []).extend(features)
+        groups.setdefault((folder, *around), []).extend(features)
         if not features:
             lost.append(mark)
-    layers = [layer_of(file, folder, features) for folder, features in groups.items() if features]
+    layers = [layer_of(file, names[0], features, names[1:]) for names, features in groups.items() if features]
     return [*layers, Layer(file, "", (), (), tuple(map(titled, lost)))] if lost else layers
 
 
-def _placemarks(element: Element, folder: str) -> Iterator[tuple[str, Element]]:
-    """All placemarks, each with the name of the innermost folder in which it is."""
+def _placemarks(
+    element: Element, folder: str, around: tuple[str, ...]
+) -> Iterator[tuple[str, tuple[str, ...], Element]]:
+    """All placemarks, each with the name of the innermost folder in which it is, and of what that is in."""
     for child in element.children:
         if child.name == "Placemark":
-            yield folder, child
+            yield folder, around, child
         elif child.name in ("Document", "Folder"):
-            name = " ".join(child.told("name").split()) if child.name == "Folder" else ""
-            yield from _placemarks(child, name or folder)
+            name = " ".join(child.told("name").split())
+            if child.name == "Document":
+                yield from _placemarks(child, folder, (name, *around) if name else around)
+            else:
+                outer = (folder, *around) if folder and name else around
+                yield from _placemarks(child, name or folder, outer)
 
 
 class _Placemark:

@@ -16,14 +16,14 @@ _SUBJECT = re.compile(r"^(task|robot|panel|point|site|zone|area|waypoint|target|
 
 def names_of(layer: Layer) -> list[str]:
     """Return the names by which a layer may be called."""
-    return _names_in(layer.name, layer.file)
+    return _names_in((layer.name, *layer.around), layer.file)
 
 
 @lru_cache(maxsize=64)
-def _names_in(name: str, file: str) -> list[str]:
+def _names_in(names: tuple[str, ...], file: str) -> list[str]:
     """The names by which a layer may be called; asked for each of its features."""
     path = PurePath(file)
-    return [told for told in (name, path.stem, path.name) if told]
+    return [told for told in (*names, path.stem, path.name) if told]
 
 
 def labels_of(layer: Layer, feature: Feature) -> list[str]:
