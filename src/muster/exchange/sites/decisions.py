@@ -16,6 +16,7 @@ from pathlib import PurePath
 
 from muster.exchange.sites import vocabulary as words
 from muster.exchange.sites.features import Feature, Layer
+from muster.exchange.sites.key_words import TYPES
 from muster.exchange.sites.keys import AT_POINTS, CIRCLE, ROLE, SKIP, ZONE_RADIUS
 from muster.exchange.sites.labels import labels_of, names_of, quoted
 from muster.exchange.sites.vocabulary import is_only, meanings
@@ -38,7 +39,7 @@ ROLE_OF = {
     words.LANE: "lane",
 }
 KINDS = (words.AIR, words.GROUND)
-_CLASSES = (ROLE.name, *ROLE.names, "type", "restriction")
+_CLASSES = (ROLE.name, *ROLE.names, "type", "restriction", *TYPES)
 """Headings whose values classify a feature, besides its name."""
 _CLASSES_OF_AREAS = (*_CLASSES, "category", "class", "status", "usage")
 """Of points, such as orders, a status may be that they are closed, too."""
