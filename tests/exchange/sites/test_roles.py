@@ -69,6 +69,15 @@ def test_words_say_how_robots_move(tmp_path, by, name, kind):
     assert one.kind == kind
 
 
+@pytest.mark.parametrize("heading", ["Model", "model", "Modell", "Platform", "型号"])
+def test_a_model_says_how_a_robot_moves_beside_its_type(tmp_path, heading):
+    places, team = tmp_path / "site.csv", tmp_path / "team.csv"
+    places.write_text(writers.CSV, encoding="utf-8")
+    team.write_text(f"id,type,{heading},lat,lon\nr1,scout,Mavic 3,47.3768,8.5416\n", encoding="utf-8")
+    (one,) = read_site(places, robots=team).mission.robots
+    assert (one.type, one.kind) == ("scout", "air")
+
+
 def test_a_column_is_stronger_than_words_and_a_flag_than_both(tmp_path):
     places, drones = tmp_path / "site.csv", tmp_path / "drones.csv"
     places.write_text(writers.CSV, encoding="utf-8")

@@ -36,11 +36,11 @@ def labels_of(layer: Layer, feature: Feature) -> list[str]:
 def _label_headings(headings: tuple[str, ...]) -> tuple[str, ...]:
     """Return the headings of names and ids among others; asked for each feature of a layer."""
     known = {name for key in IDENTITY for name in (key.name, *key.names)}
-    by_name = [heading for heading in headings if _bare(heading) in known]
-    return tuple(sorted(by_name, key=lambda heading: _bare(heading) != "name"))
+    by_name = [heading for heading in headings if bare(heading) in known]
+    return tuple(sorted(by_name, key=lambda heading: bare(heading) != "name"))
 
 
-def _bare(heading: str) -> str:
+def bare(heading: str) -> str:
     """Return a heading as the names of keys are: without the word that says of what it is, and marks."""
     return re.sub(r"[\W_]", "", _SUBJECT.sub("", heading.casefold()))
 
