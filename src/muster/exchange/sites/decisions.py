@@ -39,7 +39,7 @@ ROLE_OF = {
     words.LANE: "lane",
 }
 KINDS = (words.AIR, words.GROUND)
-_CLASSES = (ROLE.name, *ROLE.names, "type", "restriction", *TYPES)
+_CLASSES = (ROLE.name, *ROLE.names, "type", "restriction", "symbol", *TYPES)
 """Headings whose values classify a feature, besides its name."""
 _CLASSES_OF_AREAS = (*_CLASSES, "category", "class", "status", "usage")
 """Of points, such as orders, a status may be that they are closed, too."""

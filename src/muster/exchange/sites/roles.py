@@ -117,6 +117,8 @@ def stated_role(word: str) -> str | None:
     compact = re.sub("[-_ ]", "", word.casefold()).removesuffix("s")
     if compact in (*ROLES, SKIP):
         return compact
+    if compact in ("ignore", "nothing", "none"):
+        return SKIP
     said = meanings(word)
     if words.CLOSED in said:
         return "zone"
