@@ -69,6 +69,15 @@ def test_words_say_how_robots_move(tmp_path, by, name, kind):
     assert one.kind == kind
 
 
+@pytest.mark.parametrize("heading", ["Model", "model", "Modell", "Platform", "型号"])
+def test_a_model_says_how_a_robot_moves_beside_its_type(tmp_path, heading):
+    places, team = tmp_path / "site.csv", tmp_path / "team.csv"
+    places.write_text(writers.CSV, encoding="utf-8")
+    team.write_text(f"id,type,{heading},lat,lon\nr1,scout,Mavic 3,47.3768,8.5416\n", encoding="utf-8")
+    (one,) = read_site(places, robots=team).mission.robots
+    assert (one.type, one.kind) == ("scout", "air")
+
+
 def test_a_column_is_stronger_than_words_and_a_flag_than_both(tmp_path):
     places, drones = tmp_path / "site.csv", tmp_path / "drones.csv"
     places.write_text(writers.CSV, encoding="utf-8")
@@ -155,6 +164,44 @@ def test_the_name_of_a_file_makes_no_robots_of_places_beside_areas(tmp_path, tea
     assert finding.value.startswith(f"undecided: the file {file} says ")
 
 
+RING = " ".join(f"{lon},{lat}" for lon, lat in [*FENCE, FENCE[0]])
+POLYGON = (
+    f"<Polygon><outerBoundaryIs><LinearRing><coordinates>{RING}</coordinates></LinearRing></outerBoundaryIs></Polygon>"
+)
+SPOT = "<Point><coordinates>8.5417,47.3775</coordinates></Point>"
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("<name>No-fly zones</name>", ""),
+        ("<Folder><name>Closed areas: danger</name><Folder><name>Group 1</name>", "</Folder></Folder>"),
+        ("<Folder><name>Flugverbot</name><Folder>", "</Folder></Folder>"),
+    ],
+)
+def test_what_is_in_a_closed_folder_is_closed(tmp_path, team, before, after):
+    file = tmp_path / "site.kml"
+    file.write_text(writers.kml(before, writers.placemark("Hospital", POLYGON), after), encoding="utf-8")
+    assert len(read_site(file, robots=team).mission.map.zones) == 1
+    file.write_text(writers.kml(before, writers.placemark("Helipad 3", SPOT), after), encoding="utf-8")
+    with pytest.raises(MissionError, match="a closed area at a point, without a radius: by the word"):
+        read_site(file, robots=team)
+
+
+def test_a_document_for_drones_has_places_to_visit(tmp_path, team):
+    file = tmp_path / "site.kml"
+    file.write_text(writers.kml("<name>Drone inspection</name>", writers.placemark("Dam", SPOT)), encoding="utf-8")
+    assert [task.id for task in read_site(file, robots=team).mission.tasks] == ["Dam"]
+
+
+@pytest.mark.parametrize("key", ["layer", "Layer", "folder", "group"])
+def test_what_was_in_a_layer_of_a_drawing_is_of_its_kind(tmp_path, team, key):
+    found = read(tmp_path, area(name="x", **{key: "NOFLY_ZONES"}), *points(), team=team)
+    assert len(found.mission.map.zones) == 1
+    (finding,) = undecided(tmp_path, feature("Point", [8.5417, 47.3775], name="x", **{key: "NOFLY_ZONES"}), team=team)
+    assert "without a radius" in finding.value
+
+
 @pytest.mark.parametrize("name", names.listed(names.PLACES))
 def test_points_of_other_names_are_tasks_and_that_is_told(tmp_path, team, name):
     found = read(tmp_path, feature("Point", [8.5417, 47.3775], name=name), team=team)
@@ -209,6 +256,9 @@ def test_what_is_built_or_done_may_be_visited(tmp_path, team, properties):
         {"kind": "zone"},
         {"type": "Restricted"},
         {"restriction": "PROHIBITED"},
+        {"Typ": "Sperrgebiet"},
+        {"тип": "запретная зона"},
+        {"类型": "禁飞区"},
         {"nofly": True},
         {"no_fly": "yes"},
         {"forbidden_to": "air"},

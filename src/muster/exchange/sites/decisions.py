@@ -16,6 +16,7 @@ from pathlib import PurePath
 
 from muster.exchange.sites import vocabulary as words
 from muster.exchange.sites.features import Feature, Layer
+from muster.exchange.sites.key_words import TYPES
 from muster.exchange.sites.keys import AT_POINTS, CIRCLE, ROLE, SKIP, ZONE_RADIUS
 from muster.exchange.sites.labels import labels_of, names_of, quoted
 from muster.exchange.sites.vocabulary import is_only, meanings
@@ -38,10 +39,12 @@ ROLE_OF = {
     words.LANE: "lane",
 }
 KINDS = (words.AIR, words.GROUND)
-_CLASSES = (ROLE.name, *ROLE.names, "type", "restriction")
+_CLASSES = (ROLE.name, *ROLE.names, "type", "restriction", "symbol", *TYPES)
 """Headings whose values classify a feature, besides its name."""
 _CLASSES_OF_AREAS = (*_CLASSES, "category", "class", "status", "usage")
 """Of points, such as orders, a status may be that they are closed, too."""
+_LAYERS = ("layer", "folder", "group")
+"""Headings under which programs write in which layer of a drawing a feature was."""
 _NO_ROBOTS = (words.TASK, words.STATION, words.SURVEY, words.BOUNDARY)
 """What in the name of a layer or file makes a word for robots beside it say nothing of its points."""
 _YES = ("yes", "true", "1", "y", "on")
@@ -104,8 +107,10 @@ class Surroundings:
 def of_point(surroundings: Surroundings, feature: Feature) -> Decision:
     """Return what a point is: a task, unless a word says other; never a task where a word says that it is closed."""
     layer = surroundings.layer
-    around = [(f"the {what} {name}", meanings(name)) for what, name in _around(layer)]
+    around = [(f"the {what} {name}", meanings(name)) for what, name in _around(layer, feature)]
     for where, said in around:
+        if where.startswith("the folder"):
+            continue  # a mission for drones has places to visit in it
         of_robots = any(meaning in said for meaning in (words.ROBOT, *KINDS))
         if of_robots and words.CLOSED not in said and words.HOME not in said:
             word = next(said[meaning] for meaning in (words.ROBOT, *KINDS) if meaning in said)
@@ -162,7 +167,7 @@ def of_shape(surroundings: Surroundings, feature: Feature, shape: str) -> Decisi
     closed = _closed(layer, feature)
     if closed is not None:
         return Decision("zone", closed)
-    levels = [*(("name", name) for name in labels_of(layer, feature)), *_around(layer)]
+    levels = [*(("name", name) for name in labels_of(layer, feature)), *_around(layer, feature)]
     found: Decision | None = None
     for what, name in levels:
         here = _of_words(feature, shape, what, name)
@@ -177,7 +182,7 @@ def of_shape(surroundings: Surroundings, feature: Feature, shape: str) -> Decisi
             continue
         if here.role is None:
             return here
-        if here.role == "survey" and what == "file" and surroundings.has_bounds:
+        if here.role == "survey" and what in ("folder", "file") and surroundings.has_bounds:
             told = f"survey {here.reason}, whose other areas are none to survey"
             return Decision(None, told, _choices(shape))
         found = here
@@ -269,6 +274,9 @@ def _is_radius(heading: str) -> bool:
     return re.sub(r"\W*[(\[].*|[\W_]", "", heading.casefold()) in known
 
 
-def _around(layer: Layer) -> Iterable[tuple[str, str]]:
-    """Return the names of the layer and the file, each with what it is the name of."""
-    return [pair for pair in (("layer", layer.name), ("file", PurePath(layer.file).stem)) if pair[1]]
+def _around(layer: Layer, feature: Feature) -> Iterable[tuple[str, str]]:
+    """Return the names of what a feature is in, from the innermost to the file, each with what it is the name of."""
+    values = {heading.strip().casefold(): value for heading, value in feature.values.items()}
+    own = [("layer", value) for key in _LAYERS if isinstance(value := values.get(key), str)]
+    around = [("folder", name) for name in layer.around]
+    return [pair for pair in (*own, ("layer", layer.name), *around, ("file", PurePath(layer.file).stem)) if pair[1]]

@@ -82,7 +82,8 @@ class Layer:
 
     `name` is that of the sheet, folder or layer, if there is one; `headings` are in the order of the file;
     `passed_over` is what has no place in a mission; `notes` are what else is to be said of it. `document` is the file
-    of which the layer is; a reader of an installed package may leave it out.
+    of which the layer is; a reader of an installed package may leave it out. `around` are the names of the folders and
+    of the document in which the layer is, the innermost first.
     """
 
     file: str
@@ -92,6 +93,7 @@ class Layer:
     passed_over: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     document: Document | None = field(default=None, compare=False, repr=False)
+    around: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -112,10 +114,12 @@ def with_name(where: str, values: Mapping[str, object]) -> str:
     return f"{where} ({name})".strip() if name else where
 
 
-def layer_of(file: str, name: str, features: list[Feature], document: Document | None = None) -> Layer:
+def layer_of(
+    file: str, name: str, features: list[Feature], document: Document | None = None, around: tuple[str, ...] = ()
+) -> Layer:
     """A layer whose headings are those of its features."""
     headings = dict.fromkeys(heading for feature in features for heading in feature.values)
-    return Layer(file, name, tuple(headings), tuple(features), document=document)
+    return Layer(file, name, tuple(headings), tuple(features), document=document, around=around)
 
 
 def refused(file: str, line: int | None, field: str, value: object, expected: str) -> MissionError:

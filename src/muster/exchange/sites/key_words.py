@@ -22,6 +22,12 @@ _RANGE = """
     rekkevidde räckvidd rackvidd rækkevidde menzil дальность дальністьпольоту дальність εμβέλεια 航程 航続距離 항속거리
     المدى برد טווח
 """
+_TYPES = """
+    typ art tipo soort rodzaj druh tip tür тип τύπος نوع סוג प्रकार 类型 類型 種類 種別 유형 종류
+"""
+_MODELS = """
+    modell modele modèle modelo modello модель модел μοντέλο طراز مدل דגם मॉडल 型号 型號 機種 모델 기종
+"""
 
 
 def _words(text: str) -> tuple[str, ...]:
@@ -29,5 +35,6 @@ def _words(text: str) -> tuple[str, ...]:
 
 
 NAMES, ENDURANCE, RANGE = _words(_NAMES), _words(_ENDURANCE), _words(_RANGE)
+TYPES, MODELS = _words(_TYPES), _words(_MODELS)
 BATTERY = _words(_BATTERY)
 """Of what may be a time, a length, or neither."""

@@ -180,7 +180,7 @@ _TASK = (
 )
 _ROBOT = (
     SiteKey("id", cells.text, names=(*IDENTITY[0].names, "robot", "callsign")),
-    SiteKey("type", cells.text, names=("model", "class")),
+    SiteKey("type", cells.text, names=("model", "class", *words.TYPES, *words.MODELS)),
     SiteKey("moves", _lower, names=("domain",)),
     SiteKey("speed_mps", partial(_number, "speed"), "speed", ("speed", "maxspeed", "velocity", "cruisespeed")),
     SiteKey("work_capacity", cells.limit),

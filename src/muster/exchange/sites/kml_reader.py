@@ -24,28 +24,33 @@ _HEIGHTS = {"relativeToGround": True, "absolute": False}
 def kml_layers(root: Element, file: str, others: Sequence[str] = ()) -> list[Layer]:
     """The folders of a document; `others` are the files beside it in its archive."""
     document = XmlDocument(root.take(), others)
-    groups: dict[str, list[Feature]] = {}
+    groups: dict[tuple[str, ...], list[Feature]] = {}
     lost = [element for element in root.within() if element.name in _PASSED_OVER]
-    for folder, mark in placemarks(root, ""):
+    for folder, around, mark in placemarks(root):
         features = list(Placemark(mark, folder, file).features())
-        groups.setdefault(folder, []).extend(features)
+        groups.setdefault((folder, *around), []).extend(features)
         if not features:
             lost.append(mark)
     for element in lost:
         element.fate, element.whole = passed_over(_WITHOUT_SHAPE, noted=True), None
-    layers = [layer_of(file, folder, features, document) for folder, features in groups.items() if features]
+    layers = [layer_of(file, names[0], features, document, names[1:]) for names, features in groups.items() if features]
     return [*layers, Layer(file, "", (), (), tuple(map(titled, lost)), document=document)] if lost else layers
 
 
-def placemarks(element: Element, folder: str) -> Iterator[tuple[str, Element]]:
-    """All placemarks, each with the name of the innermost folder in which it is."""
+def placemarks(
+    element: Element, folder: str = "", around: tuple[str, ...] = ()
+) -> Iterator[tuple[str, tuple[str, ...], Element]]:
+    """All placemarks, each with the name of the innermost folder in which it is, and of what that is in."""
     for child in element.children:
         if child.name == "Placemark":
-            yield folder, child.take()
+            yield folder, around, child.take()
         elif child.name in ("Document", "Folder"):
-            child.take()
-            name = " ".join(child.told("name").split()) if child.name == "Folder" else ""
-            yield from placemarks(child, name or folder)
+            name = " ".join(child.take().told("name").split())
+            if child.name == "Document":
+                yield from placemarks(child, folder, (name, *around) if name else around)
+            else:
+                outer = (folder, *around) if folder and name else around
+                yield from placemarks(child, name or folder, outer)
 
 
 class Placemark:

@@ -16,14 +16,14 @@ _SUBJECT = re.compile(r"^(task|robot|panel|point|site|zone|area|waypoint|target|
 
 def names_of(layer: Layer) -> list[str]:
     """Return the names by which a layer may be called."""
-    return _names_in(layer.name, layer.file)
+    return _names_in((layer.name, *layer.around), layer.file)
 
 
 @lru_cache(maxsize=64)
-def _names_in(name: str, file: str) -> list[str]:
+def _names_in(names: tuple[str, ...], file: str) -> list[str]:
     """The names by which a layer may be called; asked for each of its features."""
     path = PurePath(file)
-    return [told for told in (name, path.stem, path.name) if told]
+    return [told for told in (*names, path.stem, path.name) if told]
 
 
 def labels_of(layer: Layer, feature: Feature) -> list[str]:
@@ -36,11 +36,11 @@ def labels_of(layer: Layer, feature: Feature) -> list[str]:
 def _label_headings(headings: tuple[str, ...]) -> tuple[str, ...]:
     """Return the headings of names and ids among others; asked for each feature of a layer."""
     known = {name for key in IDENTITY for name in (key.name, *key.names)}
-    by_name = [heading for heading in headings if _bare(heading) in known]
-    return tuple(sorted(by_name, key=lambda heading: _bare(heading) != "name"))
+    by_name = [heading for heading in headings if bare(heading) in known]
+    return tuple(sorted(by_name, key=lambda heading: bare(heading) != "name"))
 
 
-def _bare(heading: str) -> str:
+def bare(heading: str) -> str:
     """Return a heading as the names of keys are: without the word that says of what it is, and marks."""
     return re.sub(r"[\W_]", "", _SUBJECT.sub("", heading.casefold()))
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import PurePath
 
 from muster.exchange.sites.decisions import BY
 from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Layer
-from muster.exchange.sites.labels import labels_of, names_of
+from muster.exchange.sites.key_words import MODELS, TYPES
+from muster.exchange.sites.labels import bare, labels_of, names_of
 from muster.exchange.sites.roles import Roles, role_word
 from muster.exchange.sites.vocabulary import AIR, GROUND, meanings, moves
 
@@ -45,12 +47,17 @@ def _by_words(entry: Entry, layer: Layer) -> str | None:
     return None
 
 
+@lru_cache(maxsize=1024)
+def _is_type(heading: str) -> bool:
+    """Return whether a heading is one of types or models, of which a table may have several."""
+    return bare(heading) in ("type", "model", "class", "category", "platform", "airframe", *TYPES, *MODELS)
+
+
 def _texts(entry: Entry, layer: Layer) -> Iterator[str]:
-    for key in ("type", "name", "id"):
+    values = entry.feature.values
+    yield from (value for heading, value in values.items() if _is_type(heading) and isinstance(value, str))
+    for key in ("type", "name", "id", "kinematics"):
         if isinstance(value := entry.values.get(key), str):
             yield value
-    kinematics = entry.values.get("kinematics")
-    if isinstance(kinematics, str):
-        yield kinematics
     yield layer.name
     yield PurePath(layer.file).stem

@@ -46,7 +46,7 @@ class Roles:
         """Return the roles that a user gives, by names; raises ParameterError for what is no role."""
         found, kinds = {}, {}
         for name, word in given.items():
-            role = stated_role(word)
+            role = SKIP if word.strip().casefold() in ("ignore", "nothing", "none") else stated_role(word)
             if role is None:
                 known = (*ROLES, SKIP, *KINDS)
                 hint = did_you_mean(word, known)
