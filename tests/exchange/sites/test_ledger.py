@@ -1,6 +1,8 @@
 """The ledger of a site: each element of its files is read or passed over, and what is read makes a difference."""
 
 import json
+import sqlite3
+from contextlib import closing
 
 import pytest
 import shapely
@@ -41,6 +43,7 @@ MIXED = writers.geojson(
     writers.area(name="hall", height=12, priority=3, duration="10 min", **{"@id": "way/1"}),
     writers.feature("LineString", [[8.5416, 47.3768], [8.5417, 47.377, 9]], name="lane", floor_m=3, width_m=2),
     name="site",
+    bbox=[8, 47, 9, 48],
     made_by={"program": "x", "versions": [{"major": 1}]},
 )
 KML = writers.kml(
@@ -78,6 +81,9 @@ def write(folder, kind):
     else:
         layer = [(shapely.Point(lon, lat), {"name": name, "colour": "red"}) for name, lat, lon in writers.TASKS]
         writers.write_geopackage(file, {"tasks": layer, "fences": [(shapely.Polygon(writers.FENCE), {"duration": 3})]})
+        with closing(sqlite3.connect(file)) as database, database:
+            database.execute('CREATE TABLE "of ""others" (a INTEGER PRIMARY KEY, b TEXT, c BLOB)')
+            database.executemany('INSERT INTO "of ""others" (b) VALUES (?)', [("x",), (None,)])
     return file
 
 
