@@ -134,6 +134,32 @@ def test_heights_that_are_left_out_are_passed_over(tmp_path, robots):
     assert lost["alt: heights are left out, as some places have none or --flat says so"] == 1
 
 
+@pytest.mark.parametrize(
+    ("cells", "read"),
+    [
+        ({"lat": 47.377, "lon": 8.5417, "x": 3, "y": 4}, {"lat", "lon"}),
+        ({"lat_lon": "47.377, 8.5417", "lat": 47.37, "lon": 8.54}, {"lat_lon"}),
+        ({"lat": 47.377, "lon": 8.5417, "alt": 440, "z": 30}, {"lat", "lon", "z"}),
+        ({"position": "3 4", "x": 5, "y": 6}, {"position"}),
+        ({"x": 5, "y": 6, "lat": 47.377}, {"x", "y"}),
+    ],
+)
+def test_a_place_that_another_is_stronger_than_is_passed_over(cells, read, tmp_path):
+    """What is read moves the task; what is passed over does not."""
+    (tmp_path / "robots.csv").write_text("id,lat,lon,z\nr_0,47.3768,8.5416,0\n", encoding="utf-8")
+
+    def read_cells(**cells):
+        file = tmp_path / "site.csv"
+        file.write_text(f"name;{';'.join(cells)}\na;{';'.join(map(str, cells.values()))}\n", encoding="utf-8")
+        found = read_site(file, robots=tmp_path / "robots.csv", origin=ORIGIN)
+        return found.mission.tasks[0].position, rows_of(found.ledger, file, "read")
+
+    place, rows = read_cells(**cells)
+    assert {key for key in cells if f"{key}: {key}" in rows} == read
+    for key in cells.keys() - read:
+        assert read_cells(**{name: value for name, value in cells.items() if name != key})[0] == place
+
+
 def test_a_member_that_stands_twice_is_named(tmp_path, robots):
     file = tmp_path / "site.geojson"
     point = '{"type":"Point","coordinates":[8.5417,47.377]}'
