@@ -88,6 +88,7 @@ def database_columns(path):
         tables = database.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
         for (table,) in tables:
             if not table.startswith(("gpkg_", "rtree_", "sqlite_")):
-                rows = database.execute(f'SELECT * FROM "{table}"').fetchall()
+                quoted = table.replace('"', '""')
+                rows = database.execute(f'SELECT * FROM "{quoted}"').fetchall()
                 count += sum(value is not None for row in rows for value in row)
     return count

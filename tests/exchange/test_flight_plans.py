@@ -179,7 +179,8 @@ def test_speeds_of_climb_and_descent_are_read(tmp_path):
     [
         ((7, 3), "params[0]: 7; expected one of 0, 1, 2, 3 (DO_CHANGE_SPEED kind of speed)"),
         ((1, 0), "params[1]: 0; expected metres a second above 0"),
-        ((1, -1, 60), "params[2]: 60; expected a speed in metres a second, not a throttle"),
+        ((1, -1, 60), "params[2]: 60; expected -1: a speed in metres a second, not a throttle"),
+        ((1, 3, 60), "params[2]: 60; expected -1: a speed"),
         ((1, 3, -1, 1), "params[3]: 1; expected 0: speeds in m/s"),
     ],
 )

@@ -213,14 +213,14 @@ def _change_speed(flight: Flight, command: Command) -> None:
         raise command.wrong(0, kind, f"one of {', '.join(map(str, known))}")
     if command.param(3, "whether the speed is relative") not in (0, None):
         raise command.wrong(3, command.params[3], "0: speeds in m/s, not relative ones")
+    if command.param(2, "no throttle") not in (-1, 0, None):
+        raise command.wrong(2, command.params[2], "-1: a speed in metres a second, not a throttle")
     of = flight.climbs if kind in (qgc.CLIMB_SPEED, qgc.DESCENT_SPEED) else flight.speeds
     speed = command.param(1, "a speed: the slowest of the flight is taken")
     if is_number(speed) and speed > 0:
         of.append(float(speed))
     elif speed not in (-1, -2, None):
         raise command.wrong(1, speed, "metres a second above 0, or -1 for no change")
-    elif is_number(command.params[2]) and command.params[2] > 0:
-        raise command.wrong(2, command.params[2], "a speed in metres a second, not a throttle")
 
 
 def _unroll(flight: Flight, commands: Sequence[Command], surveys: Mapping[int, object]) -> None:

@@ -38,6 +38,8 @@ def passed_over(because: str, *, minor: bool = False, noted: bool = False) -> Fa
     return Fate("passed over", because, minor, noted)
 
 
+MOST_KINDS = 2_000
+_OTHERS = "other kinds"
 _LONGEST = 60
 UNKNOWN = passed_over("has no meaning here")
 EMPTY = passed_over("is empty", minor=True)
@@ -150,11 +152,15 @@ class LedgerBook:
         self._first: dict[tuple[str, Fate], str] = {}
 
     def add(self, kind: str, fate: Fate, where: str = "", count: int = 1) -> None:
-        """Count elements of a kind, of which the first is at `where`."""
+        """Count elements of a kind, of which the first is at `where`.
+
+        A file may have any number of kinds: those beyond `MOST_KINDS` are counted together.
+        """
         key = kind, fate
+        if key not in self._counts and len(self._counts) >= MOST_KINDS:
+            key = _OTHERS, fate
         self._counts[key] += count
-        if key not in self._first:
-            self._first[key] = where
+        self._first.setdefault(key, where)
 
     def ledger(self) -> Ledger:
         """Return what was gathered."""

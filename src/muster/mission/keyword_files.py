@@ -108,50 +108,64 @@ def read_keyword_file(path: FilePath, what: str = "TSPLIB", fates: LineFates | N
     MissionError
         if the file cannot be read, or a line is neither a keyword with its value, nor a section's title or row.
     """
-    head: dict[str, tuple[int, str]] = {}
-    sections: dict[str, list[Row]] = {}
-    titles: dict[str, int] = {}
-    rows: list[Row] | None = None
-    title_of_rows = ""
-    fates, ended = fates or LineFates(), False
+    reading = _Reading(path, what, fates or LineFates())
     for line, text in enumerate(read_text(path).splitlines(), 1):
-        words = text.split()
-        if not words:
-            continue
-        if ended or words[0].startswith(REMARKS):
-            fates.say(line, "line" if ended else "remark", _AT_END if ended else _A_TEXT)
-            continue
-        if words == ["EOF"]:
-            ended = True
-            fates.say(line, "EOF")
-            continue
-        is_text = any(text.lstrip().upper().startswith(keyword) for keyword in _TEXTS)
-        text = text if is_text else without_remark(text)
-        words = text.split()
-        title = text.strip().rstrip(" :").upper()
-        if title.endswith(_END) and len(title.split()) == 1:
-            if title in titles:
-                raise _refusal(path, line, title, "for the second time", "each section once")
-            titles[title] = line
-            title_of_rows = title
-            fates.say(line, title, _UNREAD)
-            rows = sections[title] = []
+        if text.strip():
+            reading.read(line, text)
+    return KeywordFile(path, reading.head, reading.sections, reading.titles, reading.fates)
+
+
+class _Reading:
+    """Reads the lines of one file."""
+
+    def __init__(self, path: FilePath, what: str, fates: LineFates) -> None:
+        self._path, self._what, self.fates = path, what, fates
+        self.head: dict[str, tuple[int, str]] = {}
+        self.sections: dict[str, list[Row]] = {}
+        self.titles: dict[str, int] = {}
+        self._title = ""
+        self._ended = False
+
+    def read(self, line: int, text: str) -> None:
+        """Read a line that is not blank."""
+        if self._ended or text.lstrip().startswith(REMARKS):
+            self.fates.say(line, "line" if self._ended else "remark", _AT_END if self._ended else _A_TEXT)
+            return
+        text = text.strip() if text.lstrip().upper().startswith(_TEXTS) else without_remark(text).strip()
+        title = text.rstrip(" :").upper()
+        if text == "EOF":
+            self._ended = True
+            self.fates.say(line, "EOF")
+        elif title.endswith(_END) and len(title.split()) == 1:
+            self._begin(line, title)
         elif ":" in text:
-            name, _, value = text.partition(":")
-            keyword = name.strip().upper()
-            if keyword in head and keyword not in _TEXTS:
-                raise _refusal(path, line, keyword, "for the second time", "each keyword once")
-            fates.say(line, keyword, _A_TEXT if keyword in _TEXTS else _UNREAD)
-            head.setdefault(keyword, (line, value.strip()))
-        elif rows is not None and (words[0][0].isdigit() or words[0][0] in "+-."):
-            rows.append(Row(line, words))
-            fates.say(line, title_of_rows, _UNREAD)
-        elif rows is None and words[0].isdigit():
-            raise _refusal(path, line, "NODE_COORD_SECTION", "missing", "this line before the first node")
+            self._keyword(line, text)
         else:
-            raise _refusal(path, line, "", shown(text.strip()), f"{what}: KEYWORD : value, or a node")
-    return KeywordFile(path, head, sections, titles, fates)
+            self._row(line, text)
 
+    def _begin(self, line: int, title: str) -> None:
+        if title in self.titles:
+            raise self._refusal(line, title, "for the second time", "each section once")
+        self.titles[title], self.sections[title], self._title = line, [], title
+        self.fates.say(line, title, _UNREAD)
 
-def _refusal(path: FilePath, line: int, field: str, value: str, expected: str) -> MissionError:
-    return MissionError([Finding(str(path), line, field, value, expected)])
+    def _keyword(self, line: int, text: str) -> None:
+        name, _, value = text.partition(":")
+        keyword = name.strip().upper()
+        if keyword in self.head and keyword not in _TEXTS:
+            raise self._refusal(line, keyword, "for the second time", "each keyword once")
+        self.fates.say(line, keyword, _A_TEXT if keyword in _TEXTS else _UNREAD)
+        self.head.setdefault(keyword, (line, value.strip()))
+
+    def _row(self, line: int, text: str) -> None:
+        words = text.split()
+        if self._title and (words[0][0].isdigit() or words[0][0] in "+-."):
+            self.sections[self._title].append(Row(line, words))
+            self.fates.say(line, self._title, _UNREAD)
+        elif not self._title and words[0].isdigit():
+            raise self._refusal(line, "NODE_COORD_SECTION", "missing", "this line before the first node")
+        else:
+            raise self._refusal(line, "", shown(text), f"{self._what}: KEYWORD : value, or a node")
+
+    def _refusal(self, line: int, field: str, value: str, expected: str) -> MissionError:
+        return MissionError([Finding(str(self._path), line, field, value, expected)])

@@ -9,6 +9,7 @@ from muster.mission.near_matches import near_file
 
 LARGEST_FILE = 32 * 2**20
 """Bytes of a file of another program, and of all files that are uploaded with one mission."""
+_CHUNK = 2**20
 _LARGEST_TEXT = 256 * 2**20
 """Bytes of a mission, a plan or a table: a travel table of 5,000 places has as many."""
 
@@ -29,9 +30,11 @@ def bytes_of(path: Path, most: int = LARGEST_FILE) -> bytes:
     """The bytes of an input file of bounded size; what stands in the way is a MissionError."""
     try:
         with path.open("rb") as file:
-            data = file.read(most + 1)
+            data = bytearray()
+            while len(data) <= most and (chunk := file.read(_CHUNK)):  # asked for all at once, room for all is taken
+                data += chunk
         if len(data) <= most:
-            return data
+            return bytes(data)
         limit = f"{most // 2**20} MiB"
         raise MissionError([Finding(str(path), None, "", f"more than {limit}", f"at most {limit}")])
     except OSError as error:

@@ -64,9 +64,7 @@ def read_vrplib(path: FilePath, salesmen: int | None = None, fates: LineFates | 
     depots = _depots(file, graph, own)
     everyone = _customers(file, graph, depots)
     customers = [customer for name, customer in everyone.items() if name not in depots]
-    capacity = None if any(vehicle.capacity for vehicle in own) else file.number("CAPACITY")
-    if capacity is None and any(customer.demand for customer in customers) and not any(v.capacity for v in own):
-        raise MissionError([file.wrong("CAPACITY", "what a vehicle carries")])
+    capacity = _capacity(file, customers, own)
     if own and salesmen is not None and salesmen != len(own):
         told = f"{len(own)}, as each vehicle of the file has values of its own"
         raise MissionError([Finding(str(path), None, "salesmen", str(salesmen), told)])
@@ -92,6 +90,16 @@ def read_vrplib(path: FilePath, salesmen: int | None = None, fates: LineFates | 
             depots=[everyone[name] for name in depots[1:]],
         )
     )
+
+
+def _capacity(file: KeywordFile, customers: Sequence[Customer], own: Sequence[OwnVehicle]) -> float | None:
+    """What each vehicle carries; None where each has a capacity of its own, or none is needed."""
+    if any(vehicle.capacity for vehicle in own):
+        return None
+    capacity = file.number("CAPACITY")
+    if capacity is None and any(customer.demand for customer in customers):
+        raise MissionError([file.wrong("CAPACITY", "what a vehicle carries")])
+    return capacity
 
 
 def _limits(limit: float | None, *, timed: bool) -> dict[str, Any]:

@@ -1,6 +1,8 @@
 """The ledger of a site: each element of its files is read or passed over, and what is read makes a difference."""
 
 import json
+import sqlite3
+from contextlib import closing
 
 import pytest
 import shapely
@@ -41,6 +43,7 @@ MIXED = writers.geojson(
     writers.area(name="hall", height=12, priority=3, duration="10 min", **{"@id": "way/1"}),
     writers.feature("LineString", [[8.5416, 47.3768], [8.5417, 47.377, 9]], name="lane", floor_m=3, width_m=2),
     name="site",
+    bbox=[8, 47, 9, 48],
     made_by={"program": "x", "versions": [{"major": 1}]},
 )
 KML = writers.kml(
@@ -78,6 +81,9 @@ def write(folder, kind):
     else:
         layer = [(shapely.Point(lon, lat), {"name": name, "colour": "red"}) for name, lat, lon in writers.TASKS]
         writers.write_geopackage(file, {"tasks": layer, "fences": [(shapely.Polygon(writers.FENCE), {"duration": 3})]})
+        with closing(sqlite3.connect(file)) as database, database:
+            database.execute('CREATE TABLE "of ""others" (a INTEGER PRIMARY KEY, b TEXT, c BLOB)')
+            database.executemany('INSERT INTO "of ""others" (b) VALUES (?)', [("x",), (None,)])
     return file
 
 
@@ -128,6 +134,32 @@ def test_heights_that_are_left_out_are_passed_over(tmp_path, robots):
     assert lost["alt: heights are left out, as some places have none or --flat says so"] == 1
 
 
+@pytest.mark.parametrize(
+    ("cells", "read"),
+    [
+        ({"lat": 47.377, "lon": 8.5417, "x": 3, "y": 4}, {"lat", "lon"}),
+        ({"lat_lon": "47.377, 8.5417", "lat": 47.37, "lon": 8.54}, {"lat_lon"}),
+        ({"lat": 47.377, "lon": 8.5417, "alt": 440, "z": 30}, {"lat", "lon", "z"}),
+        ({"position": "3 4", "x": 5, "y": 6}, {"position"}),
+        ({"x": 5, "y": 6, "lat": 47.377}, {"x", "y"}),
+    ],
+)
+def test_a_place_that_another_is_stronger_than_is_passed_over(cells, read, tmp_path):
+    """What is read moves the task; what is passed over does not."""
+    (tmp_path / "robots.csv").write_text("id,lat,lon,z\nr_0,47.3768,8.5416,0\n", encoding="utf-8")
+
+    def read_cells(**cells):
+        file = tmp_path / "site.csv"
+        file.write_text(f"name;{';'.join(cells)}\na;{';'.join(map(str, cells.values()))}\n", encoding="utf-8")
+        found = read_site(file, robots=tmp_path / "robots.csv", origin=ORIGIN)
+        return found.mission.tasks[0].position, rows_of(found.ledger, file, "read")
+
+    place, rows = read_cells(**cells)
+    assert {key for key in cells if f"{key}: {key}" in rows} == read
+    for key in cells.keys() - read:
+        assert read_cells(**{name: value for name, value in cells.items() if name != key})[0] == place
+
+
 def test_a_member_that_stands_twice_is_named(tmp_path, robots):
     file = tmp_path / "site.geojson"
     point = '{"type":"Point","coordinates":[8.5417,47.377]}'
@@ -151,6 +183,16 @@ def test_a_name_that_cannot_be_printed_is_escaped_and_cut(tmp_path, robots):
     lines = list(summary_lines(read_site(file, robots=robots).ledger))
     assert all(line.isprintable() and len(line) < 300 + len(str(file)) for line in lines)
     assert any("\\x1b[31m\\n" in line for line in lines)
+
+
+def test_the_ledger_of_any_number_of_kinds_is_short_and_complete(tmp_path, robots):
+    file = tmp_path / "site.geojson"
+    point = writers.feature("Point", [8.5417, 47.377], **{f"p{k}": 1 for k in range(5_000)})
+    file.write_text(writers.geojson(point), encoding="utf-8")
+    ledger = read_site(file, robots=robots).ledger
+    assert_complete(ledger, file)
+    assert len(ledger.rows) < 2_100
+    assert rows_of(ledger, file)["other kinds: means nothing for a task"] > 2_900
 
 
 SHAPES = {

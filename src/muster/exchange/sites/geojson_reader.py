@@ -42,6 +42,7 @@ _SHAPES: Mapping[str, tuple[Shape, int, bool]] = {
 """By type: the shape, how deep the lists of positions are, and whether there are several."""
 _LEAST = {"point": 1, "line": 2, "area": 4}
 _SELDOM_DEEPER = 8
+_BOX = passed_over("says where the geometry is, which does so itself", minor=True)
 _TOLD: Mapping[Shape, str] = {"point": "a point", "line": "a line", "area": "an area"}
 
 
@@ -89,6 +90,8 @@ class _Document:
         if (source := self._properties.get(id(item))) is not None:
             return source.fate(key, item.peek(key))
         source = self._features.get(id(item))
+        if key == "bbox" and (source is None or source.whole is None):
+            return _BOX
         if source is None:
             return None
         return source.whole or (source.fate(key, item.peek(key)) if key == "id" and key not in item.fates else None)

@@ -16,7 +16,7 @@ OF_PLACES = (*IN_DEGREES, *IN_METRES)
 _OF_AREAS = ("action", "of")
 """What exported plans say of areas, and is read by its own name."""
 _AS_ROLE = read_as("what the feature is")
-_BESIDE_GEOMETRY = passed_over("stands beside a geometry")
+_BESIDE_PLACE = passed_over("stands beside a geometry, or a place that is stronger")
 _HEIGHT = read_as("a height")
 _NO_HEIGHT = passed_over("is the height of a line or an area")
 _NAMELESS = ("zone", "boundary", "lane")
@@ -39,11 +39,13 @@ class ValueFates:
 
     def __init__(self, role: str, columns: Columns, drawn: Collection[int]) -> None:
         self._role, self._columns, self._drawn = role, columns, drawn
-        self._found: dict[tuple[bool, tuple[str, ...]], Mapping[str, Fate]] = {}
+        self._places = [(key, columns.by_key[key].heading) for key in (*OF_PLACES, "z") if key in columns]
+        self._found: dict[tuple[bool, tuple[str, ...], tuple[str, ...]], Mapping[str, Fate]] = {}
 
     def of(self, feature: Feature) -> Mapping[str, Fate]:
         """Return the fate of each heading; features with the same share one mapping."""
-        key = id(feature.source) in self._drawn, tuple(self._role_headings(feature))
+        placed = tuple(key for key, heading in self._places if heading in feature.values)
+        key = id(feature.source) in self._drawn, placed, tuple(self._role_headings(feature))
         if key not in self._found:
             self._found[key] = self._fates(*key)
         return self._found[key]
@@ -65,15 +67,15 @@ class ValueFates:
             elif of_plan and heading in _OF_AREAS:
                 yield heading
 
-    def _fates(self, drawn: bool, of_role: Sequence[str]) -> Mapping[str, Fate]:
+    def _fates(self, drawn: bool, placed: Sequence[str], of_role: Sequence[str]) -> Mapping[str, Fate]:
         if self._role == "route":
             return dict.fromkeys((*(c.heading for c in self._columns.by_key.values()), *self._columns.unread), _ROUTE)
         fates = {
             heading: passed_over(f"means nothing for a {self._role}", noted=True) for heading in self._columns.unread
         }
+        beside = (*OF_PLACES, "wkt") if drawn else _weaker(placed)
         for key, column in self._columns.by_key.items():
-            beside = drawn and key in (*OF_PLACES, "wkt")
-            fates[column.heading] = _BESIDE_GEOMETRY if beside else read_as(key)
+            fates[column.heading] = _BESIDE_PLACE if key in beside else read_as(key)
             if key in ("id", "name") and self._role in _NAMELESS:
                 fates[column.heading] = _NO_ID if key == "id" else _NAME
             if key == ROLE.name:
@@ -81,6 +83,14 @@ class ValueFates:
         fates |= dict.fromkeys(of_role, _AS_ROLE)
         fates[HEIGHT] = _HEIGHT if self._role in AT_POINTS else _NO_HEIGHT
         return fates
+
+
+def _weaker(placed: Collection[str]) -> Collection[str]:
+    """Of the keys by which a row says where it is those that do not count beside the others."""
+    if "lat_lon" in placed or {"lat", "lon"} <= {*placed}:
+        together = ("lat", "lon") if "lat_lon" in placed else ()
+        return (*IN_METRES, *together, *(("alt",) if "z" in placed else ()))
+    return (*IN_DEGREES, *(("x", "y", "z") if "position" in placed else ()))
 
 
 _ROUTE = passed_over(_PLAN, noted=True)

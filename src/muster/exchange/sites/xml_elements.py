@@ -20,8 +20,20 @@ _LOOKS = passed_over("says how things look", minor=True)
 _TEXT = passed_over("is a text for people")
 _NOT_THE_MAP = passed_over("is not the map")
 _NONE: Mapping[str, str] = {}
+_OF_LOOKS = (
+    "Style",
+    "StyleMap",
+    "styleUrl",
+    "visibility",
+    "open",
+    "LookAt",
+    "Camera",
+    "Region",
+    "tessellate",
+    "extrude",
+)
 _REASONS = {
-    **dict.fromkeys(("Style", "StyleMap", "styleUrl", "visibility", "open", "LookAt", "Camera", "Region"), _LOOKS),
+    **dict.fromkeys(_OF_LOOKS, _LOOKS),
     **dict.fromkeys(("description", "desc", "cmt", "Snippet", "snippet", "author", "link", "metadata"), _TEXT),
 }
 """Why elements are not read, where more can be said than that they have no meaning here."""
