@@ -172,7 +172,7 @@ class TimedPlaces(InPlan):
     def _is_by_itself(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> bool:
         """Whether a rule is broken at all places by the route of robot i, whatever the others do."""
         rule = _RELAXED[word]
-        if not rule.of_a_route or (rule.names_robots and len(self.problem.with_partner(j)) <= 2):
+        if not rule.of_a_route or (rule.of_the_team and len(self.problem.with_partner(j)) <= 2):
             return True
         alone = replace(
             self.problem, ignored=tuple(one for one in IGNORABLE if one != word), fixed=(), known=self.problem.measured
