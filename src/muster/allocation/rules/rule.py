@@ -228,8 +228,8 @@ class Rule:
     lifted_late
         whether reasons seek it among all places in a route, one such rule after the other in the order of rules.
     of_a_route, of_the_team
-        whether a route keeps or breaks it whatever the others do; and whether it is said of a robot where another one of
-        the task's team breaks it.
+        whether a route keeps or breaks it whatever the others do; and whether it is said of a robot where another one
+        of the task's team breaks it.
     kept_by_calls
         whether calls at stations may keep a route from breaking it.
     key, no_change
