@@ -93,7 +93,8 @@ void Placement::place_team(Whole& whole, std::size_t k) {
     bool fits = true;
     for (const int robot : team) {
       const int at = place_in_whole(whole, robot);
-      fits = fits && problem_.allowed(robot, tasks[k]) && at >= problem_.fixed(robot) && !(trial_->append_only && at < timeline_.tasks_in(robot)) &&
+      fits = fits && problem_.allowed(robot, tasks[k]) && at >= problem_.fixed(robot) &&
+             !(trial_->append_only && at < timeline_.tasks_in(robot)) &&
              std::ranges::none_of(members, [&](const Member& member) { return member.robot == robot; });
       members.push_back({tasks[k], robot, at});
     }
