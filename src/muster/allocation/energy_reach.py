@@ -18,7 +18,7 @@ from muster.allocation.rules.rule import Bools, Floats, Question
 from muster.mission.model import Station
 
 _ROUNDING = 1e-9
-_MOST_THROUGH = 300  # places through which a way may be shorter than the direct one, up to which all ways are known
+_MOST_WAYS = 5_000_000  # of one robot that are compared, beyond which nothing is excluded
 
 
 class Travelled(Question, Protocol):
@@ -41,83 +41,78 @@ class Travelled(Question, Protocol):
 def energy_reaches(problem: Travelled) -> Bools:
     """Return (m, n) whether the energy of a robot may last for a task, with the other task of its transport."""
     reaches = np.ones((len(problem.robots), len(problem.tasks)), dtype=np.bool_)
-    through = [*problem.shortcuts().tolist(), *_stations(problem)]
-    if len(through) > _MOST_THROUGH:
+    hubs = 2 + len(problem.stations) + len(problem.shortcuts())
+    if hubs * hubs * len(problem.tasks) > _MOST_WAYS:
         return reaches
     pickup = pickups(problem)
     delivery = {k: j for j, k in enumerate(pickup) if k >= 0}
     for i, robot in enumerate(problem.robots):
         if robot.battery is None:
             continue
-        reach = _Reach(problem, i, through)
+        reach = _Reach(problem, i)
         for j in range(len(problem.tasks)):
             first, then = (pickup[j], j) if pickup[j] >= 0 else (j, delivery.get(j))
             reaches[i, j] = reach.allows(first, then)
     return reaches
 
 
-def _stations(problem: Travelled) -> range:
-    first = len(problem.tasks) + 2 * len(problem.robots)
-    return range(first, first + len(problem.stations))
-
-
 class _Reach:
-    """The ways of one robot, and the stations that it can get to and from."""
+    """The least ways of one robot by way of hubs, and the stations that it can get to and from.
 
-    def __init__(self, problem: Travelled, i: int, through: list[int]) -> None:
-        self._full, self._slack = energy_room(problem.robots[i]), _ROUNDING * (1 + energy_room(problem.robots[i]))
-        self._ways = _least_ways(problem, i, through)
+    Hubs are its start, its end, the stations, and tasks through which a way may be shorter than the direct one.
+    """
+
+    def __init__(self, problem: Travelled, i: int) -> None:
+        self._problem, self._i = problem, i
+        n, m = len(problem.tasks), len(problem.robots)
+        tasks, stations = np.arange(n), np.arange(n + 2 * m, n + 2 * m + len(problem.stations))
+        hubs = np.array([problem.start(i), problem.end(i), *stations, *problem.shortcuts()], dtype=np.int64)
+        between = problem.legs(i, hubs, hubs)
+        for k in range(2, len(hubs)):
+            between = np.minimum(between, between[:, k, None] + between[None, k, :])
+        self._out, back = problem.legs(i, hubs, tasks), problem.legs(i, tasks, hubs)
+        self._between = np.minimum(between, np.where(np.eye(len(hubs), dtype=np.bool_), 0.0, math.inf))
+        self._there = np.min(self._between[:, :, None] + self._out[None], axis=1)  # (hubs, n)
+        self._back = np.min(back[:, :, None] + self._between[None], axis=1)  # (n, hubs)
+        self._full = energy_room(problem.robots[i])
+        self._slack = _ROUNDING * (1 + self._full)
         self._work = problem.work_usage(i)
-        stations = zip(_stations(problem), problem.stations, strict=True)
-        self._filling = [place for place, station in stations if station.gives_energy]
-        start, at_start = problem.start(i), energy_at_start(problem, i)
-        self._levels = self._leaving(start, at_start)
-        self._homeward = self._to_end(problem.end(i)) if _must_end(problem, i) else None
+        self._filling = [k for k, station in enumerate(problem.stations, 2) if station.gives_energy]
+        at_start = energy_at_start(problem, i)
+        self._levels = self._with_stations({0: at_start}, self._between[0], at_start)
+        self._ends = self._to_end() if problem.robots[i].place_at_end(problem.mission.rules) is not None else None
 
-    def _leaving(self, place: int, level: float) -> dict[int, float]:
-        """Where the robot can set out from, with how much energy at most: a place, and stations reached from it."""
-        levels = {place: level}
-        waiting = [place]
-        while waiting:
-            at = waiting.pop()
-            for station in self._filling:
-                near = self._ways[at, station] <= levels[at] + self._slack
-                if near and levels.get(station, -math.inf) < self._full:
-                    levels[station] = self._full
-                    waiting.append(station)
+    def _with_stations(self, levels: dict[int, float], ways: Floats, level: float) -> dict[int, float]:
+        """Where the robot can set out from, with how much energy at most: hubs, with stations that it gets to."""
+        near = [k for k in self._filling if ways[k] <= level + self._slack]
+        for at in near:
+            levels[at] = self._full
+            near += [k for k in self._filling if k not in near and self._between[at, k] <= self._full + self._slack]
         return levels
 
-    def _to_end(self, end: int) -> list[int]:
+    def _to_end(self) -> list[int]:
         """Where it is enough to arrive: at the end, and at stations from which a full battery leads there."""
-        able = [end]
-        for place in able:
-            able += [s for s in self._filling if s not in able and self._ways[s, place] <= self._full + self._slack]
+        able = [1]
+        for hub in able:
+            able += [k for k in self._filling if k not in able and self._between[k, hub] <= self._full + self._slack]
         return able
 
     def _after(self, levels: dict[int, float], j: int) -> float:
-        """The most energy after work on a task, come to from places with these levels; -inf: none is enough."""
-        level = max(level - float(self._ways[place, j]) for place, level in levels.items()) - float(self._work[j])
-        return level if level >= -self._slack else -math.inf
+        """The most energy after work on a task, come to from hubs with these levels; -inf: none is enough."""
+        arrives = max((level - float(self._there[hub, j]) for hub, level in levels.items()), default=-math.inf)
+        return arrives - float(self._work[j])
 
     def allows(self, first: int, then: int | None) -> bool:
+        """Return whether the robot can do a task, and another one after it."""
         level, last = self._after(self._levels, first), first
-        if then is not None and level > -math.inf:
-            level, last = self._after(self._leaving(first, level), then), then
-        if level == -math.inf:
+        if then is not None and level >= -self._slack:
+            onward = level - self._way(first, then) - float(self._work[then])
+            level, last = max(onward, self._after(self._with_stations({}, self._back[first], level), then)), then
+        if level < -self._slack:
             return False
-        if self._homeward is None:
-            return True
-        return any(float(self._ways[last, place]) <= level + self._slack for place in self._homeward)
+        return self._ends is None or any(float(self._back[last, hub]) <= level + self._slack for hub in self._ends)
 
-
-def _must_end(problem: Travelled, i: int) -> bool:
-    return problem.robots[i].place_at_end(problem.mission.rules) is not None
-
-
-def _least_ways(problem: Travelled, i: int, through: list[int]) -> Floats:
-    """The least travel usage between all places, by way of some; work on the way counts nothing."""
-    places = np.arange(len(problem.tasks) + 2 * len(problem.robots) + len(problem.stations))
-    ways = problem.legs(i, places, places)
-    for k in through:
-        ways = np.minimum(ways, ways[:, k, None] + ways[None, k, :])
-    return np.asarray(ways)
+    def _way(self, j: int, k: int) -> float:
+        """The least way from a task to another."""
+        direct = self._problem.legs(self._i, np.array([j]), np.array([k]))[0, 0]
+        return float(min(direct, np.min(self._back[j] + self._out[:, k])))

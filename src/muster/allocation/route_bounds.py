@@ -13,8 +13,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from muster.allocation import energy_curve
 from muster.allocation.energy_curve import Curve
 from muster.allocation.problem import Problem
@@ -111,8 +109,7 @@ class _Robot:
 
     def __init__(self, problem: Problem, i: int, loads: Any) -> None:
         self._problem, self._robot, self._i, self._arrays = problem, problem.robots[i], i, loads
-        places = np.arange(len(problem.tasks) + 2 * len(problem.robots) + len(problem.stations))
-        self._usage, self._seconds = problem.legs(i, places, places), problem.travel_seconds(i, places, places)
+        self._ways: dict[tuple[int, int], tuple[float, float]] = {}
         self._work, self._takes = problem.work_usage(i), problem.work_seconds(i)
         self._full = energy_room(self._robot) if problem.holds("battery") else math.inf
         self._drains = math.isfinite(self._full)
@@ -187,11 +184,18 @@ class _Robot:
                         known.append(served)
                         waiting.append((there, served))
 
+    def _way(self, here: int, to: int) -> tuple[float, float]:
+        """The usage and the seconds of a way."""
+        if (here, to) not in self._ways:
+            usage = self._problem.legs(self._i, [here], [to])[0, 0]
+            seconds = self._problem.travel_seconds(self._i, [here], [to])[0, 0]
+            self._ways[here, to] = float(usage), float(seconds)
+        return self._ways[here, to]
+
     def _moved(self, label: _Label, here: int, to: int) -> Iterator[_Label]:
-        usage = float(self._usage[here, to])
+        usage, seconds = self._way(here, to)
         if not math.isfinite(usage) or label.usage + usage > self._most:
             return
-        seconds = float(self._seconds[here, to])
         curve = energy_curve.shifted(label.curve, seconds, usage if self._drains else 0.0)
         if self._drains:
             curve = energy_curve.with_at_least(curve, -_ROUNDING * (1 + self._full))

@@ -26,7 +26,8 @@ from muster.allocation.rules.shift import LongerShift
 from muster.allocation.rules.team import missing_robots
 from muster.allocation.rules.times import moments
 from muster.allocation.rules.window import LongerWindow
-from muster.allocation.timed_places import TimedPlaces, stop_of
+from muster.allocation.timed_places import TimedPlaces
+from muster.allocation.timed_teams import stop_of
 from muster.allocation.witness_plans import Judge, attempt, bare_plan, closed
 
 _RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")

@@ -85,7 +85,11 @@ class Placement {
   std::vector<int> cuts_for(int unit, const std::vector<int>& order, std::size_t most);
   void place_next(Whole& whole);
   void place_team(Whole& whole, std::size_t k);
-  std::vector<std::vector<int>> teams_for(const Whole& whole, int task, int k);
+  using Teams = std::vector<std::vector<int>>;
+  Teams teams_for(const Whole& whole, int task, int k);
+  std::vector<int> team_of_pickup(const Whole& whole, int task) const;
+  Teams all_teams(int task, const std::vector<int>& able);
+  Teams near_teams(int task, const std::vector<int>& able);
   int place_in_whole(const Whole& whole, int robot) const;
   void judge_whole(Whole& whole);
 

@@ -225,7 +225,7 @@ void Problem::find_inseparable() {
     std::erase_if(group, [&](int other) { return behind[other] != task; });
     for (const int other : group) whole[other] = in_order(group);
   }
-  for (const auto& group : whole) {
+  for (const auto& group : whole) {  // none: the unit stands alone
     inseparable_.values.insert(inseparable_.values.end(), group.begin(), group.end());
     inseparable_.first.push_back(static_cast<int>(inseparable_.values.size()));
   }

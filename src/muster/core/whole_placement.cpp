@@ -93,7 +93,8 @@ void Placement::place_team(Whole& whole, std::size_t k) {
     bool fits = true;
     for (const int robot : team) {
       const int at = place_in_whole(whole, robot);
-      fits = fits && at >= problem_.fixed(robot) && !(trial_->append_only && at < timeline_.tasks_in(robot)) &&
+      fits = fits && problem_.allowed(robot, tasks[k]) && at >= problem_.fixed(robot) &&
+             !(trial_->append_only && at < timeline_.tasks_in(robot)) &&
              std::ranges::none_of(members, [&](const Member& member) { return member.robot == robot; });
       members.push_back({tasks[k], robot, at});
     }
@@ -104,47 +105,53 @@ void Placement::place_team(Whole& whole, std::size_t k) {
 }
 
 // The teams for a task: that of the task whose load it delivers, or all of few robots, or the nearest.
-std::vector<std::vector<int>> Placement::teams_for(const Whole& whole, int task, int k) {
-  if (problem_.delivers(task)) {
-    std::vector<int> team;
-    for (const PlacedUnit& placed : whole.placed) {
-      for (const Member& member : placed.members) {
-        if (member.task == problem_.partner(task)) team.push_back(member.robot);
-      }
-    }
-    const bool may = std::ranges::all_of(team, [&](int robot) { return problem_.allowed(robot, task); });
-    if (!may) return {};
-    return {team};
-  }
+Placement::Teams Placement::teams_for(const Whole& whole, int task, int k) {
+  if (problem_.delivers(task)) return {team_of_pickup(whole, task)};
   relations_.look_at(whole.placed.back().unit, trial_->robots);
   std::vector<int> able;
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     if (usable(robot, task, k)) able.push_back(robot);
   }
-  std::vector<std::vector<int>> teams;
-  if (choice_.alone(task)) {
-    for (const int robot : able) teams.push_back({robot});
-  } else if (able.size() <= kAllTeamsOf) {
-    for (std::size_t chosen = 1; chosen < std::size_t{1} << able.size(); ++chosen) {
-      std::vector<int> team;
-      for (std::size_t n = 0; n < able.size(); ++n) {
-        if (chosen >> n & 1) team.push_back(able[n]);
-      }
-      if (choice_.does(task, team)) teams.push_back(team);
+  if (!choice_.alone(task)) return able.size() <= kAllTeamsOf ? all_teams(task, able) : near_teams(task, able);
+  Teams teams;
+  for (const int robot : able) teams.push_back({robot});
+  return teams;
+}
+
+std::vector<int> Placement::team_of_pickup(const Whole& whole, int task) const {
+  std::vector<int> team;
+  for (const PlacedUnit& placed : whole.placed) {
+    for (const Member& member : placed.members) {
+      if (member.task == problem_.partner(task)) team.push_back(member.robot);
     }
-  } else {
-    keys_.clear();
-    for (const int robot : able) {
-      const int place = timeline_.stop(robot, timeline_.tasks_in(robot)).place;
-      keys_.push_back(problem_.travel_time(robot, place, task) * (trial_->random ? trial_->random->uniform() : 1.0));
+  }
+  return team;
+}
+
+Placement::Teams Placement::all_teams(int task, const std::vector<int>& able) {
+  Teams teams;
+  for (std::size_t chosen = 1; chosen < std::size_t{1} << able.size(); ++chosen) {
+    std::vector<int> team;
+    for (std::size_t n = 0; n < able.size(); ++n) {
+      if (chosen >> n & 1) team.push_back(able[n]);
     }
-    TeamChoice::Ranking ranking;
-    choice_.teams(task, able, keys_, std::vector<char>(able.size(), 1), ranking, teams_);
-    for (int t = 0; t < teams_.size(); ++t) {
-      std::vector<int> team;
-      for (const int index : teams_[t]) team.push_back(able[index]);
-      teams.push_back(team);
-    }
+    if (choice_.does(task, team)) teams.push_back(team);
+  }
+  return teams;
+}
+
+Placement::Teams Placement::near_teams(int task, const std::vector<int>& able) {
+  keys_.clear();
+  for (const int robot : able) {
+    const int place = timeline_.stop(robot, timeline_.tasks_in(robot)).place;
+    keys_.push_back(problem_.travel_time(robot, place, task) * (trial_->random ? trial_->random->uniform() : 1.0));
+  }
+  TeamChoice::Ranking ranking;
+  choice_.teams(task, able, keys_, std::vector<char>(able.size(), 1), ranking, teams_);
+  Teams teams;
+  for (int t = 0; t < teams_.size(); ++t) {
+    auto& team = teams.emplace_back();
+    for (const int index : teams_[t]) team.push_back(able[index]);
   }
   return teams;
 }

@@ -60,6 +60,7 @@ class Battery(Rule):
     asked = ("battery",)
     lifted_late = True
     of_a_route = True
+    of_the_team = True
     kept_by_calls = True
     key = "battery"
 

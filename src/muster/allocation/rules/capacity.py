@@ -19,6 +19,7 @@ class Capacity(Rule):
     word: ClassVar[str] = "capacity"
     lifted_late = True
     of_a_route = True
+    of_the_team = True
 
     def possible(self, limits: Limits) -> Bools:
         return np.asarray(limits.usage <= limits.problem.capacity[:, None] * (1 + ROUNDING))

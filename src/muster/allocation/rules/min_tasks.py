@@ -60,7 +60,7 @@ class MinTasks(Rule):
     for_good = False
     lifted_late = True
     of_a_route = True
-    names_robots = True
+    of_the_team = True
     key = "min_tasks"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:

@@ -227,8 +227,9 @@ class Rule:
         that never takes a task out of a route again.
     lifted_late
         whether reasons seek it among all places in a route, one such rule after the other in the order of rules.
-    of_a_route, names_robots
-        whether a route keeps or breaks it whatever the others do; and whether its words name the robot that breaks it.
+    of_a_route, of_the_team
+        whether a route keeps or breaks it whatever the others do; and whether it is said of a robot where another one
+        of the task's team breaks it.
     kept_by_calls
         whether calls at stations may keep a route from breaking it.
     key, no_change
@@ -243,7 +244,7 @@ class Rule:
     for_good: ClassVar[bool] = True
     lifted_late: ClassVar[bool] = False
     of_a_route: ClassVar[bool] = False
-    names_robots: ClassVar[bool] = False
+    of_the_team: ClassVar[bool] = False
     kept_by_calls: ClassVar[bool] = False
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
