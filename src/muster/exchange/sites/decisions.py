@@ -244,6 +244,16 @@ def _closed(layer: Layer, feature: Feature) -> str | None:
     return None
 
 
+def is_open_line(feature: Feature) -> bool:
+    """Return whether a feature is a line that is not drawn around an area."""
+    return feature.geometry is not None and feature.geometry.shape == "line" and not _is_around_area(feature)
+
+
+def is_wall(reason: str) -> bool:
+    """Return whether what makes a feature a zone says that something stands there, and not that an area is closed."""
+    return reason.startswith(BY) and words.CLOSED not in meanings(reason)
+
+
 def _is_around_area(feature: Feature) -> bool:
     """Return whether the ends of a line are so close that it is drawn around an area."""
     if feature.geometry is None:

@@ -12,7 +12,7 @@ import unicodedata
 from collections.abc import Mapping
 from functools import lru_cache
 
-CLOSED, BOUNDARY, SURVEY, OBSTACLE, AREA = "closed", "boundary", "survey", "obstacle", "area"
+CLOSED, BOUNDARY, SURVEY, OBSTACLE = "closed", "boundary", "survey", "obstacle"
 TASK, ROBOT, STATION, LANE, HOME = "task", "robot", "station", "lane", "home"
 AIR, GROUND = "air", "ground"
 FENCE = "fence"
@@ -94,7 +94,6 @@ _PATTERNS: Mapping[str, str] = {
         batiment*, edifici*, gebouw*, budyn*, budov*, bygning*, byggnad*, bina, binalar, здани*, будівл*, κτιρι*,
         *مبنى*, *مباني*, *ساختمان*, *בניין*, *मकान*, *इमारत*, *建筑*, *建築*, *建物*, *건물*
     """,
-    AREA: "zone, zones",
     FENCE: "geofence*, geozone*",
     TASK: """
         task, tasks, job, jobs, waypoint*, way point*, poi, pois, point of interest, points of interest, goal, goals,
