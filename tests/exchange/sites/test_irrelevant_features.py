@@ -212,9 +212,11 @@ def test_the_label_of_an_area_is_no_place(tmp_path, team, form):
     assert any("points beside areas of the same feature" in note for note in found.notes)
 
 
-@pytest.mark.parametrize(
-    "line", [[(8.5418, 47.3770), (8.5424, 47.3774)], [(8.5418, 47.3770), (8.542, 47.377), (8.542, 47.3776)]]
-)
+STRAIGHT = [(8.5418, 47.3770), (8.5424, 47.3774)]
+BENT = [(8.5418, 47.3770), (8.542, 47.377), (8.542, 47.3776)]
+
+
+@pytest.mark.parametrize("line", [STRAIGHT, BENT])
 @pytest.mark.parametrize("properties", [{"barrier": "fence"}, {"name": "Wall north"}, {"name": "No entry"}])
 def test_an_open_line_that_is_closed_lets_nobody_across(tmp_path, team, line, properties):
     found = site(tmp_path, team, feature("LineString", [list(place) for place in line], **properties), *points())
