@@ -132,6 +132,15 @@ def test_areas_that_nothing_decides_are_asked_about(tmp_path, team, properties, 
         assert len(found.mission.map.zones if found.mission.map else ()) == count
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["Centre de recherche", "Istituto di ricerca", "Suchthilfe", "Vermessungsamt", "Acesso ao parque", "Parc du Roi"],
+)
+def test_words_that_look_like_others_decide_nothing(tmp_path, team, name):
+    (finding,) = undecided(tmp_path, area(name=name), *points(), team=team)
+    assert finding.value == "undecided: no word says what it is"
+
+
 def test_what_its_folder_closes_no_name_opens(tmp_path, team):
     """Sectors of airspace in a folder of closed areas are no sectors to search."""
     file = tmp_path / "site.kml"
