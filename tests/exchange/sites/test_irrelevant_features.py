@@ -189,3 +189,40 @@ def test_marks_that_nobody_sees_are_no_control_characters(tmp_path, team, writte
 def test_control_characters_are_refused(tmp_path, team, sign):
     with pytest.raises(MissionError, match="a text without control characters"):
         site(tmp_path, team, feature("Point", [8.5417, 47.3775], name=f"a{sign}b"))
+
+
+@pytest.mark.parametrize("form", ["kml", "geojson"])
+def test_the_label_of_an_area_is_no_place(tmp_path, team, form):
+    ring = [(8.5418, 47.3770), (8.5424, 47.3770), (8.5424, 47.3774)]
+    if form == "kml":
+        text = " ".join(f"{lon},{lat}" for lon, lat in [*ring, ring[0]])
+        shape = (
+            "<MultiGeometry><Point><coordinates>8.542,47.3772</coordinates></Point><Polygon><outerBoundaryIs><LinearRing>"
+            f"<coordinates>{text}</coordinates></LinearRing></outerBoundaryIs></Polygon></MultiGeometry>"
+        )
+        text = writers.kml(writers.placemark("No-fly: school", shape), *writers.kml_points())
+    else:
+        parts = [{"type": "Point", "coordinates": [8.542, 47.3772]}, area(ring)["geometry"]]
+        both = {"type": "GeometryCollection", "geometries": parts}
+        text = geojson({"type": "Feature", "properties": {"name": "No-fly: school"}, "geometry": both}, *points())
+    file = tmp_path / f"site.{form}"
+    file.write_text(text, encoding="utf-8")
+    found = read_site(file, robots=team)
+    assert (len(found.mission.tasks), len(zones(found))) == (3, 1)
+    assert any("points beside areas of the same feature" in note for note in found.notes)
+
+
+STRAIGHT = [(8.5418, 47.3770), (8.5424, 47.3774)]
+BENT = [(8.5418, 47.3770), (8.542, 47.377), (8.542, 47.3776)]
+
+
+@pytest.mark.parametrize("line", [STRAIGHT, BENT])
+@pytest.mark.parametrize("properties", [{"barrier": "fence"}, {"name": "Wall north"}, {"name": "No entry"}])
+def test_an_open_line_that_is_closed_lets_nobody_across(tmp_path, team, line, properties):
+    found = site(tmp_path, team, feature("LineString", [list(place) for place in line], **properties), *points())
+    assert found.mission.lanes is None
+    whole = shapely.union_all(zones(found))
+    assert any("closed lines are closed 0.25 m to each side" in note for note in found.notes)
+    across = shapely.convex_hull(whole)
+    assert whole.area > 0
+    assert (len(line) > 2 and "No entry" in properties.values()) == (whole.area > 0.8 * across.area and len(line) > 2)

@@ -78,6 +78,16 @@ def test_a_model_says_how_a_robot_moves_beside_its_type(tmp_path, heading):
     assert (one.type, one.kind) == ("scout", "air")
 
 
+@pytest.mark.parametrize("heading", ["Drone ID", "UAV name", "Drone", "uav_id"])
+@pytest.mark.parametrize("as_robots", [True, False])
+def test_a_heading_says_what_the_rows_are(tmp_path, heading, as_robots):
+    places, team = tmp_path / "site.csv", tmp_path / "team.csv"
+    places.write_text(writers.CSV, encoding="utf-8")
+    team.write_text(f"{heading},lat,lon\nr1,47.3768,8.5416\n", encoding="utf-8")
+    (one,) = (read_site(places, robots=team) if as_robots else read_site(places, team)).mission.robots
+    assert (one.id, one.kind) == ("r1", "air")
+
+
 def test_a_column_is_stronger_than_words_and_a_flag_than_both(tmp_path):
     places, drones = tmp_path / "site.csv", tmp_path / "drones.csv"
     places.write_text(writers.CSV, encoding="utf-8")
@@ -130,6 +140,15 @@ def test_areas_that_nothing_decides_are_asked_about(tmp_path, team, properties, 
         found = read(tmp_path, area(**properties), feature("Point", [8.5417, 47.3775], name="a", kind="task"),
                      team=team, kinds={name: role} if "name" in properties else {"site": role})  # fmt: skip
         assert len(found.mission.map.zones if found.mission.map else ()) == count
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["Centre de recherche", "Istituto di ricerca", "Suchthilfe", "Vermessungsamt", "Acesso ao parque", "Parc du Roi"],
+)
+def test_words_that_look_like_others_decide_nothing(tmp_path, team, name):
+    (finding,) = undecided(tmp_path, area(name=name), *points(), team=team)
+    assert finding.value == "undecided: no word says what it is"
 
 
 def test_what_its_folder_closes_no_name_opens(tmp_path, team):

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.antimeridian import unwrapped
+from muster.exchange.sites.decisions import is_open_line, is_wall
 from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Coordinate, Ring
 from muster.exchange.sites.frame import Frame
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 _SEAM = 1e-8
 """Degrees within which a corner on the meridian of 180 degrees lies on the line between its neighbours."""
 _MARGIN_M = 50.0
+_WALL_M = 0.25
+"""How far to each side of an open line that is closed robots may not come."""
+_LEAST_CORNERS = 3
 _EXPECTED = "an area whose sides meet at its corners alone"
 
 
@@ -50,6 +54,11 @@ def areas_of(
         pieces = [[[place for piece in pieces for place in piece[0]]]]  # a track around an area
     found: list[shapely.Polygon] = []
     wrong: list[Finding] = []
+    if mends is not None and is_open_line(entry.feature):
+        found += _walls(pieces, frame)
+        mends.setdefault(f"closed lines are closed {_WALL_M:g} m to each side", []).append(entry.told)
+        if is_wall(entry.reason) or len(pieces[0][0]) < _LEAST_CORNERS:
+            return [shapely.orient_polygons(area) for area in found]
     for rings in _whole(pieces, frame):
         metres = [frame.metres([place[:2] for place in ring]) for ring in rings]
         try:
@@ -63,6 +72,15 @@ def areas_of(
     if mends is None or not found:
         findings += wrong
     return [shapely.orient_polygons(area) for area in found]
+
+
+def _walls(pieces: list[list[list[Coordinate]]], frame: Frame) -> list[shapely.Polygon]:
+    """What is closed along open lines."""
+    import shapely
+
+    lines = [shapely.LineString(frame.metres([place[:2] for place in line])) for (line,) in pieces if len(line) > 1]
+    walls = shapely.union_all([line.buffer(_WALL_M, cap_style="square", join_style="mitre") for line in lines])
+    return [one for one in shapely.get_parts(walls).tolist() if one.area > 0]
 
 
 def _mended(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -18,7 +18,7 @@ from muster.exchange.sites import vocabulary as words
 from muster.exchange.sites.features import Feature, Layer
 from muster.exchange.sites.key_words import TYPES
 from muster.exchange.sites.keys import AT_POINTS, CIRCLE, ROLE, SKIP, ZONE_RADIUS
-from muster.exchange.sites.labels import labels_of, names_of, quoted
+from muster.exchange.sites.labels import labels_of, names_of, quoted, robots_heading
 from muster.exchange.sites.vocabulary import is_only, meanings
 
 FITTING = {
@@ -104,10 +104,10 @@ class Surroundings:
         )
 
 
-def of_point(surroundings: Surroundings, feature: Feature) -> Decision:
-    """Return what a point is: a task, unless a word says other; never a task where a word says that it is closed."""
-    layer = surroundings.layer
-    around = [(f"the {what} {name}", meanings(name)) for what, name in _around(layer, feature)]
+def _of_team(
+    surroundings: Surroundings, feature: Feature, around: Sequence[tuple[str, Mapping[str, str]]]
+) -> Decision | None:
+    """Return whether names around a point, or the heading of its name, say that it is a robot; None if they do not."""
     for where, said in around:
         if where.startswith("the folder"):
             continue  # a mission for drones has places to visit in it
@@ -119,6 +119,18 @@ def of_point(surroundings: Surroundings, feature: Feature) -> Decision:
                 other = others[0] if others else "has areas or lines beside points"
                 return Decision(None, f"{where} says {word}, and {other}", ("robot", "task", SKIP))
             return Decision("robot", _by_word(word, where))
+    if feature.geometry is None and (heading := robots_heading(surroundings.layer.headings)) is not None:
+        return Decision("robot", f"{BY} the heading {heading}")
+    return None
+
+
+def of_point(surroundings: Surroundings, feature: Feature) -> Decision:
+    """Return what a point is: a task, unless a word says other; never a task where a word says that it is closed."""
+    layer = surroundings.layer
+    around = [(f"the {what} {name}", meanings(name)) for what, name in _around(layer, feature)]
+    robot = _of_team(surroundings, feature, around)
+    if robot is not None:
+        return robot
     closed = _closed(layer, feature)
     if closed is not None:
         return Decision(CIRCLE, closed)
@@ -242,6 +254,16 @@ def _closed(layer: Layer, feature: Feature) -> str | None:
         if folded in ("building", "building:part", "barrier") and not point and str(value).casefold() != "no":
             return f"{BY} {heading}"
     return None
+
+
+def is_open_line(feature: Feature) -> bool:
+    """Return whether a feature is a line that is not drawn around an area."""
+    return feature.geometry is not None and feature.geometry.shape == "line" and not _is_around_area(feature)
+
+
+def is_wall(reason: str) -> bool:
+    """Return whether what makes a feature a zone says that something stands there, and not that an area is closed."""
+    return reason.startswith(BY) and words.CLOSED not in meanings(reason)
 
 
 def _is_around_area(feature: Feature) -> bool:

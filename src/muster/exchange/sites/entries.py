@@ -95,6 +95,7 @@ def entries_of(
     notes += [f"{layer.title}: {note}" for note in layer.notes]
     drawn = {id(feature.source) for feature in layer.features if feature.geometry is not None}
     features = list(_with_shapes(_without_empty(layer, notes), findings))
+    features = _without_labels(layer, features, notes)
     decided = [(feature, roles.decide(layer, feature, default, findings)) for feature in features]
     by_role = _by_role(layer, decided, findings, notes)
     found: list[Entry] = []
@@ -124,6 +125,21 @@ def entries_of(
     if unread:
         notes.append(f"{layer.title}: not read: {_told_unread(layer, unread, list(by_role))}")
     return found
+
+
+def _without_labels(layer: Layer, features: list[Feature], notes: list[str]) -> list[Feature]:
+    """The features without points that stand beside areas of the same feature: where programs write its name."""
+    drawn = {id(one.values) for one in features if one.geometry is not None and one.geometry.shape == "area"}
+    labels = [
+        one
+        for one in features
+        if one.geometry is not None and one.geometry.shape == "point" and id(one.values) in drawn
+    ]
+    if labels:
+        told = some_of([one.where or f"line {one.line}" for one in labels])
+        notes.append(f"{layer.title}: passed over, points beside areas of the same feature: {told}")
+    lost = set(map(id, labels))
+    return [one for one in features if id(one) not in lost]
 
 
 def _by_role(

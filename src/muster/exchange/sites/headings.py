@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from muster.exchange.sites.cells import CellError, NoValue, is_bare_number, moment, pairs
 from muster.exchange.sites.features import Feature, Layer
+from muster.exchange.sites.key_words import OF_ROBOTS
 from muster.exchange.sites.keys import ROLES, SiteKey, keys_of
 from muster.exchange.sites.units import ALL_UNITS, UNITS, units_text
 from muster.mission.errors import Finding, ParameterError
@@ -32,6 +33,7 @@ _SUBJECTS = frozenset(
         "asset",
         "lane",
         "start",
+        *OF_ROBOTS,
     )
 )
 """Words before a name that say of what it is: `Panel name`. Where no other column has names, one alone is the name."""

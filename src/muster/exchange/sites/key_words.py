@@ -35,6 +35,8 @@ def _words(text: str) -> tuple[str, ...]:
 
 
 NAMES, ENDURANCE, RANGE = _words(_NAMES), _words(_ENDURANCE), _words(_RANGE)
+OF_ROBOTS = ("drone", "uav", "uas", "ugv", "rover", "vehicle", "aircraft")
+"""Words before headings that say that they are of robots: `Drone ID`."""
 TYPES, MODELS = _words(_TYPES), _words(_MODELS)
 BATTERY = _words(_BATTERY)
 """Of what may be a time, a length, or neither."""

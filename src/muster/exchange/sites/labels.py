@@ -8,9 +8,11 @@ from pathlib import PurePath
 
 from muster.exchange.sites.cells import visible
 from muster.exchange.sites.features import Feature, Layer
+from muster.exchange.sites.key_words import OF_ROBOTS
 from muster.exchange.sites.keys import IDENTITY
 
-_SUBJECT = re.compile(r"^(task|robot|panel|point|site|zone|area|waypoint|target|asset)[ _-]+")
+_SUBJECTS = ("task", "robot", "panel", "point", "site", "zone", "area", "waypoint", "target", "asset", *OF_ROBOTS)
+_SUBJECT = re.compile(rf"^({'|'.join(_SUBJECTS)})[ _-]+")
 """A word before a heading that says of what it is: `Panel name`."""
 
 
@@ -30,6 +32,21 @@ def labels_of(layer: Layer, feature: Feature) -> list[str]:
     """Return the name and the id of a feature, each in one line, as far as it has them."""
     values = (feature.values.get(heading) for heading in _label_headings(layer.headings))
     return [" ".join(visible(value).split()) for value in values if isinstance(value, str)]
+
+
+@lru_cache(maxsize=64)
+def robots_heading(headings: tuple[str, ...]) -> str | None:
+    """Return the heading of ids or names that says that they are of robots: `Drone ID`, or `Drone` alone."""
+    known = _label_headings(headings)
+    if not known:
+        alone = [heading for heading in headings if heading.strip().casefold() in _SUBJECTS]
+        return alone[0] if len(alone) == 1 and alone[0].strip().casefold() in OF_ROBOTS else None
+    return known[0] if all(map(_of_robots, known)) else None
+
+
+def _of_robots(heading: str) -> bool:
+    match = _SUBJECT.match(heading.casefold())
+    return match is not None and match[1] in ("robot", *OF_ROBOTS)
 
 
 @lru_cache(maxsize=64)

@@ -11,7 +11,7 @@ from muster.exchange.sites.decisions import BY
 from muster.exchange.sites.entries import Entry
 from muster.exchange.sites.features import Layer
 from muster.exchange.sites.key_words import MODELS, TYPES
-from muster.exchange.sites.labels import bare, labels_of, names_of
+from muster.exchange.sites.labels import bare, labels_of, names_of, robots_heading
 from muster.exchange.sites.roles import Roles, role_word
 from muster.exchange.sites.vocabulary import AIR, GROUND, meanings, moves
 
@@ -59,5 +59,6 @@ def _texts(entry: Entry, layer: Layer) -> Iterator[str]:
     for key in ("type", "name", "id", "kinematics"):
         if isinstance(value := entry.values.get(key), str):
             yield value
+    yield robots_heading(layer.headings) or ""
     yield layer.name
     yield PurePath(layer.file).stem

@@ -12,7 +12,7 @@ import unicodedata
 from collections.abc import Mapping
 from functools import lru_cache
 
-CLOSED, BOUNDARY, SURVEY, OBSTACLE, AREA = "closed", "boundary", "survey", "obstacle", "area"
+CLOSED, BOUNDARY, SURVEY, OBSTACLE = "closed", "boundary", "survey", "obstacle"
 TASK, ROBOT, STATION, LANE, HOME = "task", "robot", "station", "lane", "home"
 AIR, GROUND = "air", "ground"
 FENCE = "fence"
@@ -45,48 +45,51 @@ _PATTERNS: Mapping[str, str] = {
         *障害*, *進入禁*, *금지*, *위험*, *제한*, *장애물*, *통제*, *출입금*
     """,
     BOUNDARY: """
-        boundary, boundaries, perimeter*, arena, border, borders, outline*, inclusion*, operation area*,
-        operations area*, operational area*, operating area*, area of operation*, areas of operation*,
-        operation zone*, operations zone*, operating zone*, operational zone*, ao, mission area*, flight area*,
-        flight zone*, work area*, working area*, keep in, keepin, stay in, site limit*, property line*, premises,
-        *grenze*, *begrenzung*, *umgrenzung*, einsatzgebiet*, einsatzraum*, einsatzbereich*, operationsgebiet*,
-        betriebsgelande*, flugbereich*, fluggebiet*, flugraum*, arbeitsbereich*, umring*, limite*, perimetre*,
-        frontiere*, zone d operation*, zone operationnelle, zone de vol, zone de travail, zone d intervention,
-        aire d operation*, emprise, perimetr*, frontera*, area de operac*, zona de operac*, zona operativ*,
-        zona de vuelo, zona de trabajo, lindero*, confin*, limiti, area operativ*, area di operaz*, zona di operaz*,
-        zona di volo, area di lavoro, fronteira*, area de voo, zona de voo, area de trabalho, zona operac*, grens,
-        grenzen, *begrenzing*, operatiegebied*, werkgebied*, inzetgebied*, vlieggebied*, omtrek, granic*, obwod*,
-        perymetr*, obszar operac*, obszar dzialan*, strefa operac*, rejon dzialan*, obszar roboczy, rejon operac*,
-        hranic*, obvod*, operacni oblast*, oblast operac*, operacni prostor*, pracovni oblast*, *grense*, *grans*,
-        *graense*, *operasjonsomrad*, *operationsomrad*, *arbeidsomrad*, *arbetsomrad*, *arbejdsomrad*,
-        *innsatsomrad*, *insatsomrad*, *indsatsomrad*, *operationsomraad*, sinir*, operasyon alan*, operasyon bolge*,
-        calisma alan*, harekat alan*, gorev alan*, ucus alan*, границ*, периметр*, район операц*, зона операц*,
-        район работ*, зона работ*, рабочая зона, район полет*, зона полет*, район действ*, межа, межи, меж, кордон*,
-        район дій, робоча зона, район робіт, зона робіт, ορια, οριο, περιμετρ*, περιοχη επιχειρ*, ζωνη επιχειρ*,
-        συνορ*, *حدود*, *محيط*, *منطقة العمليات*, *منطقة عمليات*, *منطقة العمل*, *مرز*, *محدوده عملیات*,
-        *منطقه عملیات*, *محدوده کار*, *גבול*, *היקף*, *אזור פעולה*, *שטח פעולה*, *אזור מבצע*, *אזור הפעולה*, *सीमा*,
-        *परिधि*, *संचालन क्षेत्र*, *कार्य क्षेत्र*, *边界*, *邊界*, *作业区*, *作業區*, *作业范围*, *任务区*,
-        *任務區*, *行动区*, *行動區*, *周界*, *作战区*, *作戰區*, *境界*, *作業区*, *運用区*, *活動区*, *作戦区*,
-        *外周*, *飛行区域*, *경계*, *작전 구역*, *작전구역*, *작업 구역*, *작업구역*, *운용 구역*, *운용구역*,
-        *작전 지역*
+        boundary, boundaries, perimeter*, border, borders, outline*, inclusion*, operation area*, operations area*,
+        operational area*, operating area*, area of operation*, areas of operation*, operation zone*,
+        operations zone*, operating zone*, operational zone*, mission area*, flight area*, flight zone*, work area*,
+        working area*, keep in, keepin, stay in, site limit*, property line*, *grenze*, *begrenzung*, *umgrenzung*,
+        einsatzgebiet*, einsatzraum*, einsatzbereich*, operationsgebiet*, betriebsgelande*, flugbereich*,
+        fluggebiet*, flugraum*, arbeitsbereich*, umring*, limite*, perimetre*, frontiere*, zone d operation*,
+        zone operationnelle, zone de vol, zone de travail, zone d intervention, aire d operation*, emprise,
+        perimetr*, frontera*, area de operac*, zona de operac*, zona operativ*, zona de vuelo, zona de trabajo,
+        lindero*, confin*, limiti, area operativ*, area di operaz*, zona di operaz*, zona di volo, area di lavoro,
+        fronteira*, area de voo, zona de voo, area de trabalho, zona operac*, grens, grenzen, *begrenzing*,
+        operatiegebied*, werkgebied*, inzetgebied*, vlieggebied*, omtrek, granic*, obwod*, perymetr*, obszar operac*,
+        obszar dzialan*, strefa operac*, rejon dzialan*, obszar roboczy, rejon operac*, hranic*, obvod*,
+        operacni oblast*, oblast operac*, operacni prostor*, pracovni oblast*, *grense*, *grans*, *graense*,
+        *operasjonsomrad*, *operationsomrad*, *arbeidsomrad*, *arbetsomrad*, *arbejdsomrad*, *innsatsomrad*,
+        *insatsomrad*, *indsatsomrad*, *operationsomraad*, sinir*, operasyon alan*, operasyon bolge*, calisma alan*,
+        harekat alan*, gorev alan*, ucus alan*, границ*, периметр*, район операц*, зона операц*, район работ*,
+        зона работ*, рабочая зона, район полет*, зона полет*, район действ*, межа, межи, меж, кордон*, район дій,
+        робоча зона, район робіт, зона робіт, ορια, οριο, περιμετρ*, περιοχη επιχειρ*, ζωνη επιχειρ*, συνορ*, *حدود*,
+        *محيط*, *منطقة العمليات*, *منطقة عمليات*, *منطقة العمل*, *مرز*, *محدوده عملیات*, *منطقه عملیات*,
+        *محدوده کار*, *גבול*, *היקף*, *אזור פעולה*, *שטח פעולה*, *אזור מבצע*, *אזור הפעולה*, *सीमा*, *परिधि*,
+        *संचालन क्षेत्र*, *कार्य क्षेत्र*, *边界*, *邊界*, *作业区*, *作業區*, *作业范围*, *任务区*, *任務區*,
+        *行动区*, *行動區*, *周界*, *作战区*, *作戰區*, *境界*, *作業区*, *運用区*, *活動区*, *作戦区*, *外周*,
+        *飛行区域*, *경계*, *작전 구역*, *작전구역*, *작업 구역*, *작업구역*, *운용 구역*, *운용구역*, *작전 지역*
     """,
     SURVEY: """
-        survey*, coverage, search*, sector*, sweep*, aoi, aois, area of interest, areas of interest,
-        region of interest, roi, mapping*, scan, scans, scanning, inspection area*, inspection zone*, photogrammetry,
-        orthophoto*, such*, *suchgebiet*, *suchsektor*, *suchbereich*, *suchabschnitt*, *sektor*, absuch*, vermess*,
-        befliegung*, kartier*, erkund*, recherche*, secteur*, balayage*, releve, releves, cartograph*,
-        zone d interet, ratissage*, quadrillage*, prospection*, busqueda*, barrido*, rastreo*, rastrillaje*,
-        levantamiento*, cartograf*, mapeo*, area de interes*, zona de interes*, prospeccion*, ricerca*, ricerche,
-        settor*, riliev*, mappatura*, perlustra*, area di interesse, busca, buscas, setor*, varredura*,
-        levantamento*, mapeamento*, zoek*, *zoekgebied*, kartering*, opmeting*, interessegebied*, poszukiw*,
-        przeszuk*, pomiar*, mapowan*, obszar zainteresowan*, patrac*, patran*, hledan*, prohledav*, mapovan*,
-        pruzkum*, *sokomrad*, sokeomrad*, *sokeomrad*, sok, soket, sokning*, *sogeomrad*, sog, sogning*, eftersog*,
-        leteaksjon*, leteomrad*, *kartlegg*, *kartlagg*, *kortlaeg*, oppmaling*, inmatning*, arama*, tarama*,
-        haritala*, kesif*, поиск*, сектор*, прочес*, съемк*, обследован*, картограф*, разведк*, пошук*, обстежен*,
-        зйомк*, розвідк*, αναζητησ*, ερευν*, τομεα*, τομεις, χαρτογραφ*, σαρωσ*, *بحث*, *قطاع*, *مسح*, *جستجو*,
-        *نقشه برداری*, *سکتور*, *חיפוש*, *גזרה*, *גזרת*, *סריק*, *סקר*, *מיפוי*, *खोज*, *सेक्टर*, *सर्वेक्षण*,
-        *तलाश*, *搜索*, *搜寻*, *搜尋*, *搜救*, *扇区*, *扇區*, *测绘*, *測繪*, *测区*, *航测*, *航測*, *调查*,
-        *調查*, *扫描*, *掃描*, *捜索*, *探索*, *セクター*, *測量*, *調査*, *수색*, *탐색*, *섹터*, *측량*, *조사*
+        coverage, search*, sector*, sweep*, aoi, aois, area of interest, areas of interest, region of interest,
+        mapping*, scan, scans, scanning, inspection area*, inspection zone*, photogrammetry, orthophoto*,
+        *suchgebiet*, *suchsektor*, *suchbereich*, *suchabschnitt*, *sektor*, absuch*, befliegung*, kartier*,
+        erkund*, secteur*, balayage*, releve, releves, cartograph*, zone d interet, ratissage*, quadrillage*,
+        prospection*, busqueda*, barrido*, rastreo*, rastrillaje*, levantamiento*, cartograf*, mapeo*,
+        area de interes*, zona de interes*, prospeccion*, settor*, riliev*, mappatura*, perlustra*,
+        area di interesse, busca, buscas, setor*, varredura*, levantamento*, mapeamento*, zoek*, *zoekgebied*,
+        kartering*, opmeting*, interessegebied*, poszukiw*, przeszuk*, pomiar*, mapowan*, obszar zainteresowan*,
+        patrac*, patran*, hledan*, prohledav*, mapovan*, pruzkum*, *sokomrad*, sokeomrad*, *sokeomrad*, sok, soket,
+        sokning*, *sogeomrad*, sog, sogning*, eftersog*, leteaksjon*, leteomrad*, *kartlegg*, *kartlagg*, *kortlaeg*,
+        oppmaling*, inmatning*, arama*, tarama*, haritala*, kesif*, поиск*, сектор*, прочес*, съемк*, обследован*,
+        картограф*, разведк*, пошук*, обстежен*, зйомк*, розвідк*, αναζητησ*, τομεα*, τομεις, χαρτογραφ*, σαρωσ*,
+        *قطاع*, *مسح*, *جستجو*, *نقشه برداری*, *سکتور*, *חיפוש*, *גזרה*, *גזרת*, *סריק*, *סקר*, *מיפוי*, *खोज*,
+        *सेक्टर*, *सर्वेक्षण*, *तलाश*, *搜索*, *搜寻*, *搜尋*, *搜救*, *扇区*, *扇區*, *测绘*, *測繪*, *测区*,
+        *航测*, *航測*, *调查*, *調查*, *扫描*, *掃描*, *捜索*, *探索*, *セクター*, *測量*, *調査*, *수색*, *탐색*,
+        *섹터*, *측량*, *조사*, survey, surveys, surveying, such, suche, suchen, suchgebiet*, suchflach*, suchzone*,
+        suchraum*, suchbereich*, sucheinsatz*, suchauftrag*, suchstreifen*, vermessung, vermessungsgebiet*,
+        vermessungsflach*, vermessungsbereich*, zone de recherche*, zones de recherche*, aire de recherche*,
+        recherches, area di ricerca*, aree di ricerca*, zona di ricerca*, zone di ricerca*, ricerca dispersi,
+        περιοχη ερευν*, περιοχες ερευν*, ζωνη ερευν*, *منطقة البحث*, *منطقة بحث*, *مناطق البحث*, *عملية البحث*
     """,
     OBSTACLE: """
         building*, hall, halls, house, houses, shed, sheds, barn, barns, warehouse*, hangar*, silo*, garage*, roof,
@@ -94,7 +97,6 @@ _PATTERNS: Mapping[str, str] = {
         batiment*, edifici*, gebouw*, budyn*, budov*, bygning*, byggnad*, bina, binalar, здани*, будівл*, κτιρι*,
         *مبنى*, *مباني*, *ساختمان*, *בניין*, *मकान*, *इमारत*, *建筑*, *建築*, *建物*, *건물*
     """,
-    AREA: "zone, zones",
     FENCE: "geofence*, geozone*",
     TASK: """
         task, tasks, job, jobs, waypoint*, way point*, poi, pois, point of interest, points of interest, goal, goals,
@@ -144,22 +146,24 @@ _PATTERNS: Mapping[str, str] = {
         *無人航空*, *ドローン*, *コプター*, *飛行機*, *드론*, *무인기*, *콥터*, *항공기*, *비행기*, *무인 항공*
     """,
     GROUND: """
-        ground, wheeled, rover, rovers, ugv, ugvs, agv, agvs, amr, amrs, truck, trucks, lorry, lorries, van, vans,
-        car, cars, buggy, forklift*, tractor, tractors, crawler*, quadruped*, legged, robot dog*, robodog*,
-        turtlebot*, husky, jackal, mower*, atv, differential drive*, *rasenmaher*, *bodenroboter*, mahroboter*,
-        *bodenfahrzeug*, lkw, pkw, *stapler, traktor*, laufroboter*, raupe, terrestre*, camion*, tracteur*,
-        carretilla*, coche, coches, terrestr*, carrell*, muletto, trattor*, caminhao, caminhoes, empilhadeira*,
-        vrachtwagen*, *heftruck*, grondrobot*, grondvoertuig*, ciezarowk*, wozek*, wozki, lazik*, ladowy, ladowe,
-        pozemn*, vozik*, nakladni, *lastbil*, gaffeltruck*, bil, biler, bilar, markfordon*, bakkekjoretoy*,
-        kara arac*, ika, kamyon*, ровер*, наземн*, грузовик*, погрузчик*, автомобил*, вездеход*, вантажівк*,
-        навантажувач*, автомобіл*, επιγει*, φορτηγ*, *شاحنة*, *شاحنات*, *أرضي*, *کامیون*, *زمینی*, *لیفتراک*,
-        *خودرو*, *משאית*, *משאיות*, *קרקעי*, *מלגז*, *רובר*, *ट्रक*, *रोवर*, *无人车*, *無人車*, *小车*, *卡车*,
-        *卡車*, *叉车*, *地面*, *车辆*, *車両*, *トラック*, *ローバー*, *フォークリフト*, *地上*, *로버*, *트럭*,
-        *지게차*, *지상*
+        ground, wheeled, rover, rovers, ugv, ugvs, agv, agvs, amr, amrs, truck, trucks, lorry, lorries, vans, car,
+        cars, buggy, forklift*, tractor, tractors, crawler*, quadruped*, legged, robot dog*, robodog*, turtlebot*,
+        husky, jackal, mower*, atv, differential drive*, *rasenmaher*, *bodenroboter*, mahroboter*, *bodenfahrzeug*,
+        lkw, pkw, *stapler, traktor*, laufroboter*, raupe, terrestre*, camion*, tracteur*, carretilla*, coche,
+        coches, terrestr*, carrell*, muletto, trattor*, caminhao, caminhoes, empilhadeira*, vrachtwagen*, *heftruck*,
+        grondrobot*, grondvoertuig*, ciezarowk*, wozek*, wozki, lazik*, ladowy, ladowe, pozemn*, vozik*, nakladni,
+        *lastbil*, gaffeltruck*, bil, biler, bilar, markfordon*, bakkekjoretoy*, kara arac*, ika, kamyon*, ровер*,
+        наземн*, грузовик*, погрузчик*, автомобил*, вездеход*, вантажівк*, навантажувач*, автомобіл*, επιγει*,
+        φορτηγ*, *شاحنة*, *شاحنات*, *أرضي*, *کامیون*, *زمینی*, *لیفتراک*, *خودرو*, *משאית*, *משאיות*, *קרקעי*,
+        *מלגז*, *רובר*, *ट्रक*, *रोवर*, *无人车*, *無人車*, *小车*, *卡车*, *卡車*, *叉车*, *地面*, *车辆*, *車両*,
+        *トラック*, *ローバー*, *フォークリフト*, *地上*, *로버*, *트럭*, *지게차*, *지상*, delivery van
     """,
 }
 
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_SHORT_FOR = {"ao": BOUNDARY, "roi": SURVEY}
+_SHORT = re.compile(r"(?<![^\W_])(?:AO|ROI)(?![^\W_])")
+"""Area of operation, region of interest: in capitals, or alone; other languages have words of these letters."""
 _ASCII_WORD = re.compile("[a-z]+")
 _PLAIN = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "ı": "i", "æ": "ae", "œ": "oe", "ð": "d", "þ": "th"})
 
@@ -193,7 +197,12 @@ def _expressions() -> Mapping[str, re.Pattern[str]]:
 
 def meanings(text: str) -> Mapping[str, str]:
     """Return what the words of a text say, each meaning with the first word that has it."""
-    return _meanings(plain(text))
+    found = _meanings(plain(text))
+    short = _SHORT.search(text)
+    if short is None and plain(text).strip() not in _SHORT_FOR:
+        return found
+    word = plain(text).strip() if short is None else short[0]
+    return {_SHORT_FOR[word.casefold()]: word} | dict(found)
 
 
 @lru_cache(maxsize=4096)
