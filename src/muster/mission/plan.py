@@ -110,7 +110,8 @@ class Plan:
     Figures are None in a plan from elsewhere that does not state them. The times with and without traffic are a
     forecast of when all robots have ended their routes, ways home included, where they pass in turn; None where they
     do not. `cut_short` says that planning was ended before it had looked at every task that is left out, so that the
-    plan is a part of one; files have it only where it is true. Of the figures, `elapsed_s` and the seconds in `history` are times; all others are the same whenever mission, allocator, parameters and seed are.
+    plan is a part of one; files have it only where it is true. Of the figures, `elapsed_s` and the seconds in `history`
+    are times; all others are the same whenever mission, allocator, parameters and seed are.
 
     Raises
     ------
