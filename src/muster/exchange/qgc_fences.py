@@ -13,14 +13,13 @@ from typing import Any
 from muster.exchange.qgc_fields import Degrees, PlanFields
 from muster.exchange.qgc_flight import require_near
 from muster.exchange.sites.areas import around
+from muster.mission.circles import SIDES, enclosing
 from muster.mission.geodesy import enu_to_wgs84
 
 Corner = tuple[float, float]
 """Latitude and longitude in degrees, or metres of the map frame."""
 
 _SAME_M = 0.01
-_SIDES = 32
-"""Of the polygon in place of a circle: its corners lie within half a percent of the radius."""
 _LEAST_CORNERS = 3
 _AT = "geoFence"
 
@@ -91,10 +90,9 @@ def _circle(fields: PlanFields, circle: dict[str, Any], at: str, home: Degrees, 
 
 def ring_for_circle(center: Corner, radius_m: float, *, inside: bool) -> tuple[Corner, ...]:
     """Return the polygon in place of a circle: within it if the vehicle stays inside, around it otherwise."""
-    reach = radius_m if inside else radius_m / math.cos(math.pi / _SIDES)
-    turns = [2 * math.pi * k / _SIDES for k in range(_SIDES)]
-    places = [(reach * math.cos(turn), reach * math.sin(turn), 0.0) for turn in turns]
-    return tuple((lat, lon) for lat, lon, _ in enu_to_wgs84(places, (*center, 0.0)).tolist())
+    reach = radius_m * (math.cos(math.pi / SIDES) - 1e-6) if inside else radius_m
+    corners = [(east, north, 0.0) for east, north in enclosing((0.0, 0.0), reach)]
+    return tuple((lat, lon) for lat, lon, _ in enu_to_wgs84(corners, (*center, 0.0)).tolist())
 
 
 def map_of(
