@@ -26,6 +26,8 @@ def read(folder, heading, cell, *, file="drones.csv", tasks=writers.CSV, quoted=
         ("endurance_s", "1680", 1680),
         ("Max flight time [h]", "0,5", 1800),
         ("Flugzeit (Minuten)", "28", 1680),
+        ("Max. Flugzeit [min]", "28", 1680),
+        ("Autonomía máxima (min)", "28", 1680),
         ("Autonomie", "1 h 30 min", 5400),
         ("Autonomía (min)", "28", 1680),
         ("Время полёта (мин)", "28", 1680),

@@ -38,6 +38,12 @@ _SUBJECTS = frozenset(
 )
 """Words before a name that say of what it is: `Panel name`. Where no other column has names, one alone is the name."""
 
+_OF_LIMITS = frozenset(("endurance_s", "range_m", "speed_mps", "load_capacity"))
+_MOST = frozenset(
+    ("max", "maximum", "maximal", "maximale", "maximaler", "maximo", "máximo", "máxima", "massima", "макс")
+)
+"""Words beside the name of what is a greatest value anyway: `Max. range (km)`."""
+
 
 @dataclass(frozen=True)
 class Column:
@@ -249,8 +255,7 @@ def _readings(heading: str, key: SiteKey) -> Iterator[tuple[str, float, bool]]:
     default = math.nan if key.needs_unit and not own_name else 1.0
     unstated = key.unstated.get(heading.strip().casefold(), default)
     words = [word.casefold() for word in _WORD.findall(_CAMEL.sub(" ", base))]
-    for start in (0, 1) if len(words) > 1 and words[0] in _SUBJECTS else (0,):
-        own = words[start:]
+    for own in _fewer_words(words, key):
         is_wrong = unit in ALL_UNITS or (unit and key.dimension and not key.is_free)
         is_bare = not own_name and not unit and unstated == default
         yield "".join(own), units.get(unit, 0.0 if is_wrong else unstated), is_bare
@@ -259,6 +264,16 @@ def _readings(heading: str, key: SiteKey) -> Iterator[tuple[str, float, bool]]:
             name = own[: -2 if "/" in beside else -1]
             if beside in ALL_UNITS:
                 yield "".join(name[:-1] if name[-1:] == ["in"] else name), units.get(beside, 0.0), False
+
+
+def _fewer_words(words: list[str], key: SiteKey) -> Iterator[list[str]]:
+    """Yield the words of a heading, and those without words that say nothing of the key."""
+    yield words
+    if len(words) > 1 and words[0] in _SUBJECTS:
+        yield words[1:]
+    fewer = [word for word in words if word not in _MOST]
+    if key.name in _OF_LIMITS and 0 < len(fewer) < len(words):
+        yield fewer
 
 
 def _of_layer(layer: Layer, heading: str, value: str, expected: str) -> Finding:
