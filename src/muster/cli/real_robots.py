@@ -176,9 +176,7 @@ def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> P
 
 def require_whole(plan: Plan, options: RealRunOptions) -> Plan:
     """Return a plan; raise `CutShortError` if planning was cut short, and that is not accepted."""
-    from muster.verification.required import require_whole as required
-
-    required(plan, accept_partial=options.accept_partial)
+    plan.require_whole(accept_partial=options.accept_partial)
     return plan
 
 
