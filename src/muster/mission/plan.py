@@ -172,9 +172,7 @@ class Plan:
             if the plan was cut short.
         """
         if self.cut_short and not accept_partial:
-            expected = (
-                "more time (--time-limit, time_limit), or that a part is accepted (--accept-partial, accept_partial)"
-            )
+            expected = "more time (--time-limit), or that a part is accepted (--accept-partial, accept_partial=True)"
             raise CutShortError(f"{self.cut_short_line}; nothing was started; expected {expected}")
 
     def as_dict(self) -> dict[str, Any]:
