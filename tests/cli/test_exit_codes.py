@@ -52,3 +52,33 @@ def test_an_armed_robot_decides_whatever_exception_ends_the_command(monkeypatch,
     monkeypatch.setattr(main._Verbs, "get_command", lambda *_: command)
     assert main.run(["fails"]) == (4 if armed else code)
     assert "Traceback" not in capfd.readouterr().err
+
+
+MISSION = """
+schema: muster/1
+robots: [{id: r_0, position: [0, 0], work_capacity: 50}]
+tasks: [{id: near, position: [1, 0]}, {id: far, position: [900, 0]}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "ending"),
+    [
+        (["solve", "m.yaml"], Ending.DONE),
+        (["solve", "m.yaml", "--require-complete"], Ending.LEFT_OUT),
+        (["simulate", "m.yaml", "--require-complete"], Ending.LEFT_OUT),
+        (["verify", "m.yaml", "wrong.json"], Ending.REJECTED),
+        (["solve", "none.yaml"], Ending.REFUSED),
+        (["solve", "m.yaml", "--objective", "best"], Ending.REFUSED),
+    ],
+)
+def test_verbs_end_as_the_table_says(tmp_path, monkeypatch, capsys, words, ending):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.yaml").write_text(MISSION)
+    (tmp_path / "wrong.json").write_text(
+        '{"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["near", "far"]}]}'
+    )
+    assert main.run(words) == ending.code
+    assert words[0] in ending.verbs or ending.verbs == "all"
+    said = capsys.readouterr()
+    assert ending.words.removeprefix("; ") in said.out + said.err

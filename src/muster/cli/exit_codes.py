@@ -11,6 +11,11 @@ from enum import Enum
 import click
 
 from muster.cli import exits
+from muster.mission.errors import MusterError
+
+
+class IncompletePlanError(MusterError):
+    """A plan that leaves tasks out is not carried out: it was cut short, or has to be complete."""
 
 
 class Ending(Enum):
@@ -34,7 +39,7 @@ class Ending(Enum):
         exits.STILL_MOVING,
         "a real robot still flies or drives, is armed, or did or was when it was last heard",
         "`fly`, `ros`, `ros2`",
-        "flies; at (",
+        "; at (",
         "entry `final_states` of the run",
     )
     INTERNAL_ERROR = (exits.INTERNAL_ERROR, "an error of Muster itself", "all", "internal error:", "500; run `failed`")

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.exit_codes import Ending, Invocation, exit_code
+from muster.cli.exit_codes import Ending, IncompletePlanError, Invocation, exit_code
 from muster.mission.errors import CutShortError, MusterError
 from muster.mission.value_types import shown
 
@@ -189,7 +189,7 @@ def _told(error: BaseException) -> Ending:
     if isinstance(error, click.ClickException):
         error.show(sys.stderr)
         return Ending.REFUSED
-    if isinstance(error, CutShortError):
+    if isinstance(error, (CutShortError, IncompletePlanError)):
         click.echo(str(error), err=True)
         return Ending.CUT_SHORT
     if isinstance(error, MusterError):

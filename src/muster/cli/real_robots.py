@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.cli.exit_codes import Ending, exit_code_if, note_ending
+from muster.cli.exit_codes import Ending, IncompletePlanError, exit_code_if, note_ending
 from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
 from muster.cli.options import (
     Finite,
@@ -165,8 +165,8 @@ def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> P
 
     Raises
     ------
-    CutShortError
-        if planning was cut short, and that is not accepted.
+    IncompletePlanError
+        if planning was cut short, and that is not accepted, or a task is left out with --require-complete.
     """
     from muster.planning.solving import answer
 
@@ -175,8 +175,12 @@ def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> P
 
 
 def require_whole(plan: Plan, options: RealRunOptions) -> Plan:
-    """Return a plan; raise `CutShortError` if planning was cut short, and that is not accepted."""
+    """Return a plan; raise an error if it was cut short or is not complete, and that is not accepted."""
     plan.require_whole(accept_partial=options.accept_partial)
+    if options.require_complete and not plan.complete:
+        known = plan.tasks_completed is not None and plan.tasks_total is not None
+        counts = f"{plan.tasks_completed} of {plan.tasks_total}" if known else "not all"
+        raise IncompletePlanError(f"{counts} tasks are planned; nothing was started; expected all (--require-complete)")
     return plan
 
 

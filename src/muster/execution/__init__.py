@@ -1,12 +1,13 @@
 """Carrying a plan out: dispatch, monitoring, re-allocation. Robots are reached through ports alone."""
 
 from muster.allocation.rewiring import rewire
+from muster.execution.broken_off import broken_off, compared_in_part
 from muster.execution.completed_work import CompletedTask, CompletedWork
 from muster.execution.executor import Executor
 from muster.execution.monitor import Limits
 from muster.execution.reallocation import Reallocation, Revision
 from muster.execution.record import ExecutionEvent, Observer, Recorder
-from muster.execution.report import Report, broken_off, compared_in_part, report_of
+from muster.execution.report import Report, report_of
 from muster.execution.standing import Standing
 from muster.execution.status import RobotStatus, Status, status_of
 from muster.execution.travel import travel_of, way_of

@@ -18,6 +18,7 @@ from muster.bridges.mavlink.simulated_autopilot import faults_of, serve
 from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.bridges.mavlink.simulated_earth import origin_at
 from muster.bridges.mavlink.simulated_faults import Faults
+from muster.cli.exit_codes import Ending
 from muster.cli.exits import BAD_INPUT, DONE, INCOMPLETE, STILL_MOVING, TASKS_LOST
 from muster.cli.main import run
 from muster.mission.errors import ParameterError
@@ -144,6 +145,8 @@ def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
     out, err = process.communicate(timeout=30)
     places = [drone.flight.place for drone in drones]
     assert process.returncode == STILL_MOVING  # which counts more than that it was interrupted
+    assert Ending.STILL_MOVING.words in err
+    assert Ending.INTERRUPTED.words in err
     assert "still flying, driving or armed: r_0, r_1; land or stop them" in err
     assert re.search(r"interrupted at \d+\.\d s of the mission; drones were told to hover", err)
     assert "Traceback" not in err
@@ -216,6 +219,7 @@ def test_a_mission_whose_time_is_over_is_refused_or_shifted(mission, port, drone
     mission.write_text(timed + "starts_at: 2026-11-01T09:00\n")
     assert fly(mission, port, "--arm") == BAD_INPUT
     (line,) = capsys.readouterr().err.splitlines()
+    assert Ending.REFUSED.words in line
     assert re.search(
         r"starts_at 2026-11-01T09:00 was \d+\.\d days ago, and the time for task near is over; expected", line
     )
@@ -242,7 +246,8 @@ def test_a_plan_that_was_cut_short_is_not_flown_unless_told(mission, port, drone
     said = (
         "planning was cut short: 1 of 1 tasks are planned; nothing was started; expected more time (--time-limit), or"
     )
-    assert said in capsys.readouterr().err
+    assert said in (err := capsys.readouterr().err)
+    assert Ending.CUT_SHORT.words in err
     assert not drone.armed
     assert fly(mission, port, "--arm", "--accept-partial", "--at-end", "land", *plan) == DONE
 
@@ -300,6 +305,7 @@ def test_a_drone_that_fails_is_named_with_its_reason_and_its_task_is_lost(missio
     reason = "arm refused: MAV_CMD_COMPONENT_ARM_DISARM: MAV_RESULT_DENIED (PreArm: compass not healthy)"
     assert re.search(rf"\d s  robot fails: robot r_0, reason {re.escape(reason)}", said.err)
     assert f"r_0: {reason}" in said.err
+    assert f"1 task {Ending.TASKS_LOST.words}: near" in said.err
     assert "near" in said.out
 
 

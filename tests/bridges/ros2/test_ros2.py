@@ -1,8 +1,10 @@
 """`muster ros2` over DDS: simulated robots, and the command, as processes of their own, on this computer alone."""
 
 import json
+import os
 import signal
 import sys
+import threading
 import time
 
 import pytest
@@ -13,7 +15,16 @@ from muster.cli.main import run
 pytest.importorskip("cyclonedds")
 
 from muster.bridges.ros2.dds import DdsMiddleware
-from muster.bridges.ros2.message_types import Odometry, PoseStamped
+from muster.bridges.ros2.message_types import (
+    Header,
+    Odometry,
+    PoseStamped,
+    TFMessage,
+    Time,
+    Transform,
+    TransformStamped,
+    Vector3,
+)
 
 pytestmark = pytest.mark.usefixtures("loopback")
 MISSION = """
@@ -179,3 +190,54 @@ def test_without_nav2_it_says_so(mission, monkeypatch, capsys):
     assert run(["ros2", mission, "--give", "nav2", "--wait", "0.2"]) == 2
     said = "robot r-1: no server of /r_1/navigate_to_pose within 0.2 s; expected its pose, and Nav2\n"
     assert capsys.readouterr().err == said
+
+
+@pytest.fixture
+def odometry(loopback):
+    """Robots that say again and again that they are at (0, 0) of a frame; what tf says; goals that they get."""
+    robots, over = DdsMiddleware(), threading.Event()
+    tf = robots.writer("/tf", TFMessage)
+    goals = {name: robots.reader(f"/{name}/goal_pose", PoseStamped) for name in ("r_0", "r_1")}
+    says = []
+
+    def speak():
+        writers = {name: robots.writer(f"/{name}/odom", Odometry) for name in goals}
+        while not over.wait(0.05):
+            for name, frame, place in says:
+                writers[name].write(Odometry(Header(frame_id=frame)))
+                if place is not None:
+                    header = Header(stamp=Time(1, 0), frame_id="map")
+                    tf.write(TFMessage((TransformStamped(header, frame, Transform(Vector3(*place, 0.0))),)))
+
+    speaker = threading.Thread(target=speak)
+    speaker.start()
+    yield says, goals
+    over.set()
+    speaker.join()
+    robots.close()
+
+
+def test_robots_in_a_frame_that_nothing_ties_to_the_map_are_refused_and_sent_nowhere(odometry, mission, capsys):
+    says, goals = odometry
+    says += [("r_0", "map", None), ("r_1", "r_1/odom", None)]
+    assert run(["ros2", mission, *QUICK, "--wait", "2"]) == 2
+    said = "robot r-1: its poses are in frame r_1/odom, which tf does not tie to map within 2 s; expected its pose\n"
+    assert capsys.readouterr().err == said
+    assert [reader.take() for reader in goals.values()] == [[], []]
+
+
+def test_robots_are_where_tf_says_that_their_odometry_begins(odometry, mission, capsys):
+    says, goals = odometry
+    says += [("r_0", "r_0/odom", (1.0, 0.0)), ("r_1", "r_1/odom", (0.0, 4.5))]
+
+    def end_when_a_goal_was_sent():
+        while not any(reader.take() for reader in goals.values()):
+            time.sleep(0.05)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    ends = threading.Thread(target=end_when_a_goal_was_sent, daemon=True)
+    ends.start()
+    assert run(["ros2", mission, *QUICK, "--wait", "30"]) == 130
+    said = capsys.readouterr().err
+    assert "robot r_0 begins at (1.00, 0.00), where it stands, not at (0.00, 0.00)" in said
+    assert "robot r-1 begins at (0.00, 4.50), where it stands, not at (0.00, 3.00)" in said

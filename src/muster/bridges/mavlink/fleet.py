@@ -170,6 +170,7 @@ class MavlinkFleet:
         """Where each drone is now, and what it does; drones that were not listened to are, for a moment."""
         if not self._listened:
             self._listen_until(self.time_s + _HEARTBEAT_S, lambda drone: drone.autopilot is not None)
+            self._listen_until(self.time_s + _HEARTBEAT_S, lambda drone: drone.located or not drone.telemetry.armed)
         with self._lock:
             return [final_state_of(session.drone, self.time_s) for session in self.sessions.values()]
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from muster.mission.errors import MusterError
-from muster.running.fleets import declared_claims
 from muster.running.worlds import WORLDS
 
 
@@ -29,6 +28,8 @@ def claims_of(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
         return frozenset()
     if world in _CLAIMS:
         return frozenset(_CLAIMS[world](settings))
+    from muster.running.fleets import declared_claims
+
     declared = declared_claims(world, settings)
     return frozenset({f"fleet {world}"}) if declared is None else declared
 

@@ -2,7 +2,8 @@
 
 A stretch is a zlib stream of a header in JSON, one line of it, and numbers: milliseconds of each step, then of each
 step and robot x, y, z (mm), heading (mrad) and velocities (mm/s), each as int32 less that of the step before. A robot
-that is not there has the least int32.
+that is not there has the least int32. Where milliseconds do not fit the header has those of the first step (`from_ms`),
+and the others are counted from there.
 """
 
 from __future__ import annotations
@@ -46,12 +47,17 @@ class Steps:
 
 def packed(steps: Steps) -> bytes:
     """A stretch as bytes."""
-    head = json.dumps({"robots": list(steps.robots), "steps": len(steps.times_s)}, ensure_ascii=False).encode()
+    times_ms = np.rint(steps.times_s * 1000).astype(np.int64)
+    said = {"robots": list(steps.robots), "steps": len(steps.times_s)}
+    if len(times_ms) and times_ms[-1] > np.iinfo(np.int32).max:  # of a mission that began 24 days ago, or more
+        said["from_ms"] = int(times_ms[0])
+        times_ms = times_ms - times_ms[0]
+    head = json.dumps(said, ensure_ascii=False).encode()
     quantised = np.where(
         np.isfinite(steps.states), np.clip(np.rint(steps.states * 1000), -_LARGEST, _LARGEST), _NOWHERE
     )
     numbers = quantised.astype(np.int64).reshape(len(steps.times_s), -1)
-    rows = np.column_stack([np.rint(steps.times_s * 1000).astype(np.int64), numbers])
+    rows = np.column_stack([times_ms, numbers])
     less = np.diff(rows, axis=0, prepend=0).astype(np.int32)  # wraps around, and back when it is summed up
     return zlib.compress(head + b"\n" + less.T.tobytes(), level=6)
 
@@ -67,14 +73,14 @@ def unpacked(data: bytes) -> Steps:
     try:
         head, _, body = zlib.decompress(data).partition(b"\n")
         said = json.loads(head)
-        robots, count = tuple(said["robots"]), int(said["steps"])
+        robots, count, from_ms = tuple(said["robots"]), int(said["steps"]), int(said.get("from_ms", 0))
         less = np.frombuffer(body, dtype=np.int32).reshape(1 + len(robots) * VALUES, count).T
     except (zlib.error, KeyError, TypeError, ValueError) as error:
         raise ValueError(f"no stretch of tracks: {error}") from None
     rows = np.cumsum(less, axis=0, dtype=np.int32)
     states = rows[:, 1:].reshape(count, len(robots), VALUES)
     there = states != _NOWHERE
-    return Steps(robots, rows[:, 0] / 1000, np.where(there, states / 1000, np.nan))
+    return Steps(robots, (rows[:, 0] + np.int64(from_ms)) / 1000, np.where(there, states / 1000, np.nan))
 
 
 class Track:

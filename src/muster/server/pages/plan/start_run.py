@@ -49,6 +49,10 @@ def open_start(entry: PlanEntry, dimensions: int) -> None:
         world = _choice("In which world", simulated | bridges, "kinematic").props('id="world"')
         speed = _choice("How fast", _SPEEDS, "1").bind_visibility_from(world, "value", simulated.__contains__)
         form = ui.element("div").classes("full")
+        now = ui.checkbox("Starts now: all times of the mission are shifted").props('id="starts-now"')
+        now.bind_visibility_from(world, "value", lambda name: name not in simulated)
+        partial = ui.checkbox("Planning was cut short: carry out what is planned").props('id="accept-partial"')
+        partial.set_visibility(bool(entry.plan.get("cut_short")))
         reading: list[Reading] = []
 
         def ask() -> None:
@@ -60,10 +64,13 @@ def open_start(entry: PlanEntry, dimensions: int) -> None:
         ask()
 
         async def begin() -> None:
-            pace = float(speed.value) if speed.value else None
+            pace, settings = float(speed.value) if speed.value else None, reading[0]()
+            if partial.value:
+                settings["accept_partial"] = True
             if world.value not in simulated:
                 pace = 1.0
-            run = await the_services().runs.start(the_user(), entry.id, world.value, pace, **reading[0]())
+                settings |= {"starts": "now"} if now.value else {}
+            run = await the_services().runs.start(the_user(), entry.id, world.value, pace, **settings)
             ui.navigate.to(f"/live/{run.id}")
 
         with ui.element("div").classes("dialog-buttons"):
