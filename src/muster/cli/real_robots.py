@@ -176,9 +176,7 @@ def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> P
 
 def require_whole(plan: Plan, options: RealRunOptions) -> Plan:
     """Return a plan; raise `IncompletePlanError` if it was cut short or is not complete, and that is not accepted."""
-    from muster.verification.required import require_whole as required
-
-    required(plan, accept_partial=options.accept_partial)
+    plan.require_whole(accept_partial=options.accept_partial)
     if options.require_complete and not plan.complete:
         known = plan.tasks_completed is not None and plan.tasks_total is not None
         counts = f"{plan.tasks_completed} of {plan.tasks_total}" if known else "not all"

@@ -44,7 +44,6 @@ from muster.mission.plan_reader import read_plan
 from muster.motion.laws import LAWS
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
-from muster.verification.required import require_whole
 
 if TYPE_CHECKING:
     from muster import Negotiation
@@ -207,7 +206,7 @@ def command(
     else:
         planned = _plan(backend, request_of(options, loaded, start, fixed), quiet=quiet)
     if isinstance(planned, Plan):
-        require_whole(planned, accept_partial=accept_partial)
+        planned.require_whole(accept_partial=accept_partial)
     footage = footage_of(loaded) if film is not None or still is not None else None
     rules = {} if negotiate else {"ignore": options.ignore, "planning": options, "standing": standing}
     with kept_record(record, html, plot, gantt) as file, shown_live(loaded, foxglove, quiet=quiet) as observers:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from muster.mission.auction_book import Book
 from muster.mission.data_frames import data_frame
+from muster.mission.errors import CutShortError
 from muster.mission.html_tables import html_line, html_table
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.stations import station_sign
@@ -160,7 +161,19 @@ class Plan:
             return ""
         done = len({task for route in self.routes for task in route.tasks if task not in route.stations})
         of_all = "" if self.tasks_total is None else f" of {self.tasks_total}"
-        return f"planning was cut short: {done}{of_all} tasks are planned, and not all others were looked at"
+        return f"planning was cut short: {done}{of_all} tasks are planned"
+
+    def require_whole(self, *, accept_partial: bool = False) -> None:
+        """Raise for a plan that planning did not finish, unless a part of one is accepted.
+
+        Raises
+        ------
+        CutShortError
+            if the plan was cut short.
+        """
+        if self.cut_short and not accept_partial:
+            expected = "more time (--time-limit), or that a part is accepted (--accept-partial, accept_partial=True)"
+            raise CutShortError(f"{self.cut_short_line}; nothing was started; expected {expected}")
 
     def as_dict(self) -> dict[str, Any]:
         """The plan as its file holds it."""

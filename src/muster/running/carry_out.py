@@ -89,10 +89,9 @@ def carry_out(
         over.
     """
     from muster.running.live import carry_out_live
-    from muster.verification.required import require_whole
 
     require_mission(mission)
-    require_whole(plan, accept_partial=accept_partial)
+    plan.require_whole(accept_partial=accept_partial)
     remarks: list[str] = []
     with recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
         report = carry_out_live(

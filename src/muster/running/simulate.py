@@ -15,7 +15,6 @@ from muster.mission.value_types import shown
 from muster.planning.request import require_mission
 from muster.running.recorded import recorded
 from muster.running.simulation_options import SimulationOptions
-from muster.verification.required import require_whole
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
@@ -76,7 +75,7 @@ def simulate(
     require_known(how, (*SimulationOptions.__annotations__, "seed", "accept_partial", "record", "film", "observers"))
     require_mission(mission)
     if isinstance(plan, Plan):
-        require_whole(plan, accept_partial=accept_partial)
+        plan.require_whole(accept_partial=accept_partial)
     carry_out = _runner(mission, plan)
     if film is not None:
         footage = _footage(mission, film)

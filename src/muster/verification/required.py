@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from muster.mission.errors import CutShortError, Finding, NotSupportedError, PlanError
+from muster.mission.errors import Finding, NotSupportedError, PlanError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.verification.closed_areas import ClosedAreas
@@ -46,19 +46,6 @@ def require_open_ways(mission: Mission, plan: Plan, file: str = "<plan>") -> Non
     robots = {robot.id: robot for robot in mission.robots}
     found = [one for name, stops in routes.items() for one in closed_legs(mission, areas, robots[name], stops)]
     _refuse(mission, found, file)
-
-
-def require_whole(plan: Plan, *, accept_partial: bool = False) -> None:
-    """Raise for a plan that planning did not finish, unless a part of one is accepted.
-
-    Raises
-    ------
-    CutShortError
-        if the plan was cut short.
-    """
-    if plan.cut_short and not accept_partial:
-        expected = "more time (--time-limit, time_limit), or that a part is accepted (--accept-partial, accept_partial)"
-        raise CutShortError(f"{plan.cut_short_line}; nothing was started; expected {expected}")
 
 
 def require_geometry(mission: Mission, what: str) -> None:
