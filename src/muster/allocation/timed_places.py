@@ -122,29 +122,38 @@ class TimedPlaces(TimedTeams):
 
     # --- the rule that leaves no place -------------------------------------------------------------------------------
 
-    def _refused(self, i: int, j: int, places: list[Place]) -> Outcome:
-        """The first rule with which, beside those before it, no place is left."""
-        words = tuple(_RELAXED)
-        left = self._admissible(self.without(words), places)
+    def _refused(self, i: int, j: int, places: list[Place], unproven: Sequence[str] = ()) -> Outcome:
+        """The first rule with which, beside those before it, no place is left.
+
+        Rules that are not proven to be broken, as other calls at stations may keep them, are looked away from.
+        """
+        words = tuple(word for word in _RELAXED if word not in unproven)
+        left = self._admissible(self.without((*words, *unproven)), places)
         if not left:
             return self._no_order(i, j, places)
         for at, word in enumerate(words):
-            before, left = left, self._admissible(self.without(words[at + 1 :]), [place for place, _ in left])
-            if not left and (tie := self._tie_to_others(j)) and not self._is_by_itself(word, i, j, before):
+            others = (*words[at + 1 :], *unproven)
+            before, left = left, self._admissible(self.without(others), [place for place, _ in left])
+            if left:
+                continue
+            if _RELAXED[word].kept_by_calls and not self._is_proven(others, before):
+                return self._refused(i, j, places, (*unproven, word))
+            if (tie := self._tie_to_others(j)) and not self._is_by_itself(word, i, j, before):
                 detail = f"at every place in its route another robot that it needs would break the rule {word}"
                 return Outcome(word=tie, detail=detail)
-            if not left and _RELAXED[word].kept_by_calls and not self._is_proven(words[at + 1 :], i, before):
-                return Outcome()
-            if not left:
-                return Outcome(word=word, detail=self._detail(word, i, j, before))
-        raise AssertionError("a place that keeps all rules is admissible")
+            return Outcome(word=word, detail=self._detail(word, i, j, before))
+        assert unproven  # or a place that keeps all rules would be admissible
+        return Outcome()
 
-    def _is_proven(self, later: Sequence[str], i: int, left: list[tuple[Place, core.Inspection]]) -> bool:
-        """Whether robot i cannot do its route with the task at any place, wherever it calls at stations."""
+    def _is_proven(self, others: Sequence[str], left: list[tuple[Place, core.Inspection]]) -> bool:
+        """Whether at each place a robot cannot do its route, wherever it calls at stations, `others` not holding."""
         if not self.problem.stations:
             return True
-        bounds = self.bounds_without(tuple(later))
-        return all(bounds.excludes(i, place.routes[i]) for place, _ in left)
+        bounds = self.bounds_without(tuple(others))
+        return all(
+            any(bounds.excludes(k, route) for k, route in enumerate(place.routes) if route != self.routes[k])
+            for place, _ in left
+        )
 
     def _tie_to_others(self, j: int) -> str:
         """The rule by which other robots must do something beside one that does a task; empty: none."""
