@@ -11,7 +11,7 @@ import muster
 from muster.allocation.exact import solve_exactly
 from muster.allocation.problem import Problem
 from muster.allocation.work_shortfall import shortfalls
-from muster.mission.model import Mission, Robot, Rules, Task
+from muster.mission.model import Battery, Lag, Mission, Robot, Rules, Task
 from muster.planning.judging import admits
 from muster.verification import verify
 
@@ -53,7 +53,7 @@ def test_routes_round_an_impossible_cycle_have_no_schedule():
 
 
 def _task(prerequisites=(), **keys):
-    lags = {one["task"]: muster.mission.model.Lag(within_s=one["within_s"]) for one in prerequisites}
+    lags = {one["task"]: Lag(within_s=one["within_s"]) for one in prerequisites}
     return Task(**keys, prerequisites=tuple(lags), lags=lags)
 
 
@@ -205,7 +205,7 @@ def test_a_teams_work_counts_for_each_member_as_long_as_for_the_slowest():
     ("keys", "resource", "available"),
     [
         ({"work_capacity": 5}, "capacity", 15),
-        ({"battery": muster.mission.model.Battery(capacity=5, reserve=0.2)}, "battery", 12),
+        ({"battery": Battery(capacity=5, reserve=0.2)}, "battery", 12),
     ],
 )
 def test_work_that_is_more_than_all_capacities_or_batteries(keys, resource, available):
@@ -224,3 +224,21 @@ def test_work_that_must_be_over_by_the_last_deadline():
 def test_enough_is_no_shortfall():
     tasks = tuple(Task(id=str(k), position=(0, 0), duration_s=30) for k in range(6))
     assert shortfalls(Problem.compile(Mission(robots=robots_with(available_until_s=60), tasks=tasks)), range(6)) == ()
+
+
+# --- states of the core ----------------------------------------------------------------------------------------------
+
+
+def test_what_a_task_took_the_last_robot_says_nothing_of_the_next():
+    """A robot of half the efficiency would take more than the other's battery holds."""
+    robots = (
+        Robot(id="r", position=(0, 0), battery=Battery(capacity=10)),
+        Robot(id="slow", position=(0, 0), efficiency=0.5, battery=Battery(capacity=30)),
+    )
+    task = Task(id="t", position=(2, 0), duration_s=7)
+    problem = Problem.compile(Mission(rules=Rules(usage="time", timing="constant"), robots=robots, tasks=(task,)))
+    r, slow = problem.robot_index["r"], problem.robot_index["slow"]
+    roster = muster.core.Roster(problem.core)
+    assert roster.begin([[0] if i == slow else [] for i in range(2)])
+    roster.remove(0)
+    assert roster.best_insertion(0, robots=[r]).members == [(0, r, 0)]

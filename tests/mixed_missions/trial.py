@@ -177,7 +177,8 @@ class Trial:
             added = self._with(item.task)
             for number, robot in enumerate(self.mission.robots):
                 reason = next(one for one in item.reasons if one.robot == robot.id) if item.reasons else None
-                if reason is None:
+                missing = set(self.every.tasks[item.task].prerequisites).difference(*own)
+                if reason is None or (missing and reason.reason == "prerequisite"):  # which is true as it is said
                     continue
                 self.report.counts[f"reason {reason.reason}"] += 1
 

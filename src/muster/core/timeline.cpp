@@ -260,7 +260,10 @@ void Timeline::remove(int unit) {
 void Timeline::vanish(int unit) {
   nodes_[unit].visits.clear();
   tails_[unit] = -kNever;
-  for (const int task : problem_.tasks_of_unit(unit)) ends_[task] = -kNever;
+  for (const int task : problem_.tasks_of_unit(unit)) {
+    ends_[task] = -kNever;
+    work_[task] = 0.0;  // by nobody yet: what it took the last robot says nothing of the next
+  }
 }
 
 void Timeline::save(int unit) {

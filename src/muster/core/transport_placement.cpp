@@ -146,7 +146,11 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   const double out = seconds(delivery, next);
   const double arrive = std::max({second_ready_, walk.pickup_end + after_, walk.time + in});
   const double begin = timeline_.open(problem_.unit(delivery), arrive);
-  if (!timeline_.in_time(begin, second_latest_) || begin - walk.pickup_end > within_) return;
+  if (!timeline_.in_time(begin, second_latest_)) return;
+  // A pick-up that would end too long before its delivery begins later, if it may.
+  const double later = std::max(0.0, begin - walk.pickup_end - within_);
+  if (later > 0.0 && (!timeline_.in_time(walk.pickup_begin + later, latest_) || (at == walk.at && in > within_)))
+    return;
   if (!timeline_.in_time(begin + work + out, latest_begin(robot, at + 1))) return;
   const bool beside = at == walk.at, empty = timeline_.tasks_in(robot) == 0;
   double growth = walk.growth + problem_.travel_usage(robot, walk.place, delivery) +
