@@ -58,7 +58,7 @@ def test_a_site_stands_where_a_mission_does(muster, files):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["none.csv"], "none.csv: No such file or directory; expected a file to read\n"),
+        (["none.csv"], "none.csv: No such file or directory; expected a file to read; did you mean 'panels.csv'?\n"),
         (
             ["panels.csv"],
             "panels.csv: robots: missing; expected a sheet or file of robots whose name says so (robots.csv), or",

@@ -146,7 +146,7 @@ def test_heights_that_are_left_out_are_passed_over(tmp_path, robots):
 )
 def test_a_place_that_another_is_stronger_than_is_passed_over(cells, read, tmp_path):
     """What is read moves the task; what is passed over does not."""
-    (tmp_path / "robots.csv").write_text("id,lat,lon,z\nr_0,47.3768,8.5416,0\n", encoding="utf-8")
+    (tmp_path / "robots.csv").write_text("id,lat,lon,z,kind\nr_0,47.3768,8.5416,0,air\n", encoding="utf-8")
 
     def read_cells(**cells):
         file = tmp_path / "site.csv"
