@@ -2,6 +2,7 @@
 
 import pytest
 
+import muster
 from muster.allocation.problem import Problem
 from muster.mission.errors import NotSupportedError
 from muster.mission.lanes import Lane, Lanes
@@ -75,3 +76,13 @@ def test_numbers_whose_sums_may_overflow(robot, tasks):
 def test_nodes_of_lanes_too_far_away_are_refused():
     lanes = Lanes(nodes={"a": (0, 0), "b": (1, -1e300)}, edges=(Lane(start="a", end="b"),))
     assert refused(mission_of((Task(id="a", position=(0, 0)),), lanes=lanes)).value == "numbers too large or too small"
+
+
+def test_an_action_may_take_no_time(tmp_path):
+    file = tmp_path / "mission.yaml"
+    file.write_text(
+        "schema: muster/1\nname: m\nrobots: [{id: r_0, position: [0, 0]}]\n"
+        "tasks: [{id: a, position: [1, 0], action: {name: sensor-activation, duration_s: 0}}]\n",
+        encoding="utf-8",
+    )
+    assert muster.load(file).tasks[0].action.duration_s == 0

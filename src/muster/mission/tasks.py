@@ -32,8 +32,10 @@ from muster.mission.value_types import (
     shown,
 )
 
-_ABSENT = (None, (), False)
-"""Values of keys that an action does not have."""
+
+def _is_given(value: object) -> bool:
+    """Return whether a value of an action's key is one; 0 is."""
+    return not (value is None or value is False or value == ())
 
 
 @record
@@ -116,7 +118,7 @@ class Action(Checked):
         keys = ACTION_KEYS[name]
         given = {
             *extra,
-            *(key for key, value in values.items() if value not in _ABSENT and key not in ("name", "extra")),
+            *(key for key, value in values.items() if _is_given(value) and key not in ("name", "extra")),
         }
         for key in keys.needed:
             if key not in given:
