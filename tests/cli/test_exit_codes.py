@@ -64,9 +64,9 @@ tasks: [{id: near, position: [1, 0]}, {id: far, position: [900, 0]}]
 @pytest.mark.parametrize(
     ("words", "ending"),
     [
-        (["solve", "m.yaml"], Ending.DONE),
-        (["solve", "m.yaml", "--require-complete"], Ending.LEFT_OUT),
-        (["simulate", "m.yaml", "--require-complete"], Ending.LEFT_OUT),
+        (["solve", "m.yaml", "--iterations", "9"], Ending.DONE),
+        (["solve", "m.yaml", "--iterations", "9", "--require-complete"], Ending.LEFT_OUT),
+        (["simulate", "m.yaml", "--iterations", "9", "--require-complete"], Ending.LEFT_OUT),
         (["verify", "m.yaml", "wrong.json"], Ending.REJECTED),
         (["solve", "none.yaml"], Ending.REFUSED),
         (["solve", "m.yaml", "--objective", "best"], Ending.REFUSED),

@@ -187,12 +187,12 @@ def test_a_name_that_cannot_be_printed_is_escaped_and_cut(tmp_path, robots):
 
 def test_the_ledger_of_any_number_of_kinds_is_short_and_complete(tmp_path, robots):
     file = tmp_path / "site.geojson"
-    point = writers.feature("Point", [8.5417, 47.377], **{f"p{k}": 1 for k in range(5_000)})
+    point = writers.feature("Point", [8.5417, 47.377], **{f"p{k}": 1 for k in range(2_500)})
     file.write_text(writers.geojson(point), encoding="utf-8")
     ledger = read_site(file, robots=robots).ledger
     assert_complete(ledger, file)
     assert len(ledger.rows) < 2_100
-    assert rows_of(ledger, file)["other kinds: means nothing for a task"] > 2_900
+    assert rows_of(ledger, file)["other kinds: means nothing for a task"] > 400
 
 
 SHAPES = {
