@@ -33,7 +33,8 @@ pytestmark = pytest.mark.usefixtures("folder")
 )
 def test_json_on_standard_output_is_pure(arguments, plan):
     done = subprocess.run([MUSTER, *arguments, "--format", "json"], capture_output=True, encoding="utf-8", check=False)
-    assert done.returncode == 0
+    impossible = arguments == ["check", "yard.yaml"]  # nobody has a gripper
+    assert done.returncode == (3 if impossible else 0)
     json.loads(done.stdout)
     assert done.stderr == "" or "-v" in arguments
 
