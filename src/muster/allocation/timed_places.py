@@ -138,7 +138,11 @@ class TimedPlaces(TimedTeams):
                 continue
             if _RELAXED[word].kept_by_calls and not self._is_proven(others, before):
                 return self._refused(i, j, places, (*unproven, word))
-            if (tie := self._tie_to_others(j)) and not self._is_by_itself(word, i, j, before):
+            tie = self._tie_to_others(j)
+            if tie and not _RELAXED[word].concerns(self.problem, j):
+                detail = f"at every place in its route the tasks that come with it would break the rule {word}"
+                return Outcome(word=tie, detail=detail)
+            if tie and not self._is_by_itself(word, i, j, before):
                 detail = f"at every place in its route another robot that it needs would break the rule {word}"
                 return Outcome(word=tie, detail=detail)
             return Outcome(word=word, detail=self._detail(word, i, j, before))

@@ -133,6 +133,10 @@ class Load(Rule):
         refused = self.refusal(plan.problem, i, j)
         return refused or plan.kept_out(self.word, i, j)
 
+    def concerns(self, problem: Question, j: int) -> bool:
+        other = problem.partners[j]
+        return any(problem.tasks[k].load is not None for k in (j, other) if k is not None)
+
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
         return "at every place in its route it would carry more than it can, or put down more than it has"
 

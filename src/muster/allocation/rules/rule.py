@@ -281,6 +281,10 @@ class Rule:
         """Why robot i does not do task j, which a plan leaves out; None if this rule does not keep it from it."""
         return self.refusal(plan.problem, i, j)
 
+    def concerns(self, problem: Question, j: int) -> bool:
+        """Whether the rule can keep a robot from task j by what the task itself is."""
+        return True
+
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
         """How routes with one more task for robot i break it, where they break it least; None: by their times."""
         return None
