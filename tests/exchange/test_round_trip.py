@@ -16,7 +16,7 @@ from tests.mission.strategies import examples
 
 from muster.exchange.earth import Earth
 from muster.exchange.itinerary import itineraries
-from muster.exchange.qgc_reader import read_plan_files
+from muster.exchange.qgc_reader import read_flight_plans
 from muster.exchange.qgc_writer import PlanFiles
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.model import Action, Camera, Map, Mission, Origin, Robot, Rules, Task, Zone
@@ -110,7 +110,7 @@ def there_and_back(mission, team):
             data = files.plan(itinerary)
             jsonschema.validate(data, PLAN)
             (Path(folder) / f"{itinerary.robot.id}.plan").write_text(json.dumps(data), encoding="utf-8")
-        return read_plan_files(folder)
+        return read_flight_plans(folder).mission
 
 
 def seen_from(mission, again, things):

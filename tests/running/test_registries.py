@@ -9,7 +9,8 @@ import muster
 from muster.cli.main import run
 from muster.exchange.export_request import FORMATS
 from muster.mission.errors import ParameterError
-from muster.running.fleets import FLEETS, fleet_ready
+from muster.running.fleet_registry import FLEETS
+from muster.running.fleets import fleet_ready
 from muster.running.worlds import WORLDS, world_named
 from muster.server.runs.run_settings import require_world
 from muster.simulation import KinematicWorld

@@ -1,16 +1,15 @@
 """The clock of missions that real robots carry out is the wall clock: here a virtual one, beside a simulated world."""
 
-import json
 from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
+from tests.running.run_log import Log
 from tests.running.test_live import WorldAsFleet
 
 import muster
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot, Task
-from muster.mission.yaml_writer import plain
 from muster.running.live import Live
 from muster.running.wall_time import MissionStart, notes_on_start, planned_from, require_time_left
 from muster.server.runs.real_run import RealRun
@@ -179,26 +178,6 @@ def test_the_clock_of_a_machine_that_slept_is_set_forward_and_no_clock_goes_back
         assert before <= live.time_s < 3700.0
         before = live.time_s
     assert tuple(sorted(live.result().tasks_done)) == done
-
-
-class Log:
-    """The entries of a run's log."""
-
-    def __init__(self):
-        self.entries = []
-
-    def on_event(self, now, kind, data):
-        self.entries.append(json.loads(json.dumps({"time_s": now, "kind": kind, "data": plain(data)})))
-
-    def on_plan(self, now, plan):
-        self.on_event(now, "plan", {"plan": plan.as_dict()})
-
-    def on_report(self, report):
-        self.on_event(0.0, "report", report)
-
-    def on_telemetry(self, *_): ...
-
-    on_step = on_telemetry
 
 
 @pytest.mark.parametrize("starts", ["given", "now"])

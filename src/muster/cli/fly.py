@@ -100,7 +100,7 @@ def command(
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.settings import Settings
     from muster.running.claim_locks import robots_claimed
-    from muster.server.runs.robot_claims import claims_of
+    from muster.running.robot_claims import claims_of
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)

@@ -178,9 +178,7 @@ def require_whole(plan: Plan, options: RealRunOptions) -> Plan:
     """Return a plan; raise `IncompletePlanError` if it was cut short or is not complete, and that is not accepted."""
     plan.require_whole(accept_partial=options.accept_partial)
     if options.require_complete and not plan.complete:
-        known = plan.tasks_completed is not None and plan.tasks_total is not None
-        counts = f"{plan.tasks_completed} of {plan.tasks_total}" if known else "not all"
-        raise IncompletePlanError(f"{counts} tasks are planned; nothing was started; expected all (--require-complete)")
+        raise IncompletePlanError(f"{plan.planned_line}; nothing was started; expected all (--require-complete)")
     return plan
 
 

@@ -81,7 +81,7 @@ def command(
     from muster.bridges.ros2.port import Arrival
     from muster.running.claim_locks import robots_claimed
     from muster.running.live import wait_for_robots
-    from muster.server.runs.robot_claims import claims_of
+    from muster.running.robot_claims import claims_of
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)

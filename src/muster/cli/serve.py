@@ -179,7 +179,7 @@ def _add_line(file: Path, line: str, *, is_new: bool) -> None:
 
 
 def _known_bridges(_: click.Context, __: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
-    from muster.running.fleets import FLEETS
+    from muster.running.fleet_registry import FLEETS
 
     for name in names:
         if name not in FLEETS:

@@ -23,18 +23,12 @@ from muster.exchange.sites.file_sizes import require_moderate_json
 from muster.exchange.tracked_json import Tracked, enter_json, parse_tracked
 from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, passed_over
-from muster.mission.model import Mission
 from muster.mission.plan import tie_order
 from muster.mission.text_files import LARGEST_FILE, read_text
 
 _TWICE = passed_over("stands in the parameters too", minor=True)
 _RALLY = passed_over("is a point to go to in an emergency: Muster's drones return or land")
 _SAID = passed_over("is said anew by what is exported", minor=True)
-
-
-def read_plan_files(path: str | Path) -> Mission:
-    """The mission of a `.plan` file, or of all `.plan` files in a folder; see `read_flight_plans`."""
-    return read_flight_plans(path).mission
 
 
 def read_flight_plans(path: str | Path) -> ReadFlights:

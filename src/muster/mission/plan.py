@@ -157,11 +157,14 @@ class Plan:
     @property
     def cut_short_line(self) -> str:
         """What there is to say of a plan that was cut short; empty of others."""
-        if not self.cut_short:
-            return ""
+        return f"planning was cut short: {self.planned_line}" if self.cut_short else ""
+
+    @property
+    def planned_line(self) -> str:
+        """How many tasks are planned, in words."""
         done = len({task for route in self.routes for task in route.tasks if task not in route.stations})
         of_all = "" if self.tasks_total is None else f" of {self.tasks_total}"
-        return f"planning was cut short: {done}{of_all} tasks are planned"
+        return f"{done}{of_all} tasks are planned"
 
     def require_whole(self, *, accept_partial: bool = False) -> None:
         """Raise for a plan that planning did not finish, unless a part of one is accepted.

@@ -1,79 +1,22 @@
-"""Fleets of real robots by name, those of installed packages included; each is ready when it is returned."""
+"""Fleets of real robots; each is ready when it is returned."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
 from muster.bridges.fleet import Fleet
-from muster.mission.errors import ParameterError, PluginError
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.plugins import Registry, function_expected
-from muster.mission.value_types import shown
+from muster.running.fleet_registry import FLEETS, Opened
 from muster.running.live import wait_for_robots
+from muster.running.robot_claims import claims, mavlink_claims, ros1_claims, ros2_claims
 
 _WAIT_S = 10.0
 _ANYWHERE_M = 1e6
 """After a crash drones are where they are, in the air maybe."""
-
-
-Opened = tuple[Fleet, Callable[[], None]]
-"""Robots that are ready, and what to call when all is done."""
-OpenFleet = Callable[[Mission, Mapping[str, Any], threading.Event, bool], Opened]
-"""Opens a fleet: the mission, the settings of the run, an event that ends waiting, whether the run goes on."""
-
-
-Claims = Callable[[Mapping[str, Any]], Iterable[str]]
-"""Returns what a run with some settings claims: words for robots, the same for the same robots."""
-
-
-def claims(of: Claims) -> Callable[[OpenFleet], OpenFleet]:
-    """Declare what runs with a fleet claim: two runs that claim the same never command robots at the same time.
-
-    A fleet without a declaration is claimed as a whole: one run at a time.
-
-    Parameters
-    ----------
-    of : callable
-        Returns the claims of a run by its settings, such as `[settings["url"]]`; it is called before the fleet is
-        opened, in another process.
-    """
-
-    def declared(open_fleet: OpenFleet) -> OpenFleet:
-        open_fleet.claims = of  # type: ignore[attr-defined]
-        return open_fleet
-
-    return declared
-
-
-def declared_claims(world: str, settings: Mapping[str, Any]) -> frozenset[str] | None:
-    """Return what a run claims by its fleet's declaration; None where the fleet declares nothing.
-
-    Raises
-    ------
-    ParameterError, PluginError
-        if there is no such fleet, its package cannot be loaded, or the declaration is no list of texts.
-    """
-    of = getattr(FLEETS.named(world), "claims", None)
-    if of is None:
-        return None
-    try:
-        found = list(of(settings))
-    except Exception as error:  # the code of another package may raise anything
-        raise PluginError(f"fleet {world}: its claims: {type(error).__name__}: {error}") from error
-    if not all(isinstance(claim, str) for claim in found):
-        raise PluginError(f"fleet {world}: its claims: {shown(found)}; expected texts")
-    return frozenset(found)
-
-
-FLEETS: Registry[OpenFleet] = Registry(
-    "fleet",
-    "muster.fleets",
-    {name: f"{__name__}:open_{name}" for name in ("ros1", "ros2", "mavlink")},
-    function_expected("a function that opens a fleet"),
-)
 
 
 def fleet_ready(
@@ -98,6 +41,7 @@ def fleet_ready(
     return FLEETS.named(world)(mission, settings, halt, again)
 
 
+@claims(ros1_claims)
 def open_ros1(mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool) -> Opened:
     from muster.bridges.ros1.extra import require_rospy
 
@@ -111,6 +55,7 @@ def open_ros1(mission: Mission, settings: Mapping[str, Any], halt: threading.Eve
     return _heard(fleet, settings, halt), _nothing
 
 
+@claims(ros2_claims)
 def open_ros2(mission: Mission, settings: Mapping[str, Any], halt: threading.Event, _again: bool) -> Opened:
     from muster.bridges.ros2.fleet import Ros2Fleet
     from muster.bridges.ros2.open_middleware import open_middleware
@@ -126,6 +71,7 @@ def open_ros2(mission: Mission, settings: Mapping[str, Any], halt: threading.Eve
     return _heard(fleet, settings, halt), _nothing
 
 
+@claims(mavlink_claims)
 def open_mavlink(mission: Mission, settings: Mapping[str, Any], _halt: threading.Event, again: bool) -> Opened:
     from muster.bridges.mavlink import MavlinkFleet
     from muster.bridges.mavlink.settings import Settings

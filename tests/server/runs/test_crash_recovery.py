@@ -1,11 +1,11 @@
 """A run of real robots whose process is killed knows afterwards all that it knew before: its log is folded."""
 
-import json
 import random
 from types import SimpleNamespace
 
 import pytest
 from tests.execution.world import World
+from tests.running.run_log import Log
 
 import muster
 from muster.execution import Executor
@@ -45,21 +45,6 @@ def two_doors():
         Zone(id=name, polygon=((x, y), (x + 2, y), (x + 2, y + 2)), open=True) for name, (x, y) in far.items()
     )
     return Map(boundary=corners, zones=zones)
-
-
-class Log:
-    """The entries of a run's log, as the database has them."""
-
-    def __init__(self):
-        self.entries = []
-
-    def on_event(self, now, kind, data):
-        self.entries.append(json.loads(json.dumps({"time_s": now, "kind": kind, "data": plain(data)})))
-
-    def on_plan(self, now, plan):
-        self.on_event(now, "plan", {"plan": plan.as_dict()})
-
-    def on_telemetry(self, now, robot, telemetry): ...
 
 
 class Played:

@@ -26,10 +26,10 @@ from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
 from muster.running.claim_locks import robots_claimed
+from muster.running.robot_claims import claims_as_far_as_known
 from muster.running.worlds import WORLDS
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
-from muster.server.runs.robot_claims import claims_as_far_as_known
 from muster.server.runs.run_loop import RunLoop, WorldRun
 from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory

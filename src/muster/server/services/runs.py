@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User
 from muster.mission.errors import MusterError, ParameterError
+from muster.running.robot_claims import claims_as_far_as_known, claims_of
 from muster.running.worlds import WORLDS
-from muster.server.runs.robot_claims import claims_as_far_as_known, claims_of
 from muster.server.runs.run_session import TOO_LATE, RunSession
 from muster.server.runs.run_settings import require_action, require_speed, require_world
 from muster.server.runs.subscribers import Subscribers
