@@ -7,7 +7,6 @@ from tests.execution.world import World, carry_out
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.execution.changes import FAILED, SILENT, STUCK
 from muster.execution.executor import Executor
 from muster.execution.monitor import Limits
 from muster.execution.report import report_of

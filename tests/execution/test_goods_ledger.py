@@ -2,7 +2,8 @@
 
 from tests.carry_charge import robot, task
 
-from muster.execution.goods_ledger import GoodsLedger, as_amount, negative
+from muster.mission.goods import as_amount, negative
+from muster.state.goods_ledger import GoodsLedger
 
 
 def ledger():

@@ -9,8 +9,6 @@ from tests.execution.world import World, carry_out
 
 from muster.execution import Executor, Standing, report_of, travel_of
 from muster.execution.insertion import Insertion
-from muster.execution.orders import Orders
-from muster.execution.quantiles import Quantiles
 from muster.execution.reallocation import Reallocation
 from muster.execution.script import Script
 from muster.execution.standing import EventLog
@@ -18,6 +16,8 @@ from muster.mission.errors import ParameterError
 from muster.mission.events import DelayedTask, MovedTask
 from muster.mission.model import Event, Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route
+from muster.state.orders import Orders
+from muster.state.quantiles import Quantiles
 
 
 class AtOnce:

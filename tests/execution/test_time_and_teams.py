@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import pytest
+from muster.execution.completed_work import CompletedTask, CompletedWork
 from tests.execution.test_executor import carried_out, plan_of
 from tests.execution.world import World, carry_out
 
 from muster import Mission, Robot, Rules, Task
-from muster.execution.completed_work import CompletedTask, CompletedWork
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Revision
 from muster.execution.report import report_of

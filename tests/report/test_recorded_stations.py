@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from muster.report.record.mission_state import MissionState
 from tests import carry_charge
 from tests.report.page.test_page import recording
 from tests.report.test_gantt import bars
@@ -11,7 +12,6 @@ from muster.report.activity_spans import spans
 from muster.report.level_lines import recorded_level
 from muster.report.page.data import page_data
 from muster.report.record import ExecutionEvent
-from muster.report.record.mission_state import MissionState
 from muster.report.record.routes import RouteLines
 from muster.report.record.scene import station_entity
 from muster.report.recorded_gantt import plot_flown_gantt

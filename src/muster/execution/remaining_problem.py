@@ -17,15 +17,14 @@ import numpy as np
 from muster.allocation.charges import Charge
 from muster.allocation.fixed import admissible_alone, with_fixed_routes
 from muster.allocation.problem import Problem
-from muster.execution.goods_ledger import as_amount
 from muster.execution.relations import Binding
-from muster.execution.task_ledger import some_of
-from muster.execution.teams import units_of
 from muster.execution.travel import Spot, Travel
-from muster.mission.goods import Amount, by_commodity
+from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
+from muster.mission.task_relations import units_of
 from muster.motion.port import Place
+from muster.state.task_ledger import some_of
 
 SO_FAR = "so far"
 _MOST_RESERVE = 0.9  # share of the capacity that is left for the way to a station at most

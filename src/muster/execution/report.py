@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
-from muster.execution.orders import OrdersReport
-from muster.execution.task_ledger import Ledger
-from muster.execution.traffic_waits import TrafficAccount
 from muster.mission.data_frames import data_frame
 from muster.mission.html_tables import html_line, html_table
 from muster.mission.objectives import lateness, objective_values
+from muster.state.orders import OrdersReport
+from muster.state.task_ledger import Ledger
+from muster.state.traffic_account import TrafficAccount
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -357,7 +357,8 @@ def _task(ledger: Ledger, task: str) -> TaskReport:
 def _traffic(account: TrafficAccount) -> tuple[TrafficReport, ...]:
     rows = [
         TrafficReport(robot, other, pair.waiting_s, pair.times, pair.longest_s, pair.place)
-        for (robot, other), pair in account.pairs.items()
+        for robot, others in account.pairs.items()
+        for other, pair in others.items()
     ]
     return tuple(sorted(rows, key=lambda row: (-row.waiting_s, row.robot, row.waits_for)))
 
