@@ -24,7 +24,7 @@ from muster.execution.monitor import Limits, moves_again
 from muster.execution.outlooks import Outlooks
 from muster.execution.peers import Peers
 from muster.execution.punctuality import Punctuality
-from muster.execution.reallocation import Reallocation, Revision, first_ahead, reasons_in_one_line
+from muster.execution.reallocation import Reallocation, Revision, first_ahead
 from muster.execution.record import NoObserver, Observer
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.report import Account
@@ -185,11 +185,7 @@ class Executor:
         self._script = self._script_after(-math.inf if begins else self.state.now_s)
         self.now_s = now
         if begins:
-            left_out = {item.task: reasons_in_one_line(item.reasons) for item in plan.unassigned if item.reasons}
-            routes = {
-                robot: tuple(stop.name for stop in stops if not stop.is_station) for robot, stops in planned.items()
-            }
-            self.state.apply(PlanAdopted(time_s=now, routes=routes, left_out=left_out))
+            self.state.apply(PlanAdopted.of(plan, self.state).at(now))
         else:
             self._recall()
         for name, hand in self.crew.items():
@@ -451,15 +447,9 @@ class Executor:
         self._punctuality.expect(self._forecast, self.now_s)
         self.revisions.append(revision)
         self.emit(Replanned(causes=tuple(causes), **revision.difference(), left_out=left_out))
-        routes = {name: tuple(one.route) for name, one in self.crew.items()}
-        self.state.apply(
-            PlanAdopted(
-                time_s=self.now_s,
-                routes={name: route for name, route in routes.items() if route != self.state.routes.get(name, ())},
-                left_out=_changed(known, revision.left_out),
-            )
-        )
-        self._observer.on_plan(self.now_s, self.plan)
+        plan = whole_plan(self.mission, self.planned, self.crew, self.ledger, revision.left_out)
+        self.state.apply(PlanAdopted.of(plan, self.state).at(self.now_s))
+        self._observer.on_plan(self.now_s, plan)
 
     @property
     def _improvement_due_s(self) -> float:
@@ -527,6 +517,7 @@ class Executor:
             stations={name: one for name, state in self.crew.items() if (one := at_stations(state)) is not None},
             shifts_exceeded_s=shifts_exceeded_s(self._worked, self.now_s),
             traffic=self.traffic.with_waits(self.state.traffic),
+            waits_s=self._punctuality.waits_s,
             back_s=back_s(self._worked) if self.mission.rules.makespan_includes_return else (),
         )
 
@@ -547,9 +538,3 @@ class Executor:
         self.state.apply(event)
         self.events.append(event)
         self._observer.on_event(self.now_s, event.kind, event.data)
-
-
-def _changed(before: Mapping[str, str], after: Mapping[str, str]) -> dict[str, str | None]:
-    """The reasons that differ, and None of tasks that have none any more."""
-    gone = dict.fromkeys(before.keys() - after.keys())
-    return gone | {task: why for task, why in after.items() if before.get(task) != why}

@@ -24,6 +24,8 @@ class Punctuality:
         of the executor.
     emit, ask
         receive every event; those that ask for a new plan.
+    waits_s
+        by cause for how long robots have waited at tasks, in all.
     """
 
     ledger: Ledger
@@ -31,6 +33,7 @@ class Punctuality:
     beginning: Beginning
     emit: Tell
     ask: Tell
+    waits_s: dict[str, float] = field(default_factory=dict)
     _planned_s: dict[str, float] = field(default_factory=dict)
     _in_time_until_s: dict[str, float] = field(default_factory=dict)  # until when each task need not be looked at
     _revision: int = -1  # of the ledger, when that was found
@@ -66,7 +69,8 @@ class Punctuality:
         if not self._timed or seconds <= 0:
             return
         for state in self._waiting:
-            self.ledger.waits(state.route[0], state.wait_cause or "prerequisite", seconds)
+            cause = state.wait_cause or "prerequisite"
+            self.waits_s[cause] = self.waits_s.get(cause, 0.0) + seconds
 
     def times(self, now: float) -> Iterator[float]:
         """When the clock alone lets a robot that waits begin, or one is about to arrive where it must ask."""

@@ -62,6 +62,8 @@ class Account:
         when robots were back, where that counts for the makespan.
     traffic
         who held up whom in traffic.
+    waits_s
+        by cause for how long robots waited at tasks, where tasks have rules about time or teams.
     orders
         of a mission in which tasks came on the way.
     """
@@ -81,6 +83,7 @@ class Account:
     shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
+    waits_s: Mapping[str, float] = field(default_factory=dict)
     orders: OrdersReport | None = None
 
 
@@ -364,15 +367,11 @@ def _traffic(account: TrafficAccount) -> tuple[TrafficReport, ...]:
 
 
 def _waiting_by_cause(account: Account) -> dict[str, float]:
-    ledger = account.ledger
-    causes = dict(ledger.retired.waits_s)
+    causes = dict(account.waits_s)
     if account.traffic.pairs:
         causes["traffic"] = account.traffic.waiting_s
     if _slot_wait_s(account) > 0:
         causes["slot"] = _slot_wait_s(account)
-    for by_cause in ledger.waits_s.values():
-        for cause, seconds in by_cause.items():
-            causes[cause] = causes.get(cause, 0.0) + seconds
     return dict(sorted(causes.items()))
 
 

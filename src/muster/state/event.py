@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform
 import msgspec
 
 from muster.mission.errors import ParameterError
+from muster.mission.yaml_writer import plain
 
 if TYPE_CHECKING:
     from muster.state.mission_state import MissionState
@@ -34,6 +35,7 @@ class ExecutionEvent:
 
     kind: ClassVar[str]
     alarming: ClassVar[bool] = False
+    written: ClassVar[tuple[str, ...]] = ()
     time_s: float = math.nan
 
     def at(self, time_s: float) -> Self:
@@ -42,8 +44,12 @@ class ExecutionEvent:
 
     @property
     def data(self) -> Mapping[str, Any]:
-        """What happened, as plain data: texts, numbers, lists and mappings; what is as by default is left out."""
-        return {f.name: _plain(getattr(self, f.name)) for f in fields(self)[1:] if not _is_default(self, f)}
+        """What happened, as plain data: texts, numbers, lists and mappings.
+
+        What is as by default is left out, but for the fields that are `written`.
+        """
+        told = (f for f in fields(self)[1:] if f.name in self.written or not _is_default(self, f))
+        return {f.name: _plain(getattr(self, f.name)) for f in told}
 
     def change(self, state: MissionState) -> None:
         """Change what is known of the mission; `MissionState.apply` alone calls this."""
@@ -85,7 +91,7 @@ def event_of(time_s: float, kind: str, data: Mapping[str, Any]) -> ExecutionEven
     if kind not in KINDS:
         return OtherEvent(time_s=time_s, kind=kind, content=data)
     try:
-        return msgspec.convert({**data, "time_s": time_s}, KINDS[kind])
+        return msgspec.convert({**plain(data), "time_s": time_s}, KINDS[kind])
     except msgspec.ValidationError as error:
         raise ParameterError(f"event {kind} at {time_s:g} s: {error}") from None
 

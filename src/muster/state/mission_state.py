@@ -159,9 +159,11 @@ class MissionState:
 
     def join(self, robot: Robot) -> None:
         """A robot takes part; what one did that joins again is known."""
-        known = self.robots.setdefault(robot.id, KnownRobot(robot))
-        known.robot, known.out = robot, ""
-        self.goods.join(self.ledger.as_it_holds(robot))
+        if robot.id in self.robots:
+            self.robots[robot.id].robot = robot
+        else:
+            self.robots[robot.id] = KnownRobot(robot)
+            self.goods.join(self.ledger.as_it_holds(robot))
 
     def take_out(self, robot: str, why: str, now: float) -> None:
         """A robot takes no part any more, and work on which it was is broken off."""
@@ -204,7 +206,7 @@ class MissionState:
             if name in self.robots:
                 self.robots[name].end(task, planned)
                 self.goods.end(self.tasks[task], name)
-                self.routes[name] = tuple(one for one in self.routes.get(name, ()) if one != task)
+                self._lies_ahead(name, tuple(one for one in self.routes.get(name, ()) if one != task))
 
     def go_on(self) -> None:
         """A mission that was over goes on: tasks that were lost at its end are open again."""
@@ -219,30 +221,25 @@ class MissionState:
 
     def adopt(self, routes: Mapping[str, tuple[str, ...]], left_out: Mapping[str, str | None]) -> None:
         """Take over what a plan changes."""
-        self.routes |= routes
+        for robot, route in routes.items():
+            self._lies_ahead(robot, route)
         for task, why in left_out.items():
             if why is None:
                 self.left_out.pop(task, None)
             else:
                 self.left_out[task] = why
 
-    def adopt_whole(self, plan: Mapping[str, Any]) -> None:
-        """Take over a whole plan, of format 1: what lies ahead of it."""
-        over = self.ledger.ends_s.keys() | self.ledger.cancelled.keys()
-        self.routes = {
-            route["robot"]: tuple(str(name) for name in route["tasks"] if name in self.tasks and name not in over)
-            for route in plan.get("routes", ())
-        }
-        self.left_out = {
-            item["task"]: "; ".join(reason.get("detail", "") for reason in item.get("reasons", ()))
-            for item in plan.get("unassigned", ())
-        }
+    def _lies_ahead(self, robot: str, route: tuple[str, ...]) -> None:
+        if route:
+            self.routes[robot] = route
+        else:
+            self.routes.pop(robot, None)
 
     def forget(self, tasks: Collection[str]) -> None:
         """Forget tasks that are long over, but for sums."""
         if not self._forgets:
             return
-        gone = {name for name in tasks if name in self.tasks}
+        gone = [name for name in tasks if name in self.tasks]
         self.ledger.retire(gone)
         for robot in self.robots.values():
             robot.forget(gone)
@@ -268,12 +265,12 @@ class MissionState:
         return made
 
     def _made(self, model: Any, data: Any, there: Mapping[str, Any], brought: Iterable[Any]) -> Any:
-        what = f"a {model.__name__.lower()}"
+        what = f"event {'new_task' if model is Task else 'robot_joins'}"
         if isinstance(data, str):
             data = {**there, **{one.id: one for one in brought if one is not None}}.get(data, data)
         faults: list[Fault] = []
         try:
-            made = Record(model, what).read(data, (), faults)
+            made = Record(model, f"a {model.__name__.lower()}").read(data, (), faults)
         except MissionError as error:
             raise ParameterError(f"{what}: {error}") from None
         if faults:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -115,32 +114,32 @@ class Orders:
     improved: int = 0
     until_in_route: Quantiles = field(default_factory=Quantiles)
     until_done: Quantiles = field(default_factory=Quantiles)
-    last_refused: deque[RefusedOrder] = field(default_factory=lambda: deque(maxlen=KEPT_REFUSED))
-    _open: dict[str, float] = field(default_factory=dict)  # by order when it came
-    _waiting: dict[str, float] = field(default_factory=dict)  # those that have been in no route yet
+    last_refused: list[RefusedOrder] = field(default_factory=list)
+    open_since: dict[str, float] = field(default_factory=dict)  # by order when it came
+    waiting_since: dict[str, float] = field(default_factory=dict)  # those that have been in no route yet
 
     def come(self, task: str, came_s: float) -> None:
         """A task was ordered."""
         self.taken += 1
-        self._open[task] = self._waiting[task] = came_s
-        self.most_open = max(self.most_open, len(self._open))
+        self.open_since[task] = self.waiting_since[task] = came_s
+        self.most_open = max(self.most_open, len(self.open_since))
 
     def route(self, task: str, now: float) -> None:
         """A robot has a task in its route."""
-        if task in self._waiting:
-            self.until_in_route.add(now - self._waiting.pop(task))
+        if task in self.waiting_since:
+            self.until_in_route.add(now - self.waiting_since.pop(task))
 
     def refuse(self, event: Mapping[str, Any], reason: str, now: float) -> None:
         """An order does not fit."""
         self.refused += 1
-        self.last_refused.append(RefusedOrder.of(event, reason, now))
+        self.last_refused = [*self.last_refused, RefusedOrder.of(event, reason, now)][-KEPT_REFUSED:]
 
     def close(self, task: str, how: str, now: float) -> None:
         """A task is over: done, cancelled or lost."""
-        if task not in self._open:
+        if task not in self.open_since:
             return
-        came_s = self._open.pop(task)
-        self._waiting.pop(task, None)
+        came_s = self.open_since.pop(task)
+        self.waiting_since.pop(task, None)
         setattr(self, how, getattr(self, how) + 1)
         if how == "done":
             self.until_done.add(now - came_s)
@@ -157,7 +156,7 @@ class Orders:
             cancelled=self.cancelled,
             lost=self.lost,
             refused=self.refused,
-            open=len(self._open),
+            open=len(self.open_since),
             most_open=self.most_open,
             done_per_hour=round(3600 * self.done / over_s, 2) if over_s > 0 else 0.0,
             until_in_route=Seconds.of(self.until_in_route),

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
+from muster.mission.plan import Plan
+from muster.mission.plan_reader import plan_from
 from muster.state.event import ExecutionEvent, happens
+from muster.state.reasons import reasons_in_one_line
 
 if TYPE_CHECKING:
     from muster.state.mission_state import MissionState
@@ -54,12 +57,24 @@ class PlanAdopted(ExecutionEvent):
     routes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     left_out: Mapping[str, str | None] = field(default_factory=dict)
     plan: Mapping[str, Any] | None = None
-    lines: Mapping[str, Any] = field(default_factory=dict)
-    stations: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, plan: Plan, state: MissionState) -> Self:
+        """What a plan of the whole mission changes."""
+        is_open = {task.id for task in state.ledger.open}
+        ahead = {route.robot: tuple(name for name in route.tasks if name in is_open) for route in plan.routes}
+        told = (item for item in plan.unassigned if item.task in is_open and item.reasons)
+        why = {item.task: reasons_in_one_line(item.reasons) for item in told}
+        routes = {name: ahead.get(name, ()) for name, one in state.robots.items() if not one.out}
+        gone = {name: None for name in state.left_out if name not in why}
+        return cls(
+            routes={name: route for name, route in routes.items() if route != state.routes.get(name, ())},
+            left_out=gone | {task: words for task, words in why.items() if words != state.left_out.get(task)},
+        )
 
     def change(self, state: MissionState) -> None:
         if self.plan is not None:
-            state.adopt_whole(self.plan)
+            PlanAdopted.of(plan_from(self.plan, "the log"), state).change(state)
         state.adopt(self.routes, self.left_out)
 
 
@@ -67,6 +82,7 @@ class PlanAdopted(ExecutionEvent):
 class Replanned(ExecutionEvent):
     """The rest was planned again: causes, and by task the robots before and now."""
 
+    written = ("moved", "forced", "added", "dropped", "left_out")
     causes: tuple[Mapping[str, Any], ...] = ()
     moved: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     forced: tuple[str, ...] = ()

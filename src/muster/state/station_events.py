@@ -55,6 +55,7 @@ class ServiceBegins(AtStation):
 class ServiceEnds(AtStation):
     """A robot has been served; `unloaded` is by commodity."""
 
+    written = ("unloaded",)
     unloaded: Mapping[str, float] = field(default_factory=dict)
 
     def change(self, state: MissionState) -> None:

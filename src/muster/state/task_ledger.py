@@ -42,8 +42,8 @@ class Retired:
     ----------
     done, cancelled, lost
         how many.
-    waiting_s, waits_s
-        as `Ledger.waiting_s`, and by cause.
+    waiting_s
+        as `Ledger.waiting_s`.
     lateness_s, lateness
         after due times, and weighed by priority.
     arrival_usage
@@ -58,7 +58,6 @@ class Retired:
     cancelled: int = 0
     lost: int = 0
     waiting_s: float = 0.0
-    waits_s: dict[str, float] = field(default_factory=dict)
     lateness_s: float = 0.0
     lateness: float = 0.0
     arrival_usage: float = 0.0
@@ -103,7 +102,6 @@ class Ledger:
     blocked_by: dict[str, str] = field(default_factory=dict)  # task: the broken robot that stands there
     teams: dict[str, tuple[str, ...]] = field(default_factory=dict)  # the robots of each task begun
     team_waits_s: dict[str, float] = field(default_factory=dict)  # their waiting for it, in all
-    waits_s: dict[str, dict[str, float]] = field(default_factory=dict)  # task, cause: seconds that robots waited
     missed: list[MissedTask] = field(default_factory=list)
     expired: dict[str, str] = field(default_factory=dict)  # tasks that can never begin any more, and why
     told_lost: dict[str, str] = field(default_factory=dict)  # tasks that the end of the mission found not done, and why
@@ -267,11 +265,6 @@ class Ledger:
             if self.is_open(name):
                 self.expired.setdefault(name, reason if name == task else f"relation: begins with {task}; {reason}")
 
-    def waits(self, task: str, cause: str, seconds: float) -> None:
-        """A robot has waited at a task."""
-        by_cause = self.waits_s.setdefault(task, {})
-        by_cause[cause] = by_cause.get(cause, 0.0) + seconds
-
     def late_s(self, task: str) -> float:
         """By how much a task done ended after its due time."""
         return _over(self.ends_s[task], self.tasks[task].due_s)
@@ -302,6 +295,9 @@ class Ledger:
         """Robots have done a task."""
         self.ends_s[task], self.done_by[task], self.teams[task] = now, robots[0], robots
         self.cancelled.pop(task, None)  # its robots had not heard that in time
+        for name in self.unit(task):
+            if self.is_open(name) and name not in self.starts_s:
+                self.expired.setdefault(name, self.too_late_to_begin_with([task]))
         self.touched[task] = None
         self.told_lost.pop(task, None)
 
@@ -361,7 +357,7 @@ class Ledger:
         self.missed = [one for one in self.missed if one.task not in tasks]
         by_task: tuple[dict[str, Any], ...] = (
             *(self.tasks, self.delays_s, self.arrivals_s, self.arrival_usage, self.starts_s, self.ends_s, self.done_by),
-            *(self.usage, self.cancelled, self.refusals, self.blocked_by, self.teams, self.team_waits_s, self.waits_s),
+            *(self.usage, self.cancelled, self.refusals, self.blocked_by, self.teams, self.team_waits_s),
             *(self.expired, self.told_lost),
         )
         for entries in by_task:
@@ -376,8 +372,6 @@ class Ledger:
 
     def _sum_up(self, task: str) -> None:
         sums = self.retired
-        for cause, seconds in self.waits_s.get(task, {}).items():
-            sums.waits_s[cause] = sums.waits_s.get(cause, 0.0) + seconds
         if task in self.starts_s:
             sums.waiting_s += self.waited_s(task)
         if task in self.ends_s:

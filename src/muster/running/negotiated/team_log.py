@@ -117,7 +117,7 @@ class TeamLog:
             causes, self._causes = self._causes or [_NEW_AGREEMENT], []
             self.tell(Replanned(time_s=now_s, causes=tuple(causes), **_difference(*self._plans[-2:])))
         self._now_s = max(now_s, self._now_s)
-        self.state.apply(PlanAdopted(time_s=self._now_s, plan=plan.as_dict()))
+        self.state.apply(PlanAdopted.of(plan, self.state).at(self._now_s))
         self._observer.on_plan(self._now_s, plan)
 
     def tell(self, event: ExecutionEvent) -> None:
