@@ -1,7 +1,8 @@
 """Run the campaign: `python -m tests.state.campaign [SEEDS] [--first SEED] [--processes N]`, or one seed in full.
 
-Each seed is a run with random events, whose process is killed at random moments. What is known afterwards, by the log or
-by a checkpoint after a random entry and what follows it, must be what was known before; and the run goes on to its end.
+Each seed is a run with random events, whose process is killed at random moments. What is known afterwards, by the log
+or by a checkpoint after a random entry and what follows it, must be what was known before; and the run goes on to its
+end.
 """
 
 import random

@@ -5,13 +5,16 @@ import json
 from tests.execution.world import World
 from tests.running.run_log import Log
 
-from muster.execution import Executor
+from muster.execution import Executor, Reallocation, travel_of
 from muster.mission.events import DelayedTask, Event, MovedTask
 from muster.mission.model import Map, Mission, Robot, Station, Task, Zone
 from muster.server.runs.crash_recovery import recovered_from
 from muster.state import checkpoint_of, event_of, restored
 
 NEWCOMER = Robot(id="r_9", position=(9.0, 9.0), load_capacity=5.0)
+
+
+SEARCH_STEPS = 20
 
 
 def site(events=(), battery=None):
@@ -22,6 +25,7 @@ def site(events=(), battery=None):
             load_capacity=3.0,
             load_at_start=1.0 if k == 1 else None,
             battery=battery,
+            return_to_start=k == 0,
         )
         for k in range(3)
     )
@@ -67,6 +71,7 @@ class Played:
             now=self.world.now,
             state=state,
             standing=self.standing,
+            replan=Reallocation(travel=travel_of(self.mission), iterations=SEARCH_STEPS),
         )
         executor.tick(self.world.now)
         return executor
