@@ -104,13 +104,18 @@ class Database:
             raise store_error(error, self.name) from None
 
 
+def insert_of(connection: Connection, table: Table) -> Any:
+    """Return the database's own `INSERT` into a table, which knows `ON CONFLICT`."""
+    if connection.dialect.name == "sqlite":
+        from sqlalchemy.dialects.sqlite import insert
+    else:
+        from sqlalchemy.dialects.postgresql import insert  # type: ignore[assignment]
+    return insert(table)
+
+
 def insert_unless_there(connection: Connection, table: Table, row: Mapping[str, Any]) -> bool:
     """Insert a row unless there is one with its key, also a concurrent one; returns whether it was inserted."""
-    if connection.dialect.name == "sqlite":
-        from sqlalchemy.dialects.sqlite import insert as insert_or_leave
-    else:
-        from sqlalchemy.dialects.postgresql import insert as insert_or_leave  # type: ignore[assignment]
-    insert = insert_or_leave(table).values(row).on_conflict_do_nothing().returning(*table.primary_key)
+    insert = insert_of(connection, table).values(row).on_conflict_do_nothing().returning(*table.primary_key)
     return connection.execute(insert).first() is not None
 
 

@@ -78,7 +78,9 @@ class MissionTable:
                     raise ConflictError(f"mission {mission} is there already")
             else:
                 mission = _free_id(connection, name, reserved)
-            connection.execute(insert(missions).values(id=mission, newest=1, shipped=shipped, hidden=False))
+            connection.execute(
+                insert(missions).values(id=mission, shipped=shipped, hidden=False, **_listed(mission, 1, summary))
+            )
             _write(connection, mission, 1, text, files, summary, author, note)
             return _version(connection, mission, 1)
 
@@ -108,7 +110,8 @@ class MissionTable:
                     f"mission {mission} was changed meanwhile: its newest version is {newest}, yours was made from "
                     f"{base_version}; look at the newest, and save again"
                 )
-            connection.execute(update(missions).where(missions.c.id == mission).values(newest=newest + 1))
+            listed = _listed(mission, newest + 1, summary)
+            connection.execute(update(missions).where(missions.c.id == mission).values(listed))
             _write(connection, mission, newest + 1, text, files, summary, author, note)
             return _version(connection, mission, newest + 1)
 
@@ -162,6 +165,16 @@ def _entry(row: Row[Any]) -> MissionEntry:
 def _of_summary(summary: Mapping[str, Any], mission: str) -> dict[str, Any]:
     counts = {key: summary.get(key, 0) for key in ("robots", "tasks", "dimensions")}
     return {"name": summary.get("name", mission), **counts}
+
+
+def _listed(mission: str, newest: int, summary: Mapping[str, Any]) -> dict[str, Any]:
+    """What the list of missions is read by."""
+    return {"newest": newest, "words": words_of(mission, summary), "changed_at": datetime.now(UTC)}
+
+
+def words_of(mission: str, summary: Mapping[str, Any]) -> str:
+    """The text in which words are looked for that name a mission."""
+    return f"{summary.get('name', mission)} {mission}".casefold()
 
 
 def _newest(connection: Connection, mission: str, *, to_write: bool = False) -> int:

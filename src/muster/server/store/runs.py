@@ -9,7 +9,7 @@ from typing import Any
 from sqlalchemy import Connection, insert, select, update
 
 from muster.exchange.mission_control import OVER, ConflictError, NotFoundError, Run, User, World
-from muster.server.store.actions import add_action
+from muster.server.store.actions import keep_actions, new_action
 from muster.server.store.database import Database
 from muster.server.store.request_keys import RequestKey, keyed
 from muster.server.store.schema import runs
@@ -58,7 +58,7 @@ class RunTable:
             run = Run(**connection.execute(insert(runs).values(row).returning(runs)).one()._mapping)
             if by is not None:
                 said = {"plan": plan, "world": world, "speed": speed, "settings": dict(settings)}
-                add_action(connection, by, "run.start", said, run.id, "done", applied_s=0.0)
+                keep_actions(connection, [new_action(by, "run.start", said, run.id, "done", applied_s=0.0)])
             settle(run.id)
             return run
 
