@@ -190,9 +190,10 @@ class Runs:
             await self._saved(saved, action, session)
             asked = session.ask(action)
         if not asked:
-            session.log_writer.keep(replace(action, outcome=TOO_LATE))
-            if action.kept:  # the log's writer may have ended with the run
-                await self._patiently(self._store.actions.keep, [replace(action, outcome=TOO_LATE)])
+            late = replace(action, outcome=TOO_LATE)
+            session.log_writer.keep(late)
+            if await self._patiently(self._store.actions.keep, [late]) and session.run.id not in self._sessions:
+                self._journal.release(session.run.id)  # the log's writer has ended with the run
             raise ConflictError(f"run {action.run} is over: {session.run.state}; expected one that is under way")
         return action
 
