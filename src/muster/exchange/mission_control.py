@@ -22,6 +22,8 @@ OVER = ("ended", "cancelled", "failed")
 """States of a run after which nothing more happens in it."""
 JOB_OVER = ("done", "failed", "cancelled")
 """States of a job after which nothing more happens in it."""
+PAGE_ROWS, MOST_ROWS = 50, 500
+"""Rows of one page of a list: by default, and at most."""
 
 
 class NotFoundError(MusterError):

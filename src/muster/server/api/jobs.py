@@ -5,28 +5,32 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from typing import Annotated
 
-from fastapi import APIRouter, Query, WebSocket
+from fastapi import APIRouter, Query, Request, Response, WebSocket
 
-from muster.exchange.mission_control import Job, JobState
+from muster.exchange.mission_control import PAGE_ROWS, Job, JobState
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import TheServices, TheUser
-from muster.server.api.parameter_types import JobId, Limit, MissionQuery
-from muster.server.api.responses import errors
+from muster.server.api.parameter_types import Before, JobId, Limit, MissionQuery
+from muster.server.api.responses import PAGED, errors, page_of
 from muster.server.api.sockets import message, tell
 from muster.server.services.jobs import Jobs
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=BoundedRoute)
 
 
-@router.get("", summary="List jobs")
+@router.get("", summary="List jobs", responses=PAGED)
 async def jobs(
     services: TheServices,
+    request: Request,
+    response: Response,
     state: Annotated[JobState | None, Query(description="Only those.")] = None,
     mission: MissionQuery = None,
-    limit: Limit = 200,
+    limit: Limit = PAGE_ROWS,
+    before: Before = None,
 ) -> list[Job]:
-    """Newest first."""
-    return list(await services.jobs.list(state, mission, limit))
+    """Newest first; `before` the last `id` gives the next ones."""
+    found = await services.jobs.list(state, mission, limit + 1, before)
+    return page_of(found, limit, request, response, before=lambda job: job.id)
 
 
 @router.get("/{job}", summary="See how far a job is")

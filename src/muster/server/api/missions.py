@@ -11,11 +11,12 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, File, Form, Header, HTTPException, Query, Request, Response, UploadFile
 from pydantic import Field
 
-from muster.exchange.mission_control import MissionEntry, MissionVersion, NotFoundError, VersionEntry
+from muster.exchange.mission_control import PAGE_ROWS, MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import TheServices, TheUser, require_known_form
 from muster.server.api.parameter_types import (
     LARGEST,
+    AfterMission,
     BeforeVersion,
     Body,
     FileName,
@@ -26,10 +27,20 @@ from muster.server.api.parameter_types import (
     Name,
     Note,
     OptionalVersion,
+    Search,
     Text,
     VersionNumber,
 )
-from muster.server.api.responses import Responses, errors, file_described, file_response, with_location
+from muster.server.api.responses import (
+    PAGED,
+    Responses,
+    errors,
+    file_described,
+    file_response,
+    page_of,
+    with_location,
+)
+from muster.server.services.missions import place_of
 from muster.server.services.uploads import answers_of
 
 router = APIRouter(prefix="/missions", tags=["missions"], route_class=BoundedRoute)
@@ -119,10 +130,18 @@ class MissionToCheck(Body):
     )
 
 
-@router.get("", summary="List missions")
-async def missions(services: TheServices) -> list[MissionEntry]:
-    """The missions made on this server, and the shipped ones."""
-    return list(await services.missions.list())
+@router.get("", summary="List missions", responses=PAGED)
+async def missions(
+    services: TheServices,
+    request: Request,
+    response: Response,
+    search: Search = "",
+    limit: Limit = PAGE_ROWS,
+    after: AfterMission = "",
+) -> list[MissionEntry]:
+    """The missions made on this server, last changed first, then the shipped ones."""
+    found = await services.missions.list(limit + 1, after, search)
+    return page_of(found, limit, request, response, after=place_of)
 
 
 @router.post("", status_code=201, summary="Make a mission", responses=with_location(201, "It is kept.", etag=True))
@@ -208,12 +227,18 @@ async def delete(services: TheServices, who: TheUser, mission: MissionId) -> Non
     await services.missions.delete(who, mission)
 
 
-@router.get("/{mission}/versions", summary="List the versions of a mission")
+@router.get("/{mission}/versions", summary="List the versions of a mission", responses=PAGED)
 async def versions(
-    services: TheServices, mission: MissionId, limit: Limit = 200, before: BeforeVersion = None
+    services: TheServices,
+    request: Request,
+    response: Response,
+    mission: MissionId,
+    limit: Limit = PAGE_ROWS,
+    before: BeforeVersion = None,
 ) -> list[VersionEntry]:
     """Newest first; `before` the last `version` gives the next ones."""
-    return list(await services.missions.versions(mission, limit, before))
+    found = await services.missions.versions(mission, limit + 1, before)
+    return page_of(found, limit, request, response, before=lambda version: version.version)
 
 
 @router.get("/{mission}/versions/{number}", summary="Read a version of a mission")

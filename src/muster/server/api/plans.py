@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 from pydantic import Field, WithJsonSchema
 
-from muster.exchange.mission_control import Job, PlanEntry
+from muster.exchange.mission_control import PAGE_ROWS, Job, PlanEntry
 from muster.mission.model import OBJECTIVES
 from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
@@ -28,7 +28,15 @@ from muster.server.api.parameter_types import (
     Seed,
     TaskQuery,
 )
-from muster.server.api.responses import archive_response, errors, file_described, file_response, with_location
+from muster.server.api.responses import (
+    PAGED,
+    archive_response,
+    errors,
+    file_described,
+    file_response,
+    page_of,
+    with_location,
+)
 from muster.traffic.names import TRAFFIC
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
@@ -111,12 +119,18 @@ async def upload(
     return entry
 
 
-@router.get("/plans", summary="List plans")
+@router.get("/plans", summary="List plans", responses=PAGED)
 async def plans(
-    services: TheServices, mission: MissionQuery = None, limit: Limit = 200, before: Before = None
+    services: TheServices,
+    request: Request,
+    response: Response,
+    mission: MissionQuery = None,
+    limit: Limit = PAGE_ROWS,
+    before: Before = None,
 ) -> list[PlanEntry]:
     """Newest first, without routes and histories; `before` the last `id` gives the next ones."""
-    return list(await services.plans.list(mission, limit, before))
+    found = await services.plans.list(mission, limit + 1, before)
+    return page_of(found, limit, request, response, before=lambda plan: plan.id)
 
 
 @router.get("/plans/{plan}", summary="Read a plan")

@@ -4,23 +4,31 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
 
-from muster.exchange.mission_control import Run
+from muster.exchange.mission_control import PAGE_ROWS, Run
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import TheServices
-from muster.server.api.parameter_types import Limit, RunId
-from muster.server.api.responses import archive_response, errors, file_described, file_response
+from muster.server.api.parameter_types import Before, Limit, MissionQuery, RunId
+from muster.server.api.responses import PAGED, archive_response, errors, file_described, file_response, page_of
 
 router = APIRouter(prefix="/records", tags=["records"], route_class=BoundedRoute)
 
 ExportTo = Literal["csv", "geojson", "gpx", "kml", "json"]
 
 
-@router.get("", summary="List records")
-async def records(services: TheServices, limit: Limit = 200) -> list[Run]:
-    """Runs that are over, newest first."""
-    return list(await services.records.list(limit))
+@router.get("", summary="List records", responses=PAGED)
+async def records(
+    services: TheServices,
+    request: Request,
+    response: Response,
+    mission: MissionQuery = None,
+    limit: Limit = PAGE_ROWS,
+    before: Before = None,
+) -> list[Run]:
+    """Runs that are over, newest first; `before` the last `id` gives the next ones."""
+    found = await services.records.list(limit + 1, before, mission)
+    return page_of(found, limit, request, response, before=lambda run: run.id)
 
 
 @router.get(

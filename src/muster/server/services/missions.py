@@ -9,10 +9,12 @@ import asyncio
 import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from datetime import datetime
 from pathlib import PurePath
 from typing import Any, Protocol
 
 from muster.exchange.mission_control import (
+    PAGE_ROWS,
     ConflictError,
     MissionEntry,
     MissionVersion,
@@ -36,6 +38,7 @@ from muster.server.services.uploads import (
     site_files,
 )
 from muster.server.store import Store
+from muster.server.store.missions import words_of
 
 _CONVERTED = (*(f".{name}" for name in READERS), *CONVERTED)
 
@@ -74,7 +77,7 @@ class Missions:
         """
         return await asyncio.to_thread(self._stored, mission)
 
-    async def versions(self, mission: str, limit: int = 200, before: int | None = None) -> list[VersionEntry]:
+    async def versions(self, mission: str, limit: int = PAGE_ROWS, before: int | None = None) -> list[VersionEntry]:
         """Versions, newest first; only those below `before`, if given.
 
         Raises
@@ -310,10 +313,62 @@ class Missions:
                 raise
             return [VersionEntry(mission=mission, version=0, author=AUTHOR, at=None)]
 
-    async def list(self) -> list[MissionEntry]:
-        """Missions made on this server, last changed first, then the shipped ones."""
-        stored = {entry.id: entry for entry in await asyncio.to_thread(self._table.list)}
-        shipped = await asyncio.to_thread(shipped_entries)
-        own = [entry for entry in stored.values() if not entry.shipped]
-        own.sort(key=lambda entry: (entry.changed_at is not None, entry.changed_at), reverse=True)
-        return [*own, *(stored.get(name, entry) for name, entry in shipped.items())]
+    async def list(self, limit: int = PAGE_ROWS, after: str = "", search: str = "") -> list[MissionEntry]:
+        """Missions made on this server, last changed first, then the shipped ones.
+
+        Parameters
+        ----------
+        limit
+            the greatest number of missions.
+        after
+            `place_of` the last mission of the page before.
+        search
+            words that all stand in the name or id of the mission.
+
+        Raises
+        ------
+        ParameterError
+            if `after` is no such place.
+        """
+        return await asyncio.to_thread(self._list, limit, _place(after), search.casefold().split())
+
+    async def count(self, search: str = "") -> int:
+        """How many of the missions made on this server `list` has in all."""
+        return await asyncio.to_thread(self._table.count, search.casefold().split())
+
+    def _list(self, limit: int, after: tuple[datetime | None, str] | None, words: Sequence[str]) -> list[MissionEntry]:
+        changed_at, last = after or (None, "")
+        shipped = list(shipped_entries().values())
+        if last and changed_at is None:
+            names = [entry.id for entry in shipped]
+            own, shipped = [], shipped[names.index(last) + 1 :] if last in names else []
+        else:
+            own = self._table.list(limit, words, None if changed_at is None else (changed_at, last))
+        if len(own) == limit:
+            return own
+        stored = {entry.id: entry for entry in self._table.shipped()}
+        found = [
+            stored.get(entry.id, entry)
+            for entry in shipped
+            if all(map(words_of(entry.id, entry.name).__contains__, words))
+        ]
+        return [*own, *found[: limit - len(own)]]
+
+
+def place_of(entry: MissionEntry) -> str:
+    """The place of a mission in the list of missions, from which the next page goes on."""
+    return f"{'' if entry.shipped or entry.changed_at is None else entry.changed_at.isoformat()}~{entry.id}"
+
+
+def _place(text: str) -> tuple[datetime | None, str] | None:
+    """When the mission at a place was changed, None for a shipped one, and its id; None for the beginning."""
+    if not text:
+        return None
+    moment, tilde, mission = text.partition("~")
+    try:
+        changed_at = datetime.fromisoformat(moment) if moment else None
+    except ValueError:
+        tilde = ""
+    if not tilde or (changed_at is not None and changed_at.tzinfo is None):
+        raise ParameterError(f"after: {text}; expected what the address of the next page has")
+    return changed_at, mission

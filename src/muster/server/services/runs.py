@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User
+from muster.exchange.mission_control import PAGE_ROWS, Action, BusyError, ConflictError, Entry, Run, StoreError, User
 from muster.mission.errors import MusterError, ParameterError
 from muster.running.robot_claims import claims_as_far_as_known, claims_of
 from muster.running.worlds import WORLDS
@@ -130,19 +130,27 @@ class Runs:
             finally:
                 self._beginning.remove(claims)
 
-    async def list(self, limit: int = 200) -> Sequence[Run]:
-        """Runs, newest first."""
-        runs = await asyncio.to_thread(self._store.runs.list, limit)
+    async def list(
+        self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None
+    ) -> Sequence[Run]:
+        """Runs, of one mission or all, newest first; ids below `before`, if given."""
+        runs = await asyncio.to_thread(self._store.runs.list, limit, before, mission)
         return [self._newest(run) for run in runs]
 
     def present(self) -> Sequence[Run]:
         """Runs under way, newest first, without asking the database."""
         return [self._sessions[run].run for run in sorted(self._sessions, reverse=True) if not self._sessions[run].over]
 
-    async def over(self, limit: int = 200) -> Sequence[Run]:
-        """Runs that are over, newest first, including those whose end is not written yet."""
-        ended = {run: session.run for run, session in self._sessions.items() if session.over}
-        kept = await asyncio.to_thread(partial(self._store.runs.list, limit, over=True))
+    async def over(
+        self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None
+    ) -> Sequence[Run]:
+        """Runs that are over, as `list`, including those whose end is not written yet."""
+        ended = {
+            run: session.run
+            for run, session in self._sessions.items()
+            if session.over and (before is None or run < before) and mission in (None, session.run.mission)
+        }
+        kept = await asyncio.to_thread(partial(self._store.runs.list, limit, before, mission, over=True))
         found = {run.id: run for run in kept} | ended
         return [found[run] for run in sorted(found, reverse=True)[:limit]]
 

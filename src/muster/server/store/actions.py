@@ -14,7 +14,7 @@ from typing import Any
 
 from sqlalchemy import Connection, select, update
 
-from muster.exchange.mission_control import Action, NotFoundError, User
+from muster.exchange.mission_control import PAGE_ROWS, Action, NotFoundError, User
 from muster.server.store.database import Database, insert_of
 from muster.server.store.schema import actions
 
@@ -90,7 +90,7 @@ class ActionTable:
         with self._database.reading() as connection:
             return [Action(**row._mapping) for row in connection.execute(query)]
 
-    def list(self, run: int | None = None, limit: int = 200, before: int | None = None) -> list[Action]:
+    def list(self, run: int | None = None, limit: int = PAGE_ROWS, before: int | None = None) -> list[Action]:
         """Actions of one run or of all, newest first; only ids below `before`, if given."""
         query = select(actions).order_by(actions.c.id.desc()).limit(limit)
         if run is not None:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from sqlalchemy import Connection, Row, func, insert, select
 
-from muster.exchange.mission_control import NotFoundError, PlanEntry
+from muster.exchange.mission_control import MOST_ROWS, PAGE_ROWS, NotFoundError, PlanEntry
 from muster.server.store.database import Database
 from muster.server.store.schema import missions, plans
 
@@ -51,7 +51,13 @@ class PlanTable:
             raise NotFoundError(f"no plan {plan}")
         return _entry(row)
 
-    def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> list[PlanEntry]:
+    def missions(self, plans_read: int = MOST_ROWS) -> list[str]:
+        """The missions of the newest plans, the one that was planned last first."""
+        query = select(plans.c.mission).order_by(plans.c.id.desc()).limit(plans_read)
+        with self._database.reading() as connection:
+            return list(dict.fromkeys(connection.execute(query).scalars()))
+
+    def list(self, mission: str | None = None, limit: int = PAGE_ROWS, before: int | None = None) -> list[PlanEntry]:
         """Plans, of one mission or all, the newest first; with ids below `before`, if given.
 
         Each without routes, history, unassigned and book.

@@ -3,8 +3,6 @@
 import sqlalchemy as sa
 from alembic import op
 
-from muster.server.store.missions import words_of
-
 revision = "0003"
 down_revision = "0002"
 
@@ -34,7 +32,7 @@ def _missions() -> None:
     for mission, at, summary in connection.execute(
         sa.select(missions.c.id, versions.c.at, versions.c.summary).join(versions, newest)
     ).all():
-        values = {"words": words_of(mission, summary), "changed_at": at}
+        values = {"words": f"{summary.get('name', mission)} {mission}".casefold(), "changed_at": at}
         connection.execute(sa.update(missions).where(missions.c.id == mission).values(values))
     with op.batch_alter_table("missions") as table:
         table.alter_column("words", server_default=None)
