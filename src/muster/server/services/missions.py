@@ -313,7 +313,7 @@ class Missions:
                 raise
             return [VersionEntry(mission=mission, version=0, author=AUTHOR, at=None)]
 
-    async def list(self, limit: int = PAGE_ROWS, after: str = "", search: str = "") -> list[MissionEntry]:
+    async def list(self, limit: int = PAGE_ROWS, after: str = "", search: str = "") -> Sequence[MissionEntry]:
         """Missions made on this server, last changed first, then the shipped ones.
 
         Parameters
@@ -336,23 +336,29 @@ class Missions:
         """How many of the missions made on this server `list` has in all."""
         return await asyncio.to_thread(self._table.count, search.casefold().split())
 
-    def _list(self, limit: int, after: tuple[datetime | None, str] | None, words: Sequence[str]) -> list[MissionEntry]:
+    async def dimensions(self, mission: str) -> int:
+        """How many dimensions the newest version of a mission has, as far as its summary says."""
+        return await asyncio.to_thread(self._dimensions, mission)
+
+    def _dimensions(self, mission: str) -> int:
+        try:
+            return self._table.entry(mission).dimensions
+        except NotFoundError:
+            return shipped_entries()[mission].dimensions if mission in shipped_entries() else 2
+
+    def _list(
+        self, limit: int, after: tuple[datetime | None, str] | None, words: Sequence[str]
+    ) -> Sequence[MissionEntry]:
         changed_at, last = after or (None, "")
-        shipped = list(shipped_entries().values())
+        shipped, own = list(shipped_entries().values()), list[MissionEntry]()
         if last and changed_at is None:
             names = [entry.id for entry in shipped]
-            own, shipped = [], shipped[names.index(last) + 1 :] if last in names else []
+            shipped = shipped[names.index(last) + 1 :] if last in names else []
         else:
-            own = self._table.list(limit, words, None if changed_at is None else (changed_at, last))
-        if len(own) == limit:
-            return own
-        stored = {entry.id: entry for entry in self._table.shipped()}
-        found = [
-            stored.get(entry.id, entry)
-            for entry in shipped
-            if all(map(words_of(entry.id, entry.name).__contains__, words))
-        ]
-        return [*own, *found[: limit - len(own)]]
+            own += self._table.list(limit, words, None if changed_at is None else (changed_at, last))
+        stored = {entry.id: entry for entry in self._table.shipped()} if len(own) < limit else {}
+        own += [stored.get(one.id, one) for one in shipped if all(word in words_of(one.id, one.name) for word in words)]
+        return own[:limit]
 
 
 def place_of(entry: MissionEntry) -> str:

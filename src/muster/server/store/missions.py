@@ -167,6 +167,19 @@ class MissionTable:
             query = query.where(tuple_(missions.c.changed_at, missions.c.id) < last)
         return self._read(query.limit(limit))
 
+    def entry(self, mission: str) -> MissionEntry:
+        """A mission as `list` has it.
+
+        Raises
+        ------
+        NotFoundError
+            if there is no such mission, or it was deleted.
+        """
+        found = self._read(_ENTRIES.where(missions.c.id == mission, ~missions.c.hidden))
+        if not found:
+            raise NotFoundError(f"no mission {mission}")
+        return found[0]
+
     def count(self, words: Sequence[str] = ()) -> int:
         """How many missions `list` has in all."""
         with self._database.reading() as connection:
