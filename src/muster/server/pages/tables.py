@@ -42,6 +42,12 @@ def address(path: str, **query: object) -> str:
     return f"{path}?{urlencode(given)}" if given else path
 
 
+def search_text(label: str, value: str, name: str = "words") -> str:
+    """A field for words to search for, as HTML: what is typed stays, whatever else of the page changes."""
+    words = f'aria-label="{escape(label)}" placeholder="{escape(label)}" value="{escape(value)}"'
+    return f'<input class="search" type="search" id="search" name="{name}" {words}>'
+
+
 def pager_text(first: str, following: str) -> str:
     """Links to the first page of a list and the next one, as HTML; empty addresses are left out."""
     links = (("First page", first, ""), ("Next page", following, ' rel="next"'))

@@ -16,7 +16,7 @@ from muster.library import mission_summary
 from muster.server.pages.frame import frame
 from muster.server.pages.missions.new_mission import named, open_new_mission
 from muster.server.pages.notices import errors_shown, offer, say
-from muster.server.pages.tables import address, pager_text
+from muster.server.pages.tables import address, pager_text, search_text
 from muster.server.pages.visitor import PATIENCE_S, may_command, the_services, the_user
 from muster.server.services.missions import place_of
 from muster.server.store.missions import words_of
@@ -48,9 +48,7 @@ async def view(search: str = "", after: str = "") -> None:
     """A page of the missions, own ones first, of which `search` is in the name; behind the place `after`."""
     with frame("Missions", keys=_KEYS):
         with ui.element("div").classes("bar"):
-            words = ui.element("input").classes("search")
-            words.props('type="search" placeholder="Search by name" aria-label="Search missions by name" id="search"')
-            words.props["value"] = search
+            words = ui.html(search_text("Search missions by name", search), sanitize=False).style("display: contents")
             if may_command():
                 new = ui.button("New mission", icon="add", on_click=open_new_mission).props('unelevated id="new"')
                 new.classes("control")
@@ -67,7 +65,8 @@ class _MissionList:
         self._search, self._after = search, after
         self._one_at_a_time = asyncio.Lock()  # else an older list could come last
         self._html = ui.html("", sanitize=False)
-        self._html.on("click", self._act, js_handler=_CLICK)
+        if may_command():
+            self._html.on("click", self._act, js_handler=_CLICK)
 
     async def search(self, words: str) -> None:
         """Show the first page of the missions that have these words in their names."""

@@ -22,7 +22,7 @@ from muster.server.pages.records.figures import (
     seconds,
     task_rows,
 )
-from muster.server.pages.tables import address, pager_text, table
+from muster.server.pages.tables import address, pager_text, search_text, table
 from muster.server.pages.visitor import PATIENCE_S, is_seen, the_services
 from muster.server.runs.log_lines import deed_of, line_of
 
@@ -72,9 +72,8 @@ async def records_page(mission: str = "", before: int | None = None) -> None:
 def _filter(mission: str) -> None:
     """The field for the mission whose records alone are listed."""
     with ui.element("form").props('method="get" action="/records" role="search"').classes("bar"):
-        field = ui.element("input").classes("search").props('type="search" name="mission" id="search"')
-        field.props["value"] = mission
-        field.props["placeholder"] = field.props["aria-label"] = "Id of a mission, then Enter"
+        field = search_text("Id of a mission, then Enter", mission, name="mission")
+        ui.html(field, sanitize=False).style("display: contents")
 
 
 def _pager(first: str, following: str) -> None:
