@@ -136,6 +136,20 @@ def test_one_server_has_it(path):
     assert read(path) == []
 
 
+def test_the_next_server_waits_for_one_that_ends(path):
+    before = Journal(path)
+
+    async def story():
+        following = asyncio.create_task(asyncio.to_thread(Journal, path, 60.0))
+        await before.append([action()])
+        await before.close()
+        return await following
+
+    journal = asyncio.run(story())
+    assert len(journal.read()) == 1
+    asyncio.run(journal.close())
+
+
 def test_it_is_emptied_when_the_database_has_all_of_every_run(path):
     async def story():
         journal = Journal(path)

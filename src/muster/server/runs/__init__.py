@@ -12,7 +12,7 @@
 | `session` | server | one run: its runner, again after a crash; its log; its state |
 | `runner_input`, `packed_log` | server | what a runner is told first; the log, packed in memory |
 | `log_writer` | server | writes a run's log to the database, and to the journal while that refuses |
-| `journal`, `journal_replay` | server | the file of what the database has not taken; folds it into the database at the start |
+| `journal`, `journal_replay` | server | what the database has not taken: a file; and its way into the database |
 | `subscribers` | server | tells watchers |
 | `terms` | server | what may be asked |
 | `claims` | server | which real robots a run has for itself |

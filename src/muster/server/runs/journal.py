@@ -12,6 +12,7 @@ import json
 import logging
 import os
 import shutil
+import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -27,6 +28,8 @@ from muster.server.store.columns import as_json
 Item = Action | Entry
 _KINDS: dict[str, type[Item]] = {"action": Action, "entry": Entry}
 
+_PAUSE_S = 0.1
+
 _log = logging.getLogger("muster.runs")
 
 
@@ -37,6 +40,8 @@ class Journal:
     ----------
     path
         the file; it is created, for this user only, if it does not exist.
+    patience_s
+        seconds to wait for another server that has the file: one that has lost the database ends within a few.
 
     Raises
     ------
@@ -44,9 +49,9 @@ class Journal:
         if the file cannot be opened, or another server has it.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, patience_s: float = 0.0) -> None:
         self.path = path
-        self._file = _opened(path)
+        self._file = _opened(path, time.monotonic() + patience_s)
         self._thread = ThreadPoolExecutor(1, "muster-journal")  # the other threads may all wait for the database
         self._waiting: list[tuple[bytes, asyncio.Future[None]]] = []
         self._writing: asyncio.Task[None] | None = None
@@ -150,7 +155,7 @@ class Journal:
             os.fdatasync(self._file)
 
 
-def _opened(path: Path) -> int:
+def _opened(path: Path, until: float) -> int:
     """Open and lock the file, and sync its folder, so that the file outlives a power cut."""
     try:
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -158,7 +163,7 @@ def _opened(path: Path) -> int:
     except OSError as error:
         raise StoreError(f"{path}: {error.strerror}; expected a folder that can be written") from None
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _lock(file, until)
         folder = os.open(path.parent, os.O_RDONLY)
         try:
             os.fsync(folder)
@@ -169,6 +174,18 @@ def _opened(path: Path) -> int:
         why = "in use by another server" if isinstance(error, BlockingIOError) else str(error.strerror)
         raise StoreError(f"{path}: {why}; expected one server a database, and a folder that can be synced") from None
     return file
+
+
+def _lock(file: int, until: float) -> None:
+    """Lock a file; raises BlockingIOError if another process has it at a moment of the monotonic clock."""
+    while True:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return
+        except BlockingIOError:
+            if time.monotonic() >= until:
+                raise
+        time.sleep(_PAUSE_S)
 
 
 def _line(item: Item) -> bytes:

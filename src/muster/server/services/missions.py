@@ -332,6 +332,10 @@ class Missions:
         """
         return await asyncio.to_thread(self._list, limit, _place(after), search.casefold().split())
 
+    async def with_text(self, text: str) -> str | None:
+        """The id of a mission whose newest version has this text; None if there is none."""
+        return await asyncio.to_thread(self._table.with_text, text)
+
     async def count(self, search: str = "") -> int:
         """How many of the missions made on this server `list` has in all."""
         return await asyncio.to_thread(self._table.count, search.casefold().split())

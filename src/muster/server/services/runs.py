@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 PATIENCE_S = 0.7
 """Seconds that a command to a run waits for the database; after that the journal takes it."""
 
+_ENDS_WITHIN_S = 30.0
+"""Seconds within which a server ends that has lost the database to another one."""
 _STOPS = ("run.pause", "run.cancel")
 
 _log = logging.getLogger("muster.runs")
@@ -60,6 +62,7 @@ class Runs:
         StoreError
             if the journal cannot be opened, or the database not be used.
         """
+        self._opened_journal = await asyncio.to_thread(Journal, self._journal_path, _ENDS_WITHIN_S)
         await asyncio.to_thread(replay, self._journal, self._store)
         await asyncio.to_thread(sweep, OF_RUNS)
         unfinished = await asyncio.to_thread(self._store.runs.unfinished)

@@ -180,6 +180,15 @@ class MissionTable:
             raise NotFoundError(f"no mission {mission}")
         return found[0]
 
+    def with_text(self, text: str) -> str | None:
+        """The id of a mission whose newest version has this text; None if there is none."""
+        if "\0" in text:  # no text that is stored has one; a file of another kind may
+            return None
+        query = select(missions.c.id).join(mission_versions, _NEWEST).where(mission_versions.c.text == text)
+        with self._database.reading() as connection:
+            found: str | None = connection.execute(query.where(~missions.c.hidden).limit(1)).scalar()
+        return found
+
     def count(self, words: Sequence[str] = ()) -> int:
         """How many missions `list` has in all."""
         with self._database.reading() as connection:
@@ -200,9 +209,8 @@ def _made_here(words: Sequence[str]) -> list[ColumnElement[bool]]:
     return [~missions.c.shipped, ~missions.c.hidden, *named]
 
 
-_ENTRIES = select(missions, mission_versions.c.summary).join(
-    mission_versions, and_(mission_versions.c.mission == missions.c.id, mission_versions.c.version == missions.c.newest)
-)
+_NEWEST = and_(mission_versions.c.mission == missions.c.id, mission_versions.c.version == missions.c.newest)
+_ENTRIES = select(missions, mission_versions.c.summary).join(mission_versions, _NEWEST)
 
 _VERSIONS = select(*(mission_versions.c[each.name] for each in fields(VersionEntry))).order_by(
     mission_versions.c.version.desc()
