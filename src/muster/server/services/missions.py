@@ -354,14 +354,20 @@ class Missions:
         self, limit: int, after: tuple[datetime | None, str] | None, words: Sequence[str]
     ) -> Sequence[MissionEntry]:
         changed_at, last = after or (None, "")
-        shipped, own = list(shipped_entries().values()), list[MissionEntry]()
-        if last and changed_at is None:
-            names = [entry.id for entry in shipped]
-            shipped = shipped[names.index(last) + 1 :] if last in names else []
-        else:
+        own = list[MissionEntry]()
+        if changed_at is not None or not last:
             own += self._table.list(limit, words, None if changed_at is None else (changed_at, last))
-        stored = {entry.id: entry for entry in self._table.shipped()} if len(own) < limit else {}
-        own += [stored.get(one.id, one) for one in shipped if all(word in words_of(one.id, one.name) for word in words)]
+            if len(own) == limit:
+                return own
+            last = ""
+        shipped = list(shipped_entries().values())
+        behind = next((k for k, entry in enumerate(shipped, start=1) if entry.id == last), 0)
+        stored = {entry.id: entry for entry in self._table.shipped()}
+        own += [
+            stored.get(entry.id, entry)
+            for entry in shipped[behind:]
+            if all(word in words_of(entry.id, entry.name) for word in words)
+        ]
         return own[:limit]
 
 
