@@ -61,7 +61,7 @@ def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
             one, other = await asyncio.gather(watched(runs, run.id), watched(runs, run.id))
             pool = Pool(workers=1, memory_mb=2048)
             records = Records(store, pool, runs)
-            assert [one.id for one in await records.list()] == [run.id]  # as soon as watchers know that it is over
+            assert [one.id for one in await runs.over()] == [run.id]  # as soon as watchers know that it is over
             made = [await records.flown(run.id), await records.page(run.id), await records.mcap(run.id)]
             made += [await records.export(run.id, "csv"), await records.export(run.id, "json")]
             await pool.close()
@@ -103,10 +103,10 @@ def test_a_record_is_found_behind_many_runs(store):
     plan = planned(store, muster.load("6T-2R"))
     first, *others = (store.runs.add("6T-2R", 1, plan, "kinematic", {}, 1.0, "ada").id for _ in range(3))
     store.runs.set(first, state="ended")
-    records = Records(store, None, Runs(store, settings_of(store)))
-    assert [run.id for run in asyncio.run(records.list(limit=1))] == [first]
+    runs = Runs(store, settings_of(store))
+    assert [run.id for run in asyncio.run(runs.over(limit=1))] == [first]
     store.runs.set(others[0], state="failed")
-    assert [run.id for run in asyncio.run(records.list())] == [others[0], first]
+    assert [run.id for run in asyncio.run(runs.over())] == [others[0], first]
 
 
 def test_a_runner_that_is_killed_goes_on_where_it_was(store):

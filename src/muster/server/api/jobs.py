@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Request, Response, WebSocket
+from fastapi import APIRouter, Query, WebSocket
 
-from muster.exchange.mission_control import PAGE_ROWS, Job, JobState
+from muster.exchange.mission_control import Job, JobState
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheServices, TheUser
-from muster.server.api.parameter_types import Before, JobId, Limit, MissionQuery
-from muster.server.api.responses import PAGED, errors, page_of
+from muster.server.api.dependencies import ThePage, TheServices, TheUser
+from muster.server.api.parameter_types import Before, JobId, MissionQuery
+from muster.server.api.responses import PAGED, errors
 from muster.server.api.sockets import message, tell
 from muster.server.services.jobs import Jobs
 
@@ -21,16 +21,13 @@ router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=BoundedRoute)
 @router.get("", summary="List jobs", responses=PAGED)
 async def jobs(
     services: TheServices,
-    request: Request,
-    response: Response,
+    page: ThePage,
     state: Annotated[JobState | None, Query(description="Only those.")] = None,
     mission: MissionQuery = None,
-    limit: Limit = PAGE_ROWS,
     before: Before = None,
 ) -> list[Job]:
     """Newest first; `before` the last `id` gives the next ones."""
-    found = await services.jobs.list(state, mission, limit + 1, before)
-    return page_of(found, limit, request, response, before=lambda job: job.id)
+    return page.of(await services.jobs.list(state, mission, page.rows, before), before=lambda job: job.id)
 
 
 @router.get("/{job}", summary="See how far a job is")

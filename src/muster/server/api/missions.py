@@ -11,9 +11,9 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, File, Form, Header, HTTPException, Query, Request, Response, UploadFile
 from pydantic import Field
 
-from muster.exchange.mission_control import PAGE_ROWS, MissionEntry, MissionVersion, NotFoundError, VersionEntry
+from muster.exchange.mission_control import MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheServices, TheUser, require_known_form
+from muster.server.api.dependencies import ThePage, TheServices, TheUser, require_known_form
 from muster.server.api.parameter_types import (
     LARGEST,
     AfterMission,
@@ -22,7 +22,6 @@ from muster.server.api.parameter_types import (
     FileName,
     Files,
     Ignored,
-    Limit,
     MissionId,
     Name,
     Note,
@@ -37,7 +36,6 @@ from muster.server.api.responses import (
     errors,
     file_described,
     file_response,
-    page_of,
     with_location,
 )
 from muster.server.services.missions import place_of
@@ -132,16 +130,10 @@ class MissionToCheck(Body):
 
 @router.get("", summary="List missions", responses=PAGED)
 async def missions(
-    services: TheServices,
-    request: Request,
-    response: Response,
-    search: Search = "",
-    limit: Limit = PAGE_ROWS,
-    after: AfterMission = "",
+    services: TheServices, page: ThePage, search: Search = "", after: AfterMission = ""
 ) -> list[MissionEntry]:
     """The missions made on this server, last changed first, then the shipped ones."""
-    found = await services.missions.list(limit + 1, after, search)
-    return page_of(found, limit, request, response, after=place_of)
+    return page.of(await services.missions.list(page.rows, after, search), after=place_of)
 
 
 @router.post("", status_code=201, summary="Make a mission", responses=with_location(201, "It is kept.", etag=True))
@@ -229,16 +221,11 @@ async def delete(services: TheServices, who: TheUser, mission: MissionId) -> Non
 
 @router.get("/{mission}/versions", summary="List the versions of a mission", responses=PAGED)
 async def versions(
-    services: TheServices,
-    request: Request,
-    response: Response,
-    mission: MissionId,
-    limit: Limit = PAGE_ROWS,
-    before: BeforeVersion = None,
+    services: TheServices, page: ThePage, mission: MissionId, before: BeforeVersion = None
 ) -> list[VersionEntry]:
     """Newest first; `before` the last `version` gives the next ones."""
-    found = await services.missions.versions(mission, limit + 1, before)
-    return page_of(found, limit, request, response, before=lambda version: version.version)
+    found = await services.missions.versions(mission, page.rows, before)
+    return page.of(found, before=lambda version: version.version)
 
 
 @router.get("/{mission}/versions/{number}", summary="Read a version of a mission")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Query, Response
 from pydantic import Field, WithJsonSchema
 
-from muster.exchange.mission_control import PAGE_ROWS, Job, PlanEntry
+from muster.exchange.mission_control import Job, PlanEntry
 from muster.mission.model import OBJECTIVES
 from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import IdempotencyKey, TheServices, TheUser, key_of
+from muster.server.api.dependencies import IdempotencyKey, ThePage, TheServices, TheUser, key_of
 from muster.server.api.parameter_types import (
     LARGEST,
     Before,
@@ -19,7 +19,6 @@ from muster.server.api.parameter_types import (
     Count,
     Ignored,
     IgnoredQuery,
-    Limit,
     MissionId,
     MissionQuery,
     Name,
@@ -34,7 +33,6 @@ from muster.server.api.responses import (
     errors,
     file_described,
     file_response,
-    page_of,
     with_location,
 )
 from muster.traffic.names import TRAFFIC
@@ -121,16 +119,10 @@ async def upload(
 
 @router.get("/plans", summary="List plans", responses=PAGED)
 async def plans(
-    services: TheServices,
-    request: Request,
-    response: Response,
-    mission: MissionQuery = None,
-    limit: Limit = PAGE_ROWS,
-    before: Before = None,
+    services: TheServices, page: ThePage, mission: MissionQuery = None, before: Before = None
 ) -> list[PlanEntry]:
     """Newest first, without routes and histories; `before` the last `id` gives the next ones."""
-    found = await services.plans.list(mission, limit + 1, before)
-    return page_of(found, limit, request, response, before=lambda plan: plan.id)
+    return page.of(await services.plans.list(mission, page.rows, before), before=lambda plan: plan.id)
 
 
 @router.get("/plans/{plan}", summary="Read a plan")

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Response
 
-from muster.exchange.mission_control import PAGE_ROWS, Run
+from muster.exchange.mission_control import Run
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheServices
-from muster.server.api.parameter_types import Before, Limit, MissionQuery, RunId
-from muster.server.api.responses import PAGED, archive_response, errors, file_described, file_response, page_of
+from muster.server.api.dependencies import ThePage, TheServices
+from muster.server.api.parameter_types import Before, MissionQuery, RunId
+from muster.server.api.responses import PAGED, archive_response, errors, file_described, file_response
 
 router = APIRouter(prefix="/records", tags=["records"], route_class=BoundedRoute)
 
@@ -19,16 +19,10 @@ ExportTo = Literal["csv", "geojson", "gpx", "kml", "json"]
 
 @router.get("", summary="List records", responses=PAGED)
 async def records(
-    services: TheServices,
-    request: Request,
-    response: Response,
-    mission: MissionQuery = None,
-    limit: Limit = PAGE_ROWS,
-    before: Before = None,
+    services: TheServices, page: ThePage, mission: MissionQuery = None, before: Before = None
 ) -> list[Run]:
     """Runs that are over, newest first; `before` the last `id` gives the next ones."""
-    found = await services.records.list(limit + 1, before, mission)
-    return page_of(found, limit, request, response, before=lambda run: run.id)
+    return page.of(await services.runs.over(page.rows, before, mission), before=lambda run: run.id)
 
 
 @router.get(

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeVar
+from collections.abc import Mapping
+from typing import Any
 from urllib.parse import quote
 
-from starlette.requests import Request
 from starlette.responses import Response
 
 from muster.server.problem import MEDIA_TYPE
 from muster.server.services.archives import archive_of
 
 Responses = dict[int | str, dict[str, Any]]
-T = TypeVar("T")
 
 _WHY = {
     400: "What was sent is wrong; `findings` says where.",
@@ -66,17 +64,6 @@ PAGED: Responses = {
     }
 }
 """The description of a page of a list."""
-
-
-def page_of(
-    rows: Sequence[T], limit: int, request: Request, response: Response, **place: Callable[[T], object]
-) -> list[T]:
-    """The first `limit` rows. If there are more, `Link` names the next page: by the `place` of the last row."""
-    page = list(rows[:limit])
-    if len(rows) > limit:
-        query = request.url.include_query_params(**{name: of(page[-1]) for name, of in place.items()}).query
-        response.headers["Link"] = f'<{request.url.path}?{query}>; rel="next"'
-    return page
 
 
 def file_response(data: bytes, name: str, kind: str, *, shown_in_place: bool = False) -> Response:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Request, Response, WebSocket
+from fastapi import APIRouter, Query, Response, WebSocket
 from pydantic import Field
 
-from muster.exchange.mission_control import MOST_ROWS, OVER, PAGE_ROWS, Action, ConflictError, Entry, Run
+from muster.exchange.mission_control import MOST_ROWS, OVER, Action, ConflictError, Entry, Run
 from muster.mission.errors import ParameterError
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import IdempotencyKey, TheServices, TheUser, key_of
-from muster.server.api.parameter_types import LARGEST, After, Before, Body, Limit, MissionQuery, Name, RunId
-from muster.server.api.responses import PAGED, errors, page_of, with_location
+from muster.server.api.dependencies import IdempotencyKey, ThePage, TheServices, TheUser, key_of
+from muster.server.api.parameter_types import LARGEST, After, Before, Body, MissionQuery, Name, RunId
+from muster.server.api.responses import PAGED, errors, with_location
 from muster.server.api.sockets import answer, message, tell
 from muster.server.runs.log_lines import line_of
 from muster.server.runs.run_settings import MOST_ORDERS
@@ -78,17 +78,9 @@ async def start(
 
 
 @router.get("", summary="List runs", responses=PAGED)
-async def runs(
-    services: TheServices,
-    request: Request,
-    response: Response,
-    mission: MissionQuery = None,
-    limit: Limit = PAGE_ROWS,
-    before: Before = None,
-) -> list[Run]:
+async def runs(services: TheServices, page: ThePage, mission: MissionQuery = None, before: Before = None) -> list[Run]:
     """Newest first; `before` the last `id` gives the next ones."""
-    found = await services.runs.list(limit + 1, before, mission)
-    return page_of(found, limit, request, response, before=lambda run: run.id)
+    return page.of(await services.runs.list(page.rows, before, mission), before=lambda run: run.id)
 
 
 @router.get("/{run}", summary="See how a run is")
@@ -113,17 +105,9 @@ async def order(services: TheServices, who: TheUser, run: RunId, body: Orders) -
 
 
 @router.get("/{run}/events", summary="Read the log of a run", responses=PAGED)
-async def events(
-    services: TheServices,
-    request: Request,
-    response: Response,
-    run: RunId,
-    after: After = 0,
-    limit: Limit = PAGE_ROWS,
-) -> list[Entry]:
+async def events(services: TheServices, page: ThePage, run: RunId, after: After = 0) -> list[Entry]:
     """In order; `after` the last `seq` gives the next ones."""
-    found = await services.runs.entries(run, after, limit + 1)
-    return page_of(found, limit, request, response, after=lambda entry: entry.seq)
+    return page.of(await services.runs.entries(run, after, page.rows), after=lambda entry: entry.seq)
 
 
 @router.get("/{run}/report", summary="Read the report of a run", responses=errors(409))

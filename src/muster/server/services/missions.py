@@ -341,14 +341,9 @@ class Missions:
         return await asyncio.to_thread(self._table.count, search.casefold().split())
 
     async def dimensions(self, mission: str) -> int:
-        """How many dimensions the newest version of a mission has, as far as its summary says."""
-        return await asyncio.to_thread(self._dimensions, mission)
-
-    def _dimensions(self, mission: str) -> int:
-        try:
-            return self._table.entry(mission).dimensions
-        except NotFoundError:
-            return shipped_entries()[mission].dimensions if mission in shipped_entries() else 2
+        """How many dimensions the newest version of a mission has; 2 of one that was deleted."""
+        known = [*await asyncio.to_thread(self._table.named, [mission]), shipped_entries().get(mission)]
+        return next((entry.dimensions for entry in known if entry is not None), 2)
 
     def _list(
         self, limit: int, after: tuple[datetime | None, str] | None, words: Sequence[str]
@@ -362,13 +357,9 @@ class Missions:
             last = ""
         shipped = list(shipped_entries().values())
         behind = next((k for k, entry in enumerate(shipped, start=1) if entry.id == last), 0)
-        stored = {entry.id: entry for entry in self._table.shipped()}
-        own += [
-            stored.get(entry.id, entry)
-            for entry in shipped[behind:]
-            if all(word in words_of(entry.id, entry.name) for word in words)
-        ]
-        return own[:limit]
+        found = [one for one in shipped[behind:] if all(word in words_of(one.id, one.name) for word in words)]
+        stored = {entry.id: entry for entry in self._table.named([one.id for one in found])}
+        return [*own, *(stored.get(one.id, one) for one in found[: limit - len(own)])]
 
 
 def place_of(entry: MissionEntry) -> str:

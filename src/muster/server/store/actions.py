@@ -15,7 +15,7 @@ from typing import Any
 from sqlalchemy import Connection, select, update
 
 from muster.exchange.mission_control import PAGE_ROWS, Action, NotFoundError, User
-from muster.server.store.database import Database, insert_of
+from muster.server.store.database import Database, insert_of, newest
 from muster.server.store.schema import actions
 
 _1970 = datetime(1970, 1, 1, tzinfo=UTC)
@@ -92,11 +92,7 @@ class ActionTable:
 
     def list(self, run: int | None = None, limit: int = PAGE_ROWS, before: int | None = None) -> list[Action]:
         """Actions of one run or of all, newest first; only ids below `before`, if given."""
-        query = select(actions).order_by(actions.c.id.desc()).limit(limit)
-        if run is not None:
-            query = query.where(actions.c.run == run)
-        if before is not None:
-            query = query.where(actions.c.id < before)
+        query = newest(select(actions), actions, limit, before, run=run)
         with self._database.reading() as connection:
             return [Action(**row._mapping) for row in connection.execute(query)]
 

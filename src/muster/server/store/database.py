@@ -14,7 +14,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from sqlalchemy import Connection, Engine, Table, create_engine, event
+from sqlalchemy import Connection, Engine, Select, Table, create_engine, event
 from sqlalchemy.exc import SQLAlchemyError
 
 from muster.exchange.mission_control import StoreError
@@ -102,6 +102,14 @@ class Database:
         except SQLAlchemyError as error:
             self.failures += 1
             raise store_error(error, self.name) from None
+
+
+def newest(query: Select[Any], table: Table, limit: int, before: int | None, **equal: object) -> Select[Any]:
+    """A page of a query: the newest rows first, with ids below `before`, and these values where they are not None."""
+    wanted = [table.c[name] == value for name, value in equal.items() if value is not None]
+    if before is not None:
+        wanted.append(table.c.id < before)
+    return query.where(*wanted).order_by(table.c.id.desc()).limit(limit)
 
 
 def insert_of(connection: Connection, table: Table) -> Any:

@@ -13,7 +13,6 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Row, Select, and_, func, insert, select, tuple_, update
 
 from muster.exchange.mission_control import (
-    MOST_ROWS,
     PAGE_ROWS,
     ConflictError,
     MissionEntry,
@@ -167,19 +166,6 @@ class MissionTable:
             query = query.where(tuple_(missions.c.changed_at, missions.c.id) < last)
         return self._read(query.limit(limit))
 
-    def entry(self, mission: str) -> MissionEntry:
-        """A mission as `list` has it.
-
-        Raises
-        ------
-        NotFoundError
-            if there is no such mission, or it was deleted.
-        """
-        found = self._read(_ENTRIES.where(missions.c.id == mission, ~missions.c.hidden))
-        if not found:
-            raise NotFoundError(f"no mission {mission}")
-        return found[0]
-
     def with_text(self, text: str) -> str | None:
         """The id of a mission whose newest version has this text; None if there is none."""
         if "\0" in text:  # no text that is stored has one; a file of another kind may
@@ -195,9 +181,9 @@ class MissionTable:
             query = select(func.count()).select_from(missions).where(*_made_here(words))
             return int(connection.execute(query).scalar_one())
 
-    def shipped(self) -> Sequence[MissionEntry]:
-        """Shipped missions that were stored."""
-        return self._read(_ENTRIES.where(missions.c.shipped, ~missions.c.hidden).limit(MOST_ROWS))
+    def named(self, names: Collection[str]) -> Sequence[MissionEntry]:
+        """Those of these missions that are stored and were not deleted."""
+        return self._read(_ENTRIES.where(missions.c.id.in_(names), ~missions.c.hidden))
 
     def _read(self, query: Select[Any]) -> Sequence[MissionEntry]:
         with self._database.reading() as connection:

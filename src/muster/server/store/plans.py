@@ -9,7 +9,7 @@ from typing import Any, Literal
 from sqlalchemy import Connection, Row, func, insert, select
 
 from muster.exchange.mission_control import MOST_ROWS, PAGE_ROWS, NotFoundError, PlanEntry
-from muster.server.store.database import Database
+from muster.server.store.database import Database, newest
 from muster.server.store.schema import missions, plans
 
 _BODY = frozenset({"routes", "unassigned", "history", "book"})
@@ -62,11 +62,7 @@ class PlanTable:
 
         Each without routes, history, unassigned and book.
         """
-        query = _HEADS.order_by(plans.c.id.desc()).limit(limit)
-        if mission is not None:
-            query = query.where(plans.c.mission == mission)
-        if before is not None:
-            query = query.where(plans.c.id < before)
+        query = newest(_HEADS, plans, limit, before, mission=mission)
         with self._database.reading() as connection:
             return [_entry(row) for row in connection.execute(query)]
 

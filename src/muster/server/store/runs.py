@@ -10,7 +10,7 @@ from sqlalchemy import Connection, insert, select, update
 
 from muster.exchange.mission_control import OVER, PAGE_ROWS, ConflictError, NotFoundError, Run, User, World
 from muster.server.store.actions import keep_actions, new_action
-from muster.server.store.database import Database
+from muster.server.store.database import Database, newest
 from muster.server.store.request_keys import RequestKey, keyed
 from muster.server.store.schema import runs
 
@@ -109,13 +109,9 @@ class RunTable:
         self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None, *, over: bool = False
     ) -> list[Run]:
         """Runs, of one mission or all, or those alone that are over, the newest first; ids below `before`, if given."""
-        query = select(runs).order_by(runs.c.id.desc()).limit(limit)
+        query = newest(select(runs), runs, limit, before, mission=mission)
         if over:
             query = query.where(runs.c.state.in_(OVER))
-        if before is not None:
-            query = query.where(runs.c.id < before)
-        if mission is not None:
-            query = query.where(runs.c.mission == mission)
         with self._database.reading() as connection:
             return [Run(**row._mapping) for row in connection.execute(query)]
 

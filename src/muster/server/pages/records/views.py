@@ -57,7 +57,7 @@ ui.add_css(Path(__file__).with_name("records.css"), shared=True)
 async def records_page(mission: str = "", before: int | None = None) -> None:
     """Runs that are over, of one mission or all, the newest first; ids below `before`, if given."""
     with frame("Records"), errors_shown():
-        runs = await the_services().records.list(PAGE_ROWS + 1, before, mission or None)
+        runs = await the_services().runs.over(PAGE_ROWS + 1, before, mission or None)
         shown = runs[:PAGE_ROWS]
         _filter(mission)
         if shown:
