@@ -56,12 +56,14 @@ def queries():
 
 
 def require_bounded(file, asked):
-    """Each query yields a page at most; and there were some."""
+    """Each query yields a page at most, in the order of an index; and there were some."""
     assert asked
     with closing(sqlite3.connect(file)) as database:
         for statement, parameters in asked:
             (rows,) = database.execute(f"SELECT count(*) FROM ({statement})", parameters).fetchone()
             assert rows <= MOST_ROWS + 1, statement
+            how = database.execute(f"EXPLAIN QUERY PLAN {statement}", parameters).fetchall()
+            assert "B-TREE" not in str(how), statement
 
 
 def lists_described():
