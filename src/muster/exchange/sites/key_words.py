@@ -18,3 +18,4 @@ BATTERY = _words("battery")
 """Of what may be a time, a length, or neither."""
 OF_ROBOTS = ("drone", "uav", "uas", "ugv", "rover", "vehicle", "aircraft")
 """Words before headings that say that they are of robots: `Drone ID`."""
+SUBJECTS, MOST = _words("subjects"), _words("most")
