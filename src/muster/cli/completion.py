@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
-
 import click
 from click.shell_completion import BashComplete, add_completion_class, get_completion_class
 
 from muster.cli.options import quiet_option
+from muster.mission.packaged_files import packaged_text
 
 _SHELLS = ("bash", "zsh", "fish")
 _VARIABLE = "_MUSTER_COMPLETE"
@@ -16,7 +15,7 @@ _VARIABLE = "_MUSTER_COMPLETE"
 class _Bash(BashComplete):
     """Completes names and files at once: click's own script has either."""
 
-    source_template = (files("muster.cli") / "completion.bash").read_text(encoding="utf-8")
+    source_template = packaged_text("muster.cli", "completion.bash")
 
 
 add_completion_class(_Bash, "bash")

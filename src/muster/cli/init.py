@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from importlib.resources import files
 from pathlib import Path
 from string import Template
 
@@ -12,6 +11,7 @@ import click
 
 from muster.cli.options import quiet_option
 from muster.mission.errors import ParameterError
+from muster.mission.packaged_files import packaged_text
 
 
 @click.command()
@@ -45,7 +45,7 @@ def command(name: str, shipped: str | None, output: Path | None, quiet: bool, ve
 
 
 def _template(path: Path) -> tuple[str, list[Path]]:
-    template = Template((files("muster.cli") / "init_template.yaml").read_text(encoding="utf-8"))
+    template = Template(packaged_text("muster.cli", "init_template.yaml"))
     return template.substitute(name=json.dumps(path.stem, ensure_ascii=False), file=path), []
 
 

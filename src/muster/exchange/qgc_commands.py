@@ -6,13 +6,11 @@ A command that is neither may move the vehicle, change its speed, its height or 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib.resources import files
-
-import yaml
 
 from muster.exchange import qgc_format as qgc
+from muster.mission.packaged_files import packaged_data
 
-NAMES: Mapping[int, str] = yaml.safe_load((files("muster.exchange") / "mav_commands.yaml").read_text(encoding="utf-8"))
+NAMES: Mapping[int, str] = packaged_data("muster.exchange", "mav_commands.yaml")
 """By number the names of the commands, without `MAV_CMD_`."""
 
 TAKEOFFS = (qgc.NAV_TAKEOFF, qgc.NAV_VTOL_TAKEOFF)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
+
+from muster.mission.packaged_files import packaged_data
 
 
 def meant_by(word: str) -> list[str]:
@@ -14,7 +15,5 @@ def meant_by(word: str) -> list[str]:
 
 @cache
 def _called() -> Mapping[str, str]:
-    import yaml
-
-    called: Mapping[str, str] = yaml.safe_load((files("muster.mission") / "synonyms.yaml").read_text(encoding="utf-8"))
+    called: Mapping[str, str] = packaged_data("muster.mission", "synonyms.yaml")
     return called

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 
-import yaml
-
+from muster.mission.packaged_files import packaged_data
 from muster_studies.instances.random_areas import Ring, random_area, ring
 
 
@@ -65,7 +63,7 @@ SHAPES: Mapping[str, Field] = {
 
 CELL_M = 10.0
 """Side of a cell of a grid map; a lane is half as wide, so that four pieces of it make a cell."""
-_GRIDS: Mapping[str, str] = yaml.safe_load((files("muster_studies.areas") / "grids.yaml").read_text(encoding="utf-8"))
+_GRIDS: Mapping[str, str] = packaged_data("muster_studies.areas", "grids.yaml")
 GRIDS: Mapping[str, Sequence[str]] = {name: rows.split() for name, rows in _GRIDS.items()}
 
 

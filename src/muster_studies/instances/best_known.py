@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
-import yaml
+from muster.mission.packaged_files import packaged_data
 
-_TABLES: Mapping[str, Mapping[str, Any]] = yaml.safe_load(
-    (files("muster_studies.instances") / "best_known.yaml").read_text(encoding="utf-8")
-)
+_TABLES: Mapping[str, Mapping[str, Any]] = packaged_data("muster_studies.instances", "best_known.yaml")
 
 
 def best_known(table: str) -> Mapping[str, Any]:

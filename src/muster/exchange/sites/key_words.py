@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
+from muster.mission.packaged_files import packaged_data
 
-import yaml
-
-_WORDS = yaml.safe_load((files("muster.exchange.sites") / "key_words.yaml").read_text(encoding="utf-8"))
+_WORDS = packaged_data("muster.exchange.sites", "key_words.yaml")
 
 
 def _words(subject: str) -> tuple[str, ...]:

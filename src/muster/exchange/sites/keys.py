@@ -9,10 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cache, partial
-from importlib.resources import files
 from typing import Any
-
-import yaml
 
 from muster.exchange.sites import cells, energy_cells
 from muster.exchange.sites import key_words as words
@@ -20,6 +17,7 @@ from muster.exchange.sites.energy_cells import COLUMNS
 from muster.exchange.sites.units import UNITS, Dimension
 from muster.exchange.sites.vocabulary import moves
 from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.packaged_files import packaged_data
 from muster.mission.records import key_of, specified
 from muster.mission.value_types import Choice, Flag, Kind, Many, Number, OneOrMany, Text, Whole
 
@@ -85,9 +83,7 @@ def _choices(value: object) -> list[str]:
     return [part for one in cells.words(value) for part in one.casefold().split()]
 
 
-_HEADINGS: Mapping[str, Mapping[str, str]] = yaml.safe_load(
-    (files("muster.exchange.sites") / "headings.yaml").read_text(encoding="utf-8")
-)
+_HEADINGS: Mapping[str, Mapping[str, str]] = packaged_data("muster.exchange.sites", "headings.yaml")
 
 
 def _key(subject: str, name: str, read: Read, dimension: Dimension = "", *names: str, **others: Any) -> SiteKey:

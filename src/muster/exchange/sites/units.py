@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
 from typing import Literal
 
-import yaml
+from muster.mission.packaged_files import packaged_data
 
 Dimension = Literal["", "time", "length", "speed", "angle", "mass"]
 
-_WORDS_OF: dict[Dimension, dict[float, str]] = yaml.safe_load(
-    (files("muster.exchange.sites") / "units.yaml").read_text(encoding="utf-8")
-)
+_WORDS_OF: dict[Dimension, dict[float, str]] = packaged_data("muster.exchange.sites", "units.yaml")
 UNITS: dict[Dimension, dict[str, float]] = {
     dimension: {word: factor for factor, words in units.items() for word in words.split()}
     for dimension, units in _WORDS_OF.items()

@@ -12,9 +12,8 @@ import re
 import unicodedata
 from collections.abc import Mapping
 from functools import lru_cache
-from importlib.resources import files
 
-import yaml
+from muster.mission.packaged_files import packaged_data
 
 CLOSED, BOUNDARY, SURVEY, OBSTACLE = "closed", "boundary", "survey", "obstacle"
 TASK, ROBOT, STATION, LANE, HOME = "task", "robot", "station", "lane", "home"
@@ -53,8 +52,8 @@ def _expression(patterns: str) -> re.Pattern[str]:
 
 @lru_cache(maxsize=1)
 def _expressions() -> Mapping[str, re.Pattern[str]]:
-    text = (files("muster.exchange.sites") / "vocabulary.yaml").read_text(encoding="utf-8")
-    return {meaning: _expression(patterns) for meaning, patterns in yaml.safe_load(text).items()}
+    patterns_of = packaged_data("muster.exchange.sites", "vocabulary.yaml")
+    return {meaning: _expression(patterns) for meaning, patterns in patterns_of.items()}
 
 
 def meanings(text: str) -> Mapping[str, str]:

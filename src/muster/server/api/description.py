@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from html import escape
 from importlib.metadata import version
-from importlib.resources import files
 from string import Template
 from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
+from muster.mission.packaged_files import packaged_text
 from muster.server.api.problems import Problem
 
 _SUMMARY = "Plan, watch and steer a team of robots"
@@ -26,7 +26,7 @@ _TAGS = {
     "actions": "What users did.",
     "about": "This server.",
 }
-_PAGE = Template((files("muster.server.api") / "description.html").read_text(encoding="utf-8"))
+_PAGE = Template(packaged_text("muster.server.api", "description.html"))
 
 
 def describe(app: FastAPI) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from html import escape
-from importlib.resources import files
 from string import Template
 from urllib.parse import parse_qs
 
@@ -12,6 +11,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
 from muster.exchange.mission_control import User
+from muster.mission.packaged_files import packaged_text
 from muster.server.security.authentication import SCOPE_KEY, Caller
 from muster.server.security.guard import GuardState
 from muster.server.security.refusal import RefusalError
@@ -19,7 +19,7 @@ from muster.server.security.sessions import COOKIE, SECURE_COOKIE
 
 _FORM_BYTES = 4096
 
-_PAGE = Template((files("muster.server.security") / "login.html").read_text(encoding="utf-8"))
+_PAGE = Template(packaged_text("muster.server.security", "login.html"))
 
 
 def login_routes(guard_state: GuardState) -> list[Route]:
