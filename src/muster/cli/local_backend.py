@@ -83,11 +83,10 @@ class LocalBackend:
         **how: Any,
     ) -> tuple[Report, float | None]:
         from muster import simulate
-        from muster.mission.event_descriptions import event_line
 
         def report(event: ExecutionEvent) -> None:
             assert on_line is not None
-            on_line(event.time_s, event_line(event.kind, event.data))
+            on_line(event.time_s, event.line)
 
         with ctrl_c_halts() as halt:
             on_event = None if on_line is None else report

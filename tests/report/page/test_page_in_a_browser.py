@@ -209,9 +209,9 @@ def test_events_are_listed_and_lead_to_their_time(browser, page, recorded):
     assert browser.evaluate("document.querySelectorAll('#events li').length") == len(events)
     alarms = browser.evaluate("[...document.querySelectorAll('#events .alarm')].map(e => e.textContent)")
     assert alarms == [
-        "robot fails: robot r_5",
-        "lost: task late <b>, reason capacity",
-        "traffic jam: r_0, r_1 hold each other up at 1.00, 2.00 since 40.0 s",
+        "r_5 is out",
+        "task late <b> is lost: capacity",
+        "traffic jam: r_0, r_1 hold each other up at 1.00, 2.00 since 40.00 s",
     ]
     browser.evaluate("document.querySelector('#events .alarm').closest('button').click()")
     assert time_of(browser) == 20

@@ -6,7 +6,6 @@ from muster import Event, Mission, Robot, Task
 from muster.allocation.problem import Problem
 from muster.execution import report_of
 from muster.execution.record import NoObserver
-from muster.mission.event_descriptions import event_line
 from muster.mission.plan import Plan, Reason, Route, Unassigned
 from muster.running.negotiated.team_log import TeamLog
 
@@ -115,7 +114,7 @@ def test_robots_that_agree_anew_without_a_word_have_a_cause_for_it(log):
     agree(log, 0.0)
     agree(log, 5.0)
     (again,) = [event for event in log.events if event.kind == "replanned"]
-    assert event_line(again.kind, again.data).startswith("replanned after new_agreement: ")
+    assert again.line.startswith("replanned, as robots have agreed anew: ")
 
 
 def test_a_task_that_is_ordered_after_another_was_missed_has_a_reason_of_its_own(log):

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.event_descriptions import event_line, tells_cancelled, was_cancelled
 from muster.mission.model import Map, Station, Task, Zone
 from muster.mission.stations import station_sign
 from muster.motion.grid import Grid
@@ -26,7 +25,9 @@ from muster.report.styles import PALETTE
 from muster.report.time_marks import page_marks
 from muster.state import MissionState
 from muster.state.mission_state import OPEN
+from muster.state.reasons import was_cancelled
 from muster.state.robots import OUT
+from muster.state.words import DETAIL
 
 Floats = npt.NDArray[np.float64]
 
@@ -58,7 +59,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
             for bar in bars
             if bar.robot in order
         ],
-        "events": [_event(event) for event in recording.events],
+        "events": [_event(event) for event in recording.events if event.mark != DETAIL],
         "nearest": _nearest(recording, tracks),
         "areas": _areas(recording.tasks),
         "map": _map(recording.mission.map, recording.image),
@@ -147,8 +148,7 @@ def _unwrapped(headings: Floats) -> Floats:
 
 def _event(event: ExecutionEvent) -> list[Any]:
     """When it was, its line, and whether somebody should look at it."""
-    alarming = event.alarming and not tells_cancelled(event.kind, event.data)
-    return [_thousandths(event.time_s), event_line(event.kind, event.data), alarming]
+    return [_thousandths(event.time_s), event.line, event.alarming]
 
 
 def _tasks(recording: Recording) -> list[dict[str, Any]]:

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 from muster.exchange.mission_control import OVER, Action, Entry, Run, RunState, StoreError
 from muster.running.worlds import WORLDS
 from muster.server.runs.crash_history import CrashHistory
-from muster.server.runs.log_lines import line_of
 from muster.server.runs.log_writer import LogWriter
 from muster.server.runs.runner_input import RunnerInput
 from muster.server.runs.runner_process import RunnerProcess
 from muster.server.runs.subscribers import Subscribers
 from muster.server.runs.unsaved_actions import number_at
+from muster.state.words import words_of
 
 if TYPE_CHECKING:
     from muster.server.store.store import Store
@@ -334,5 +334,4 @@ def _order(action: Action) -> dict[str, Any]:
 
 def _entry_text(entry: Entry) -> str:
     said = {"type": "entry", "seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": dict(entry.data)}
-    line = line_of(entry.kind, entry.data)
-    return json.dumps(said | {"line": line}, ensure_ascii=False, separators=(",", ":"))
+    return json.dumps(said | words_of(entry.kind, entry.data), ensure_ascii=False, separators=(",", ":"))

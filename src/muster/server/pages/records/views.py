@@ -24,7 +24,7 @@ from muster.server.pages.records.figures import (
 )
 from muster.server.pages.tables import table
 from muster.server.pages.visitor import PATIENCE_S, is_seen, the_services
-from muster.server.runs.log_lines import deed_of, line_of
+from muster.state.words import DETAIL, deed_of, line_of, mark_of
 
 KEYS = {
     "space, arrows, home, end": "in the replay: play or pause, go through time (after a click or Tab into it)",
@@ -158,7 +158,8 @@ def _compared(run: Run) -> None:
 
 
 def _events(entries: Sequence[Entry]) -> None:
-    lines = [(seconds(entry.time_s), line_of(entry.kind, entry.data)) for entry in entries[:_MOST_EVENTS]]
+    shown = [entry for entry in entries[:_MOST_EVENTS] if mark_of(entry.kind, entry.data) != DETAIL]
+    lines = [(seconds(entry.time_s), line_of(entry.kind, entry.data)) for entry in shown]
     with _folded(f"Events ({len(entries)})"):
         table(("at", "what"), lines, label="Events", numbers=(0,))
         if len(entries) > _MOST_EVENTS:
