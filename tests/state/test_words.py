@@ -27,7 +27,7 @@ AT_DOCK = {"robot": "r_0", "station": "dock"}
         ("of no kind", {"robots": ["a", "b"], "much": 1.5}, "of no kind: robots a, b, much 1.50"),
         (
             "task_refused",
-            {"robot": "a", "task": "7", "reason": "skill: lift", "others": {"8": ["b"]}},
+            {"robot": "a", "task": "7", "reason": "skill: lift", "others": {"8": ["b", "c"]}},
             "a cannot do task 7: skill: lift; nor can b, c do 8",
         ),
         (
