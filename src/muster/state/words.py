@@ -136,7 +136,9 @@ def refused(data: Data) -> str:
 def standstill(data: Data) -> str:
     """`no robot gets on: task 7 waits for 6; it is given up: ...`."""
     given_up = data.get("given_up")
-    return _filled("no robot gets on: task {task} {words}", data) + (f"; it is given up: {given_up}" if given_up else "")
+    return _filled("no robot gets on: task {task} {words}", data) + (
+        f"; it is given up: {given_up}" if given_up else ""
+    )
 
 
 # Robots

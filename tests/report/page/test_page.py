@@ -127,7 +127,7 @@ def test_tasks_that_come_move_and_are_lost(recorded):
     assert (late["id"], late["type"]) == ("late <b>", "D")
     assert late["places"][:2] == [[20000, -9000, -9000], [25000, -8000, -9000]]
     assert [state for _, state, _ in late["states"]] == ["open", "open", "lost"]
-    assert [robot["gone"] for robot in data["robots"]][4:] == [[], [[20000, True]]]
+    assert [robot["gone"] for robot in data["robots"]][4:] == [[], [[20000, "failed"]]]
 
 
 def test_what_was_cancelled_is_not_lost(pair):

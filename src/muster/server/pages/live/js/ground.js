@@ -125,7 +125,7 @@ export class Ground {
     const robots = [...this.team.robots.values()].map(({ id, type, kind = "ground", radius_m: radius = 0, home: [x, y] }) =>
       ({ id, type: type ?? "", kind, radius, x, y }));
     const tasks = [...this.team.tasks.values()].map(({ id, type, action, place: [x, y], prerequisites = [] }) =>
-      ({ id, type: type ?? action?.name ?? "", x, y, prerequisites }));
+      ({ id, type: type ?? action?.name ?? "", x, y, prerequisites: [prerequisites].flat().map((one) => one.task ?? one) }));
     this.types = shapedTypes(this.types, tasks);
     for (const task of tasks) task.shape = this.types.indexOf(task.type) % SHAPES.length;
     const areas = areasOf([...this.team.tasks.values()]);
