@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.report.page.conftest import MORE
 from tests.report.page.test_page import recording
-from tests.state.drawn_events import Drawn, tied_site
+from tests.state.drawn_events import one_of_each, tied_site
 from tests.state.test_recovery import plan  # noqa: F401 - a fixture
 
 from muster.mission.model import Mission, Robot, Task
@@ -295,7 +295,7 @@ def test_a_station_and_a_door_are_marked_while_they_serve_nobody_and_are_open(br
 
 
 def test_each_kind_of_event_is_listed_in_words_and_where_somebody_should_look_marked(browser, plan, tmp_path):  # noqa: F811
-    file, found = page_of(Drawn(0, plan).one_of_each(), tmp_path)
+    file, found = page_of(one_of_each(plan), tmp_path)
     assert {event.kind for event in found.events} == set(KINDS)
     browser.open(file, *WIDE)
     seen = browser.evaluate(

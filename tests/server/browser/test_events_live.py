@@ -2,7 +2,7 @@
 
 import pytest
 from playwright.sync_api import expect
-from tests.state.drawn_events import Drawn, tied_site
+from tests.state.drawn_events import one_of_each, tied_site
 from tests.state.test_recovery import plan  # noqa: F401 - a fixture
 
 from muster.client import Client
@@ -78,7 +78,7 @@ def test_what_is_selected_says_why_it_is_not_done(watched, run):
 
 
 def test_each_kind_of_event_has_its_line_and_its_mark(watched, run, plan):  # noqa: F811
-    told = Drawn(0, plan).one_of_each()
+    told = one_of_each(plan)
     assert {one["kind"] for one in told} == set(KINDS)
     entries = [{**one, "seq": 10_000 + k, **words_of(one["kind"], one["data"])} for k, one in enumerate(told)]
     watched.page.evaluate(TAKE, entries)
