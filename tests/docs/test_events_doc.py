@@ -4,6 +4,7 @@
 """
 
 import re
+import sys
 from dataclasses import MISSING, fields
 from inspect import getdoc
 from pathlib import Path
@@ -12,7 +13,12 @@ from muster.state.event import KINDS
 from muster.state.words import MARKS
 
 TEXT = (Path(__file__).parents[2] / "docs" / "events.md").read_text(encoding="utf-8")
-PARTS = {"task_events": "Tasks", "robot_events": "Robots", "station_events": "Stations and doors", "run_events": "The run"}
+PARTS = {
+    "task_events": "Tasks",
+    "robot_events": "Robots",
+    "station_events": "Stations and doors",
+    "run_events": "The run",
+}
 
 
 def rows(part):
@@ -44,4 +50,4 @@ def test_no_kind_is_left_out():
 
 
 if __name__ == "__main__":
-    print("\n\n".join(f"## {title}\n\n{table(part)}" for part, title in PARTS.items()))
+    sys.stdout.write("\n\n".join(f"## {title}\n\n{table(part)}" for part, title in PARTS.items()) + "\n")
