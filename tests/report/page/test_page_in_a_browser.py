@@ -7,9 +7,11 @@ from tests.report.page.test_page import recording
 from tests.state.drawn_events import one_of_each, tied_site
 from tests.state.test_recovery import plan  # noqa: F401 - a fixture
 
-from muster.mission.model import Mission, Robot, Task
+from muster.allocation.problem import Problem
+from muster.mission.model import Event, Mission, Robot, Task
 from muster.report.page import write_page
 from muster.report.record import RecordWriter, read_record
+from muster.running.negotiated.team_log import TeamLog
 from muster.state.event import KINDS
 from muster.state.words import ALARM, DETAIL
 
@@ -303,3 +305,28 @@ def test_each_kind_of_event_is_listed_in_words_and_where_somebody_should_look_ma
     )
     assert seen == [[event.line, event.mark == ALARM] for event in found.events if event.mark != DETAIL]
     assert browser.complaints == []
+
+
+def test_the_log_of_a_team_without_a_centre_is_shown_in_the_same_words(browser, tmp_path):
+    with RecordWriter(tmp_path / "record.mcap", tied_site()) as writer:
+        log = TeamLog(Problem.compile(tied_site()), writer, lambda event: None)
+        log.take_event(Event(at_s=1, station_fails="rack"), 1.0)
+        log.take("r_0", 2.0, "task_refused", {"task": "t_1", "robot": "r_0", "reason": "skill: lift"}, used=0.0)
+        for robot in ("r_0", "r_1"):
+            log.take(robot, 3.0, "starts", {"task": "t_2", "robot": robot}, used=0.0)
+        for robot in ("r_0", "r_1"):
+            told = {"task": "pair", "robot": robot, "team": ["r_0", "r_1"], "usage": [1.0, 1.0]}
+            log.take(robot, 4.0, "ends", told, used=0.0)
+        log.take_event(Event(at_s=5, station_returns="rack"), 5.0)
+    write_page(tmp_path / "page.html", read_record(tmp_path / "record.mcap"))
+    browser.open(tmp_path / "page.html", *WIDE)
+    assert browser.evaluate("[...document.querySelectorAll('#events li span')].map(e => e.textContent)") == [
+        "station rack fails",
+        "r_0 cannot do task t_1: skill: lift",
+        "r_0 begins task t_2",
+        "r_0, r_1 have both begun task t_2: they could not hear each other",
+        "r_1 begins task t_2",
+        "r_0 has done task pair",
+        "station rack serves again",
+    ]
+    assert log.events[-2].kind == "part_ends"
