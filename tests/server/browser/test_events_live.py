@@ -62,6 +62,7 @@ def test_what_is_selected_says_why_it_is_not_done(watched, run):
     told = [
         entry(0, "task_refused", task="t_1", robot="r_0", reason="skill: lift"),
         entry(1, "window_missed", task="t_1", reason="window: closed at 20 s", next_s=None),
+        entry(5, "delay_task", task="t_1", by_s=4.0),
         entry(2, "ends", task="t_2", robot="r_0"),
         entry(3, "load_lies", task="t_2", robot="r_0", position=[1.0, 2.0], load={"kg": 1.0}),
         entry(4, "twice", task="t_2", robots=["r_0", "r_1"]),
@@ -72,6 +73,7 @@ def test_what_is_selected_says_why_it_is_not_done(watched, run):
     watched.page.locator("li[data-kind=window_missed]").first.click()
     expect(chosen).to_contain_text("r_0: skill: lift")
     expect(chosen).to_contain_text("window: closed at 20 s")
+    expect(chosen).to_contain_text("by 4 s")
     watched.page.locator("li[data-kind=twice]").first.click()
     expect(chosen).to_contain_text("lies where r_0 failed")
     expect(chosen).to_contain_text("begun by r_0 and r_1")

@@ -20,7 +20,6 @@ SCRIPT = files("muster.server.pages.live").joinpath("js", "mission_state.js").re
 MODULE = "data:text/javascript;base64," + b64encode(SCRIPT.encode()).decode()
 NOT_SHOWN = {
     *(
-        "delay_task",
         "sets_out",
         "arrives",
         "waits",
@@ -46,7 +45,8 @@ FOLD = """async ([script, mission, entries]) => {
       tasks: sorted(state.tasks, ({ state, place, robots }) => ({ state, place, robots })),
       doors: [...state.closedDoors].sort(), failed: [...state.failedStations].sort(),
       cut_off: [...state.cutOffStations].sort(), left_out: sorted(state.leftOut), refusals: sorted(state.refusals),
-      missed: sorted(state.missed, ({ reason, next }) => [reason, next]), lying: [...state.lying.keys()].sort(),
+      missed: sorted(state.missed, ({ reason, next }) => [reason, next]),
+      lying: [...state.lying.keys()].sort(), delays: sorted(state.delays),
       twice: sorted(state.doneTwice), forgotten: state.forgotten, replanned: state.replanned, ended: state.ended,
     });
   }).map(JSON.parse);
@@ -73,6 +73,7 @@ def known(state):
             "refusals": {task: why for task, why in ledger.refusals.items() if why},
             "missed": {one.task: [one.reason, one.next_s] for one in ledger.missed},
             "lying": sorted(task for task in state.goods.lying if task not in ledger.ends_s),
+            "delays": ledger.delays_s,
             "twice": state.done_twice,
             "forgotten": {how: getattr(ledger.retired, how) for how in ("done", "lost", "cancelled")},
             "replanned": state.replanned,

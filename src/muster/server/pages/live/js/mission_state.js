@@ -13,6 +13,7 @@ export class MissionState {
     this.leftOut = new Map(); // task -> why no robot is to do it, by the plan in force
     this.refusals = new Map(); // task -> {robot: why it cannot do it}
     this.missed = new Map(); // task -> {reason, next}: not begun in time; next: when it may begin all the same, or null
+    this.delays = new Map(); // task -> seconds that its work takes longer
     this.lying = new Map(); // task -> {load, robot}: what it took on lies where its robot failed
     this.doneTwice = new Map(); // task -> the robots that could not hear each other
     this.forgotten = { done: 0, lost: 0, cancelled: 0 };
@@ -131,7 +132,7 @@ export class MissionState {
     const task = this.tasks.get(id);
     if (!task) return;
     this.forgotten[task.ended ? "done" : task.cancelled ? "cancelled" : "lost"] += 1;
-    for (const known of [this.tasks, this.refusals, this.missed]) known.delete(id);
+    for (const known of [this.tasks, this.refusals, this.missed, this.delays]) known.delete(id);
     this.units.clear();
   }
 }
@@ -192,10 +193,11 @@ const CHANGES = {
     state.tasks.get(task).giveUp();
     state.refusals.delete(task);
   },
+  delay_task: (state, { task, by_s: by }) => state.delays.set(task, (state.delays.get(task) ?? 0) + by),
   load_lies(state, { task, robot, position, load }) {
     state.lying.set(task, { load, robot });
     Object.assign(state.tasks.get(task), { ended: false, begun: false, robots: [], place: three(position), starts_with: [] });
-    state.refusals.delete(task);
+    for (const known of [state.refusals, state.delays]) known.delete(task);
     state.units.clear();
   },
   window_missed: missed,
