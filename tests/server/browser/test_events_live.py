@@ -10,7 +10,7 @@ from muster.mission.yaml_writer import yaml_text
 from muster.state.event import KINDS
 from muster.state.words import ALARM, DETAIL, words_of
 
-pytestmark = pytest.mark.xdist_group("events live")
+pytestmark = [pytest.mark.long, pytest.mark.xdist_group("events live")]
 TAKE = """(entries) => {
   const frame = document.querySelector(".muster-live-frame").id.slice(1);
   const { view } = getElement(Number(frame));
