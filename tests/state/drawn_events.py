@@ -3,7 +3,8 @@
 import random
 from dataclasses import fields, replace
 
-from tests.state.test_recovery import NEWCOMER, SAMPLES, site
+from tests.state.played import NEWCOMER, SAMPLES, site
+from tests.state.test_events import DATA
 
 from muster.mission.model import Station, Task
 from muster.mission.yaml_writer import plain
@@ -14,7 +15,7 @@ NEW = (*SAMPLES["new_task"], Task(id="late", position=(3.0, 1.0), starts_with=("
 
 
 def tied_site():
-    """The site of `test_recovery`, with tasks that begin together, and a station that stands alone."""
+    """The site of `played`, with tasks that begin together, and a station that stands alone."""
     tied = (
         Task(id="duo", position=(1.0, 1.0), starts_with=("t_5",)),
         Task(id="trio", position=(2.0, 1.0), starts_with=("duo",)),
@@ -44,9 +45,9 @@ class Drawn:
         data = {one.name: self.value(kind, one.name) for one in fields(KINDS[kind])[1:]}
         data = {name: value for name, value in data.items() if value is not None or name == "next_s"}
         ledger = self.state.ledger
-        settled = {
-            name for name in ledger.settled(self.now) if name in ledger.arrival_usage or name not in ledger.ends_s
-        }
+        told = ledger.cancelled.keys() | ledger.told_lost.keys()
+        known = {name for name in self.state.tasks if name in (ledger.arrival_usage if name in ledger.ends_s else told)}
+        settled = ledger.settled(self.now) & known
         if kind == "forgets":
             data["tasks"] = self.draw.sample(sorted(settled), min(1, len(settled)))
         items = self.state.goods.on_board[data["robot"]] if kind == "robot_fails" else ()
@@ -102,9 +103,6 @@ class Drawn:
         return {self.draw.choice(tasks): self.draw.choice([None, "skill: lift (r_0)"] if kind == "plan" else ["skill"])}
 
 
-def one_of_each(plan):
-    """The first of each kind, which forget nothing: tasks are not over without the events between them."""
-    drawn = [entry for seed in range(8) for entry in Drawn(seed, plan).entries(300)]
-    first = {entry["kind"]: entry for entry in reversed(drawn)}
-    first["forgets"]["data"]["tasks"] = []
-    return sorted(first.values(), key=lambda entry: entry["time_s"])
+def one_of_each():
+    """An entry of each kind, as a log has it."""
+    return [{"time_s": float(k), "kind": kind, "data": data} for k, (kind, data) in enumerate(plain(DATA).items())]

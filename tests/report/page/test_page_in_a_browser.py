@@ -5,7 +5,6 @@ import pytest
 from tests.report.page.conftest import MORE
 from tests.report.page.test_page import recording
 from tests.state.drawn_events import one_of_each, tied_site
-from tests.state.test_recovery import plan  # noqa: F401 - a fixture
 
 from muster.allocation.problem import Problem
 from muster.mission.model import Event, Mission, Robot, Task
@@ -296,8 +295,8 @@ def test_a_station_and_a_door_are_marked_while_they_serve_nobody_and_are_open(br
     }
 
 
-def test_each_kind_of_event_is_listed_in_words_and_where_somebody_should_look_marked(browser, plan, tmp_path):  # noqa: F811
-    file, found = page_of(one_of_each(plan), tmp_path)
+def test_each_kind_of_event_is_listed_in_words_and_where_somebody_should_look_marked(browser, tmp_path):
+    file, found = page_of(one_of_each(), tmp_path)
     assert {event.kind for event in found.events} == set(KINDS)
     browser.open(file, *WIDE)
     seen = browser.evaluate(

@@ -3,7 +3,6 @@
 import pytest
 from playwright.sync_api import expect
 from tests.state.drawn_events import one_of_each, tied_site
-from tests.state.test_recovery import plan  # noqa: F401 - a fixture
 
 from muster.client import Client
 from muster.mission.yaml_writer import yaml_text
@@ -79,8 +78,8 @@ def test_what_is_selected_says_why_it_is_not_done(watched, run):
     expect(chosen).to_contain_text("begun by r_0 and r_1")
 
 
-def test_each_kind_of_event_has_its_line_and_its_mark(watched, run, plan):  # noqa: F811
-    told = one_of_each(plan)
+def test_each_kind_of_event_has_its_line_and_its_mark(watched, run):
+    told = one_of_each()
     assert {one["kind"] for one in told} == set(KINDS)
     entries = [{**one, "seq": 10_000 + k, **words_of(one["kind"], one["data"])} for k, one in enumerate(told)]
     watched.page.evaluate(TAKE, entries)

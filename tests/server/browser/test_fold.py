@@ -5,8 +5,9 @@ from base64 import b64encode
 from importlib.resources import files
 
 import pytest
-from tests.state.drawn_events import Drawn, one_of_each, tied_site
-from tests.state.test_recovery import SAMPLES, Played, event, plan, site  # noqa: F401 - a fixture
+from tests.state.drawn_events import Drawn, tied_site
+from tests.state.played import SAMPLES, Played, event, site
+from tests.state.test_recovery import plan  # noqa: F401 - a fixture
 
 from muster.mission.events import Event
 from muster.mission.plan_reader import plan_from
@@ -149,7 +150,7 @@ def test_both_know_the_same_after_events_in_any_order(both, plan, seed):  # noqa
 
 
 def test_random_events_are_of_all_kinds(plan):  # noqa: F811
-    assert {entry["kind"] for entry in one_of_each(plan)} == set(KINDS)
+    assert {entry["kind"] for seed in range(8) for entry in Drawn(seed, plan).entries(300)} == set(KINDS)
 
 
 def test_a_robot_that_is_out_is_known_by_the_kinds_of_python():

@@ -6,11 +6,11 @@ A worker makes a record from the log of a run on request; records are not stored
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import OVER, ConflictError, Run
+from muster.exchange.mission_control import OVER, ConflictError
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.server.work.pool import Pool
@@ -27,10 +27,6 @@ class Records:
 
     def __init__(self, store: Store, pool: Pool, runs: Runs) -> None:
         self._store, self._pool, self._runs = store, pool, runs
-
-    async def list(self, limit: int = 200) -> Sequence[Run]:
-        """Runs that are over, newest first."""
-        return await self._runs.over(limit)
 
     async def page(self, run: int) -> str:
         """The page that `muster replay --html` writes.

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, get_args
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import OVER, ConflictError, NotFoundError, Run, User, World
-from muster.server.store.actions import add_action
-from muster.server.store.database import Database
+from muster.exchange.mission_control import OVER, PAGE_ROWS, ConflictError, NotFoundError, Run, RunState, User, World
+from muster.server.store.actions import keep_actions, new_action
+from muster.server.store.database import Database, newest
 from muster.server.store.request_keys import RequestKey, keyed
 from muster.server.store.schema import runs
 
+_UNDER_WAY = tuple(state for state in get_args(RunState) if state not in OVER)
 _CHANGEABLE = frozenset({"state", "speed", "time_s", "remark", "resumed", "ended_at"})
 
 
@@ -58,7 +59,7 @@ class RunTable:
             run = Run(**connection.execute(insert(runs).values(row).returning(runs)).one()._mapping)
             if by is not None:
                 said = {"plan": plan, "world": world, "speed": speed, "settings": dict(settings)}
-                add_action(connection, by, "run.start", said, run.id, "done", applied_s=0.0)
+                keep_actions(connection, [new_action(by, "run.start", said, run.id, "done", applied_s=0.0)])
             settle(run.id)
             return run
 
@@ -105,11 +106,13 @@ class RunTable:
             changed = connection.execute(update(runs).where(runs.c.id == run).values(fields).returning(runs)).one()
             return Run(**changed._mapping)
 
-    def list(self, limit: int = 200, *, over: bool = False) -> list[Run]:
-        """Runs, or those alone that are over, the newest first."""
-        query = select(runs).order_by(runs.c.id.desc()).limit(limit)
+    def list(
+        self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None, *, over: bool = False
+    ) -> list[Run]:
+        """Runs, of one mission or all, or those alone that are over, the newest first; ids below `before`, if given."""
+        query = newest(select(runs), runs, limit, before, mission=mission)
         if over:
-            query = query.where(runs.c.state.in_(OVER))
+            query = query.where(runs.c.state.not_in(_UNDER_WAY))  # most are over: the ids are read, no index of states
         with self._database.reading() as connection:
             return [Run(**row._mapping) for row in connection.execute(query)]
 

@@ -195,6 +195,7 @@ const CHANGES = {
   },
   delay_task: (state, { task, by_s: by }) => state.delays.set(task, (state.delays.get(task) ?? 0) + by),
   load_lies(state, { task, robot, position, load }) {
+    if (!state.tasks.has(task)) return;
     state.lying.set(task, { load, robot });
     Object.assign(state.tasks.get(task), { ended: false, begun: false, robots: [], place: three(position), starts_with: [] });
     for (const known of [state.refusals, state.delays]) known.delete(task);
