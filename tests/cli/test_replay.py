@@ -34,7 +34,7 @@ def test_what_is_printed(recorded, muster):
     travelled, compared = [row for row in rows if row[0] == "r_0"]
     assert float(travelled[2]) == pytest.approx(verdict.routes[0].travel, abs=0.2)
     assert compared[1:3] == [f"{verdict.routes[0].usage:.2f}"] * 2
-    assert ["0.00", "sets", "out:", "robot", "r_0,", "task", "look"] in rows
+    assert ["0.00", "r_0", "sets", "out", "for", "task", "look"] in rows
     assert ["tasks", "done", "3", "of", str(len(load("yard.yaml").tasks))] in rows
 
 

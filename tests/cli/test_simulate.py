@@ -257,8 +257,8 @@ def test_killed_at_any_moment_it_leaves_a_record_that_replays(muster, tmp_path, 
 def test_watched_it_tells_what_happens(muster):
     code, _, err = muster("simulate", "6T-2R", "--iterations", "10", "--speed", "10000")
     assert code == 0
-    assert re.search(r"^ +0\.0 s  sets out: robot r_0, task ", err, flags=re.MULTILINE)
-    assert err.count("ends: ") == 6
+    assert re.search(r"^ +0\.0 s  r_0 sets out for task ", err, flags=re.MULTILINE)
+    assert err.count(" has done task ") == 6
 
 
 def test_the_plan_of_another_mission_is_doubted(muster, tmp_path):
@@ -327,8 +327,8 @@ class TestNegotiate:
         assert code == 0
         assert "tasks done        3 of 4" in out
         assert "cancelled at 5 s" in out
-        assert "robot fails: robot a" in err
-        assert "ends: task late, robot b" in err
+        assert "a is out" in err
+        assert "b has done task late" in err
         assert gantt.stat().st_size > 10_000
 
     @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ def test_a_fleet_of_ones_own(capsys):
     exec(blocks[1], names)
     capsys.readouterr()
     exec(blocks[2], names)
-    assert "mission_ended" in capsys.readouterr().out
+    assert "the mission is over" in capsys.readouterr().out
     assert set(names["report"].tasks_done) == {task.id for task in names["mission"].tasks}
 
 
@@ -30,4 +30,4 @@ def test_a_mission_goes_on_as_far_as_it_is_let(capsys):
     assert "late" in simulation.result().tasks_done
     ends = simulation.result().ends_s
     assert all(ends[task.task] <= 30 for task in simulation.result().tasks if task.robot == "r_1")
-    assert "arrives" in capsys.readouterr().out
+    assert " is at task " in capsys.readouterr().out

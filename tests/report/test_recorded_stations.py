@@ -97,7 +97,8 @@ def test_the_time_chart_has_service_and_level(charged, drawn):
 
 def test_the_page_has_stations_services_and_levels(charged):
     data = page_data(charged)
-    assert data["stations"] == [{"sign": "[dock]", "place": [6000, 0], "label": "station dock: charge, 2 slots"}]
+    label = "station dock: charge, 2 slots"
+    assert data["stations"] == [{"sign": "[dock]", "place": [6000, 0], "label": label, "away": []}]
     assert [0, "[dock]", "service", 8000, 14000] in data["spans"]
     assert data["robots"][0]["level"][2] == [6000, 40_000]
     assert data["robots"][0]["reserve"] == 0.1

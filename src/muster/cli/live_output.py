@@ -56,10 +56,11 @@ def shown_live(mission: Mission, port: int | None, *, quiet: bool) -> Iterator[S
 
 
 def print_event(event: ExecutionEvent) -> None:
-    """Print an event on standard error as it happens."""
-    from muster.mission.event_descriptions import event_line
+    """Print an event on standard error as it happens, unless it is for programs alone."""
+    from muster.state.words import DETAIL
 
-    print_event_line(event.time_s, event_line(event.kind, event.data))
+    if event.mark != DETAIL:
+        print_event_line(event.time_s, event.line)
 
 
 def print_event_line(time_s: float, line: str) -> None:

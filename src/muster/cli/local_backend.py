@@ -83,11 +83,11 @@ class LocalBackend:
         **how: Any,
     ) -> tuple[Report, float | None]:
         from muster import simulate
-        from muster.mission.event_descriptions import event_line
+        from muster.state.words import DETAIL
 
         def report(event: ExecutionEvent) -> None:
-            assert on_line is not None
-            on_line(event.time_s, event_line(event.kind, event.data))
+            if on_line is not None and event.mark != DETAIL:
+                on_line(event.time_s, event.line)
 
         with ctrl_c_halts() as halt:
             on_event = None if on_line is None else report

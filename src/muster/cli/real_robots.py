@@ -32,11 +32,11 @@ from muster.cli.report_tables import print_report
 from muster.cli.tables import sequence
 from muster.mission.counting import counted
 from muster.mission.errors import IncompletePlanError, MusterError
-from muster.mission.event_descriptions import was_cancelled
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.planning.options import PlanningOptions
 from muster.running.wall_time import STARTS, notes_on_start, planned_from, require_time_left
+from muster.state.reasons import was_cancelled
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState

@@ -123,15 +123,13 @@ def _how_it_ends(recording: Recording) -> str:
 
 
 def _print(recording: Recording, *, all_events: bool) -> None:
-    from muster.mission.event_descriptions import event_line
-
     name, duration = recording.mission.name, f"{recording.duration_s:.1f} s"
     amounts = (counted(len(recording.plans), "plan"), counted(len(recording.events), "event"))
     click.echo(f"{name}: {duration}, {', '.join(amounts)}, {_how_it_ends(recording)}\n")
     _print_robots(recording)
     shown = recording.events if all_events else recording.events[:_MOST_EVENTS]
     if shown:
-        rows = [(f"{event.time_s:.2f}", event_line(event.kind, event.data)) for event in shown]
+        rows = [(f"{event.time_s:.2f}", event.line) for event in shown]
         print_table(("time [s]", "event"), rows, right=("time [s]",))
     if len(shown) < len(recording.events):
         click.echo(f"... and {counted(len(recording.events) - len(shown), 'event')} more; -v lists all\n")

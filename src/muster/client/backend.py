@@ -24,6 +24,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.options import OPTIONS, PlanningOptions
 from muster.planning.request import Request
+from muster.state.words import DETAIL
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
@@ -228,7 +229,7 @@ def followed(run: RunningRun, on_line: Callable[[float, str], None] | None, inte
         if interrupted:
             raise KeyboardInterrupt
         for message in run.stream():
-            if on_line is not None and message["type"] == "entry" and message["line"]:
+            if on_line is not None and message["type"] == "entry" and message["mark"] != DETAIL:
                 on_line(message["time_s"], message["line"])
     except KeyboardInterrupt:
         interrupted = True

@@ -15,6 +15,7 @@ import msgspec
 
 from muster.mission.errors import ParameterError
 from muster.mission.yaml_writer import plain
+from muster.state.words import ALARM, MARKS, SAYS, Mark, Says, line_of, mark_of
 
 if TYPE_CHECKING:
     from muster.state.mission_state import MissionState
@@ -34,7 +35,6 @@ class ExecutionEvent:
     """
 
     kind: ClassVar[str]
-    alarming: ClassVar[bool] = False
     written: ClassVar[tuple[str, ...]] = ()
     time_s: float = math.nan
 
@@ -50,6 +50,24 @@ class ExecutionEvent:
         """
         told = (f for f in fields(self)[1:] if f.name in self.written or not _is_default(self, f))
         return {f.name: _plain(getattr(self, f.name)) for f in told}
+
+    @property
+    def line(self) -> str:
+        """What happened, in words for people."""
+        return line_of(self.kind, self.data)
+
+    @property
+    def mark(self) -> str:
+        """Whether somebody should look, or the plan is changed (`muster.state.words`); empty: neither."""
+        return mark_of(self.kind, self.data)
+
+    @property
+    def alarming(self) -> bool:
+        """Whether somebody should look at it."""
+        return self.mark == ALARM
+
+    def __str__(self) -> str:
+        return self.line if math.isnan(self.time_s) else f"{self.time_s:.1f} s: {self.line}"
 
     def change(self, state: MissionState) -> None:
         """Change what is known of the mission; `MissionState.apply` alone calls this."""
@@ -69,11 +87,11 @@ class OtherEvent(ExecutionEvent):
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True)
-def happens(kind: str, *, alarming: bool = False) -> Callable[[type[ExecutionEvent]], type[ExecutionEvent]]:
-    """Make a class the one of a kind of event; `alarming`: somebody should look at it."""
+def happens(kind: str, says: Says, *, mark: Mark = "") -> Callable[[type[ExecutionEvent]], type[ExecutionEvent]]:
+    """Make a class the one of a kind of event, with its words for people and its mark (`muster.state.words`)."""
 
     def made(cls: type[ExecutionEvent]) -> type[ExecutionEvent]:
-        cls.kind, cls.alarming = kind, alarming
+        cls.kind, SAYS[kind], MARKS[kind] = kind, says, mark
         KINDS[kind] = dataclass(frozen=True, kw_only=True)(cls)
         return KINDS[kind]
 

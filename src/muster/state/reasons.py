@@ -1,11 +1,30 @@
-"""Why tasks are left out, in one line a task."""
+"""Why tasks are left out or not done, in one line a task."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
 from muster.mission.plan import Reason
-from muster.state.task_ledger import some_of
+
+MOST_NAMED = 3
+"""Robots that a reason names, and one more."""
+_CANCELLED = "cancelled at "
+
+
+def cancelled_at(at_s: float) -> str:
+    """Return why a task is not done that was cancelled."""
+    return f"{_CANCELLED}{round(at_s, 1):g} s"
+
+
+def was_cancelled(reason: object) -> bool:
+    """Whether a task is not done because it was cancelled; reports and events have it with those that are lost."""
+    return str(reason).startswith(_CANCELLED)
+
+
+def some_of(names: Sequence[str]) -> str:
+    """Return a few names, and how many more there are."""
+    left = len(names) - MOST_NAMED
+    return ", ".join(names) if left <= 1 else f"{', '.join(names[:MOST_NAMED])} and {left} more"
 
 
 def in_one_line(reasons: Iterable[tuple[str, str]]) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from muster.state import words
 from muster.state.event import ExecutionEvent, happens
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ class RobotOut(ExecutionEvent):
         state.take_out(self.robot, self.kind, self.time_s)
 
 
-@happens("robot_fails", alarming=True)
+@happens("robot_fails", "{robot} is out", mark=words.ALARM)
 class RobotFails(RobotOut):
     """A robot has failed, and what it has on board lies where it is."""
 
@@ -32,7 +33,7 @@ class RobotFails(RobotOut):
         state.goods.fall(self.robot)
 
 
-@happens("robot_silent", alarming=True)
+@happens("robot_silent", "{robot} is not heard any more", mark=words.ALARM)
 class RobotSilent(RobotOut):
     """A robot is not heard any more; `goes_on`: it decides for itself, and goes on with its work."""
 
@@ -43,12 +44,12 @@ class RobotSilent(RobotOut):
             super().change(state)
 
 
-@happens("robot_stuck", alarming=True)
+@happens("robot_stuck", "{robot} does not get on", mark=words.ALARM)
 class RobotStuck(RobotOut):
     """A robot does not get on."""
 
 
-@happens("robot_returns")
+@happens("robot_returns", "{robot} takes part again", mark=words.CHANGE)
 class RobotReturns(ExecutionEvent):
     """A robot takes part again."""
 
@@ -61,7 +62,7 @@ class RobotReturns(ExecutionEvent):
         state.open_ways()
 
 
-@happens("robot_joins")
+@happens("robot_joins", "{robot} joins", mark=words.CHANGE)
 class RobotJoins(ExecutionEvent):
     """A robot joins: as in a mission file, or the id of one of the mission's events."""
 
@@ -71,28 +72,28 @@ class RobotJoins(ExecutionEvent):
         state.join(state.robot_of(self.robot))
 
 
-@happens("returns")
+@happens("returns", "{robot} goes to where its route ends")
 class Returns(ExecutionEvent):
     """A robot goes to where its route ends."""
 
     robot: str
 
 
-@happens("robot_at_end")
+@happens("robot_at_end", "{robot} is where its route ends")
 class RobotAtEnd(ExecutionEvent):
     """A robot is where its route ends."""
 
     robot: str
 
 
-@happens("no_way_to_end")
+@happens("no_way_to_end", "{robot} has no way to where its route ends, and stays", mark=words.ALARM)
 class NoWayToEnd(ExecutionEvent):
     """A robot has no way to where its route ends, and stays."""
 
     robot: str
 
 
-@happens("robot_runs_low")
+@happens("robot_runs_low", "the capacity of {robot} is too small for its route")
 class RobotRunsLow(ExecutionEvent):
     """The capacity of a robot is too small for its route."""
 
@@ -100,7 +101,7 @@ class RobotRunsLow(ExecutionEvent):
     capacity: float | None
 
 
-@happens("energy_low")
+@happens("energy_low", words.energy_low)
 class EnergyLow(ExecutionEvent):
     """A battery does not last for what lies ahead; `charge` is a share, `missing` in the mission's unit."""
 
@@ -110,7 +111,7 @@ class EnergyLow(ExecutionEvent):
     drain: float
 
 
-@happens("robot_charged")
+@happens("robot_charged", "{robot} is charged")
 class RobotCharged(ExecutionEvent):
     """A robot that went to charge of itself is free for tasks."""
 
@@ -118,7 +119,7 @@ class RobotCharged(ExecutionEvent):
     station: str
 
 
-@happens("robot_sent_again")
+@happens("robot_sent_again", "{robot} is sent again")
 class RobotSentAgain(ExecutionEvent):
     """A robot without progress is sent once more."""
 
@@ -126,7 +127,7 @@ class RobotSentAgain(ExecutionEvent):
     reason: str
 
 
-@happens("robot_goes_round")
+@happens("robot_goes_round", "{robot} goes round {round}, which stands in its way")
 class RobotGoesRound(ExecutionEvent):
     """A robot goes round one that stands."""
 
@@ -134,7 +135,7 @@ class RobotGoesRound(ExecutionEvent):
     round: str
 
 
-@happens("robot_makes_room")
+@happens("robot_makes_room", "{robot} makes room for {makes_room_for}")
 class RobotMakesRoom(ExecutionEvent):
     """A robot that has nothing to do goes off the way of another."""
 
@@ -142,7 +143,7 @@ class RobotMakesRoom(ExecutionEvent):
     makes_room_for: str
 
 
-@happens("robot_stands_aside")
+@happens("robot_stands_aside", "{robot} stands aside for {waits_for}")
 class RobotStandsAside(ExecutionEvent):
     """A robot stands aside in a jam."""
 
@@ -150,7 +151,7 @@ class RobotStandsAside(ExecutionEvent):
     waits_for: str
 
 
-@happens("waits_in_traffic")
+@happens("waits_in_traffic", "{robot} waits in traffic for {waits_for}, at {position}")
 class WaitsInTraffic(ExecutionEvent):
     """A robot waits for another that is in its way, since when and where."""
 
@@ -160,7 +161,7 @@ class WaitsInTraffic(ExecutionEvent):
     since_s: float
 
 
-@happens("goes_on")
+@happens("goes_on", words.goes_on)
 class GoesOn(ExecutionEvent):
     """A robot that waited in traffic goes on; `waited_s` is by robot for how long it waited for it."""
 
@@ -174,7 +175,7 @@ class GoesOn(ExecutionEvent):
         state.traffic.add(self.robot, self.waited_s, (x, y, z))
 
 
-@happens("traffic_jam", alarming=True)
+@happens("traffic_jam", "traffic jam: {robots} hold each other up at {position} since {since_s} s", mark=words.ALARM)
 class TrafficJam(ExecutionEvent):
     """Robots hold each other up."""
 
@@ -183,21 +184,21 @@ class TrafficJam(ExecutionEvent):
     since_s: float
 
 
-@happens("final_states")
+@happens("final_states", words.final_states)
 class FinalStates(ExecutionEvent):
     """Where robots are at the end, and whether they still fly, drive or are armed."""
 
     robots: tuple[Mapping[str, Any], ...]
 
 
-@happens("elsewhere")
+@happens("elsewhere", "{what}", mark=words.ALARM)
 class Elsewhere(ExecutionEvent):
     """A robot does not stand where the mission says."""
 
     what: str
 
 
-@happens("robots_free")
+@happens("robots_free", "robots are free: tasks that were left out are planned for again", mark=words.DETAIL)
 class RobotsFree(ExecutionEvent):
     """No robot has a task any more, and another plan may do tasks that were left out."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
+from muster.state import words
 from muster.state.event import ExecutionEvent, happens
 from muster.state.reasons import reasons_in_one_line
 
@@ -18,7 +19,7 @@ IMPROVED = "improved"
 """The cause of a new plan that a search in the background has found."""
 
 
-@happens("mission_begins")
+@happens("mission_begins", words.mission_begins)
 class MissionBegins(ExecutionEvent):
     """A run of real robots begins: `zero_s` is when the mission's clock was 0, seconds since 1970.
 
@@ -36,7 +37,7 @@ class MissionBegins(ExecutionEvent):
             state.robots[robot].begin_at(tuple(position), heading_deg)
 
 
-@happens("mission_ended")
+@happens("mission_ended", "the mission is over")
 class MissionEnded(ExecutionEvent):
     """All is done that can be; `ended_s` is when the last robot was, where that was before now."""
 
@@ -46,7 +47,7 @@ class MissionEnded(ExecutionEvent):
         state.ended_s = self.time_s if self.ended_s is None else self.ended_s
 
 
-@happens("plan")
+@happens("plan", words.plan)
 class PlanAdopted(ExecutionEvent):
     """A plan holds from now on.
 
@@ -78,7 +79,7 @@ class PlanAdopted(ExecutionEvent):
         state.adopt(self.routes, self.left_out)
 
 
-@happens("replanned")
+@happens("replanned", words.replanned, mark=words.replanned_mark)
 class Replanned(ExecutionEvent):
     """The rest was planned again: causes, and by task the robots before and now."""
 
@@ -98,7 +99,7 @@ class Replanned(ExecutionEvent):
         state.orders.improved += any(cause["kind"] == IMPROVED for cause in self.causes)
 
 
-@happens("event_refused")
+@happens("event_refused", words.event_refused, mark=words.ALARM)
 class EventRefused(ExecutionEvent):
     """An event of the mission, or an order, does not fit."""
 
@@ -110,7 +111,7 @@ class EventRefused(ExecutionEvent):
             state.orders.refuse(self.event, self.reason, self.time_s)
 
 
-@happens("resumed")
+@happens("resumed", words.resumed, mark=words.CHANGE)
 class Resumed(ExecutionEvent):
     """A run goes on after a stop; work on `again` is begun again."""
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from muster.state import words
 from muster.state.event import ExecutionEvent, happens
 from muster.state.goods_ledger import tied_goods
 
@@ -26,24 +27,24 @@ class AtStation(ExecutionEvent):
         state.note_used(self.robot, self.used, self.charge)
 
 
-@happens("goes_to_station")
+@happens("goes_to_station", words.goes_to_station)
 class GoesToStation(AtStation):
     """A robot sets out for a station."""
 
 
-@happens("arrives_at_station")
+@happens("arrives_at_station", words.arrives_at_station)
 class ArrivesAtStation(AtStation):
     """A robot is at a station."""
 
 
-@happens("waits_for_slot")
+@happens("waits_for_slot", words.waits_for_slot)
 class WaitsForSlot(AtStation):
     """A robot waits until a station has a slot for it."""
 
     served: tuple[str, ...] = ()
 
 
-@happens("service_begins")
+@happens("service_begins", words.service_begins)
 class ServiceBegins(AtStation):
     """A robot is served, for so long."""
 
@@ -51,7 +52,7 @@ class ServiceBegins(AtStation):
     takes_s: float
 
 
-@happens("service_ends")
+@happens("service_ends", words.service_ends)
 class ServiceEnds(AtStation):
     """A robot has been served; `unloaded` is by commodity."""
 
@@ -66,7 +67,7 @@ class ServiceEnds(AtStation):
             state.goods.unload(self.robot, tied_goods(state.ledger))
 
 
-@happens("station_fails")
+@happens("station_fails", "station {station} fails", mark=words.ALARM)
 class StationFails(ExecutionEvent):
     """A station serves nobody from now on."""
 
@@ -76,7 +77,7 @@ class StationFails(ExecutionEvent):
         state.failed_stations.add(self.station)
 
 
-@happens("station_returns")
+@happens("station_returns", "station {station} serves again", mark=words.CHANGE)
 class StationReturns(ExecutionEvent):
     """A station serves again."""
 
@@ -86,7 +87,7 @@ class StationReturns(ExecutionEvent):
         state.failed_stations.discard(self.station)
 
 
-@happens("station_unreachable")
+@happens("station_unreachable", "{robot} has no way to station {station}", mark=words.ALARM)
 class StationUnreachable(ExecutionEvent):
     """A robot finds no way to a station: nobody is sent there before ways open."""
 
@@ -98,7 +99,7 @@ class StationUnreachable(ExecutionEvent):
         state.cut_off_stations.add(self.station)
 
 
-@happens("door_closes")
+@happens("door_closes", "door {door} closes", mark=words.CHANGE)
 class DoorCloses(ExecutionEvent):
     """A zone or lane is closed from now on."""
 
@@ -108,7 +109,7 @@ class DoorCloses(ExecutionEvent):
         state.doors.close(self.door)
 
 
-@happens("door_opens")
+@happens("door_opens", "door {door} opens", mark=words.CHANGE)
 class DoorOpens(ExecutionEvent):
     """A zone or lane is open from now on."""
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from muster.state import words
 from muster.state.event import ExecutionEvent, happens
 from muster.state.task_ledger import MissedTask, lying
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 Position = tuple[float, ...]
 
 
-@happens("sets_out")
+@happens("sets_out", "{robot} sets out for task {task}")
 class SetsOut(ExecutionEvent):
     """A robot sets out for a task. `used` is its usage so far, in the mission's unit, here and below."""
 
@@ -27,7 +28,7 @@ class SetsOut(ExecutionEvent):
         state.note_used(self.robot, self.used)
 
 
-@happens("arrives")
+@happens("arrives", "{robot} is at task {task}")
 class Arrives(ExecutionEvent):
     """A robot is at its task."""
 
@@ -41,7 +42,7 @@ class Arrives(ExecutionEvent):
             robot.came_to[self.task] = self.time_s, self.used or 0.0
 
 
-@happens("waits")
+@happens("waits", "{robot} {words}")
 class Waits(ExecutionEvent):
     """A robot waits at a task for something else than prerequisites, or now for that."""
 
@@ -51,7 +52,7 @@ class Waits(ExecutionEvent):
     words: str
 
 
-@happens("starts")
+@happens("starts", "{robot} begins task {task}")
 class Starts(ExecutionEvent):
     """Robots begin a task: one, or a team, whose first is `robot`; `from_s` if not now: from when their work counts."""
 
@@ -67,7 +68,7 @@ class Starts(ExecutionEvent):
         state.begin(self.task, robots, self.time_s if self.from_s is None else self.from_s)
 
 
-@happens("ends")
+@happens("ends", "{robot} has done task {task}")
 class Ends(ExecutionEvent):
     """Robots have done a task.
 
@@ -95,7 +96,7 @@ class Ends(ExecutionEvent):
             state.ledger.arrival_usage[self.task] = self.arrival_usage
 
 
-@happens("part_ends")
+@happens("part_ends", "{robot} has done its part of task {task}", mark=words.DETAIL)
 class PartEnds(ExecutionEvent):
     """Another robot of a team tells the usage of its part in a task that was done."""
 
@@ -111,7 +112,7 @@ class PartEnds(ExecutionEvent):
             robot.planned += self.usage[0]
 
 
-@happens("done_elsewhere")
+@happens("done_elsewhere", "{robots} have done task {task}, as others have told", mark=words.DETAIL)
 class DoneElsewhere(ExecutionEvent):
     """Robots of which another has told have done a task."""
 
@@ -122,7 +123,7 @@ class DoneElsewhere(ExecutionEvent):
         state.ledger.end(self.task, self.robots, self.time_s)
 
 
-@happens("work_broken_off")
+@happens("work_broken_off", "work on task {task} is broken off")
 class WorkBrokenOff(ExecutionEvent):
     """Work on a task is broken off: what was done of it is lost."""
 
@@ -133,7 +134,7 @@ class WorkBrokenOff(ExecutionEvent):
         state.ledger.break_off(self.task)
 
 
-@happens("task_refused")
+@happens("task_refused", words.refused)
 class TaskRefused(ExecutionEvent):
     """A robot cannot do a task.
 
@@ -161,7 +162,7 @@ class TaskRefused(ExecutionEvent):
             state.ledger.blocked_by |= dict.fromkeys((self.task, *self.others), self.blocked_by)
 
 
-@happens("new_task")
+@happens("new_task", "task {task} is added", mark=words.CHANGE)
 class NewTask(ExecutionEvent):
     """A task is added: as in a mission file, or the id of one of the mission's events; `came_s`: ordered before now."""
 
@@ -174,7 +175,7 @@ class NewTask(ExecutionEvent):
         state.orders.come(task.id, self.time_s if self.came_s is None else self.came_s)
 
 
-@happens("cancel_task")
+@happens("cancel_task", "task {task} is cancelled", mark=words.CHANGE)
 class CancelTask(ExecutionEvent):
     """A task is cancelled, and so is the delivery of what it takes on, unless that is on board."""
 
@@ -193,7 +194,7 @@ class CancelTask(ExecutionEvent):
         state.orders.close(self.task, "cancelled", self.time_s)
 
 
-@happens("move_task")
+@happens("move_task", "task {task} is moved to {position}", mark=words.CHANGE)
 class MoveTask(ExecutionEvent):
     """A task is elsewhere from now on: metres in the map frame."""
 
@@ -205,7 +206,7 @@ class MoveTask(ExecutionEvent):
             state.ledger.move(self.task, self.position)
 
 
-@happens("delay_task")
+@happens("delay_task", "task {task} takes {by_s} s longer", mark=words.CHANGE)
 class DelayTask(ExecutionEvent):
     """The work of a task takes longer."""
 
@@ -216,7 +217,7 @@ class DelayTask(ExecutionEvent):
         state.ledger.delay(self.task, self.by_s)
 
 
-@happens("load_lies")
+@happens("load_lies", "what task {task} took on lies at {position}, where {robot} failed")
 class LoadLies(ExecutionEvent):
     """What a task took on board lies where its robot failed: it is done again, from there."""
 
@@ -250,17 +251,17 @@ class TaskMissed(ExecutionEvent):
             state.ledger.expire(self.task, self.reason)
 
 
-@happens("window_missed")
+@happens("window_missed", "task {task} is not begun in time", mark=words.missed_mark)
 class WindowMissed(TaskMissed):
     """A time window has closed."""
 
 
-@happens("deadline_missed")
+@happens("deadline_missed", "task {task} is not begun in time", mark=words.missed_mark)
 class DeadlineMissed(TaskMissed):
     """A task cannot end by its deadline any more."""
 
 
-@happens("within_missed")
+@happens("within_missed", "task {task} is not begun in time", mark=words.missed_mark)
 class WithinMissed(TaskMissed):
     """Too much time has gone since a prerequisite ended."""
 
@@ -269,7 +270,7 @@ MISSED = {"window": WindowMissed, "deadline": DeadlineMissed, "prerequisite": Wi
 """By rule: the event that says that a task cannot begin in time any more."""
 
 
-@happens("standstill")
+@happens("standstill", words.standstill, mark=words.ALARM)
 class Standstill(ExecutionEvent):
     """No robot gets on; `given_up`: why the task for which one waits is given up."""
 
@@ -283,7 +284,7 @@ class Standstill(ExecutionEvent):
             state.ledger.expire(self.task, self.given_up)
 
 
-@happens("lost", alarming=True)
+@happens("lost", words.lost, mark=words.lost_mark)
 class Lost(ExecutionEvent):
     """A task is not done: it never will be, or the mission is over."""
 
@@ -295,7 +296,7 @@ class Lost(ExecutionEvent):
         state.orders.close(self.task, "lost", self.time_s)
 
 
-@happens("forgets")
+@happens("forgets", "tasks that are long over are forgotten: {tasks}", mark=words.DETAIL)
 class Forgets(ExecutionEvent):
     """A fleet on duty forgets tasks that are long over, but for sums."""
 
@@ -305,7 +306,7 @@ class Forgets(ExecutionEvent):
         state.forget(self.tasks)
 
 
-@happens("twice")
+@happens("twice", "{robots} have both begun task {task}: they could not hear each other", mark=words.ALARM)
 class Twice(ExecutionEvent):
     """Two robots that could not hear each other have begun the same task."""
 

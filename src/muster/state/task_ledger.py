@@ -7,19 +7,17 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from muster.mission.event_descriptions import cancelled_at
 from muster.mission.goods import as_amount
 from muster.mission.model import Point, Robot, Task
 from muster.mission.task_relations import units_of
+from muster.state.reasons import cancelled_at, some_of
 
 TIME_ROUNDING_S = 1e-6
 """By which a time may be past a limit: clocks add up steps."""
-MOST_NAMED = 3
-"""Robots that a reason names, and one more."""
 KEPT_LOST = 20
 """How many tasks that were lost and forgotten are still listed with the reason: the last ones."""
 
@@ -396,12 +394,6 @@ def _out(task: Task, gone: Mapping[str, str]) -> str:
     """Robots that take no part any more and might have done a task."""
     who = [f"{robot} ({since})" for robot, since in gone.items() if not task.only_robots or robot in task.only_robots]
     return f"; no longer taking part: {some_of(who)}" if who else ""
-
-
-def some_of(names: Sequence[str]) -> str:
-    """A few names, and how many more there are."""
-    left = len(names) - MOST_NAMED
-    return ", ".join(names) if left <= 1 else f"{', '.join(names[:MOST_NAMED])} and {left} more"
 
 
 def _must_follow(tasks: Iterable[Task]) -> dict[str, list[str]]:

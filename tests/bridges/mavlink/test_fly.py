@@ -303,7 +303,7 @@ def test_a_drone_that_fails_is_named_with_its_reason_and_its_task_is_lost(missio
     assert fly(mission, port, "--arm", "--require-complete") == TASKS_LOST
     said = capsys.readouterr()
     reason = "arm refused: MAV_CMD_COMPONENT_ARM_DISARM: MAV_RESULT_DENIED (PreArm: compass not healthy)"
-    assert re.search(rf"\d s  robot fails: robot r_0, reason {re.escape(reason)}", said.err)
+    assert re.search(rf"\d s  r_0 is out: {re.escape(reason)}", said.err)
     assert f"r_0: {reason}" in said.err
     assert f"1 task {Ending.TASKS_LOST.words}: near" in said.err
     assert "near" in said.out

@@ -98,7 +98,7 @@ def test_ctrl_c_lets_robots_stay_where_they_are(simulated, start, mission):
     simulated("r_1", 0, 3)
     carried = start("-m", "muster.cli", "ros2", mission, *QUICK)
     for line in carried.stderr:
-        if "sets out: robot r_0" in line:
+        if "r_0 sets out" in line:
             break
     time.sleep(0.5)
     carried.send_signal(signal.SIGINT)

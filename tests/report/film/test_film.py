@@ -99,7 +99,7 @@ def test_captions_tell_what_happens_and_fade(footage):
     from muster.report.film.captions import caption
 
     lines = [words for told in footage.events if (words := caption(told))]
-    assert {"rover has done task near", "uav has done task far", "idle fails"} <= set(lines)
+    assert {"rover has done task near", "uav has done task far", "idle is out"} <= set(lines)
     assert not any("starts" in line or "sets out" in line for line in lines)
 
 

@@ -98,7 +98,7 @@ def test_no_id_ends_the_data(pair):
     text = page_text(recording(pair, np.zeros((1, 2, 3)), events=events))
     assert text.count("</script>") == 2
     (data,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', text, flags=re.DOTALL)
-    assert json.loads(data)["events"][0][1] == "lost: task </script><script>alert(1)//, reason @@STYLE@@"
+    assert json.loads(data)["events"][0][1] == "task </script><script>alert(1)// is lost: @@STYLE@@"
 
 
 def test_a_record_without_steps(pair):
@@ -127,13 +127,13 @@ def test_tasks_that_come_move_and_are_lost(recorded):
     assert (late["id"], late["type"]) == ("late <b>", "D")
     assert late["places"][:2] == [[20000, -9000, -9000], [25000, -8000, -9000]]
     assert [state for _, state, _ in late["states"]] == ["open", "open", "lost"]
-    assert [robot["gone"] for robot in data["robots"]][4:] == [[], [[20000, True]]]
+    assert [robot["gone"] for robot in data["robots"]][4:] == [[], [[20000, "failed"]]]
 
 
 def test_what_was_cancelled_is_not_lost(pair):
     events = (event_of(9.0, "lost", {"task": "t", "reason": "cancelled at 4 s"}),)
     data = page_data(recording(pair, np.zeros((1, 2, 3)), events=events))
-    assert data["events"] == [[9000, "not done: task t, cancelled at 4 s", False]]
+    assert data["events"] == [[9000, "task t is not done: cancelled at 4 s", False]]
     assert data["figures"][1:] == [["tasks done", "0"], ["tasks lost", "0"], ["tasks cancelled", "1"]]
 
 

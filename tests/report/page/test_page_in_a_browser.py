@@ -4,9 +4,15 @@ import numpy as np
 import pytest
 from tests.report.page.conftest import MORE
 from tests.report.page.test_page import recording
+from tests.state.drawn_events import one_of_each, tied_site
 
-from muster.mission.model import Mission, Robot, Task
+from muster.allocation.problem import Problem
+from muster.mission.model import Event, Mission, Robot, Task
 from muster.report.page import write_page
+from muster.report.record import RecordWriter, read_record
+from muster.running.negotiated.team_log import TeamLog
+from muster.state.event import KINDS
+from muster.state.words import ALARM, DETAIL
 
 pytest.importorskip("mcap")
 pytest.importorskip("shapely")
@@ -209,13 +215,13 @@ def test_events_are_listed_and_lead_to_their_time(browser, page, recorded):
     assert browser.evaluate("document.querySelectorAll('#events li').length") == len(events)
     alarms = browser.evaluate("[...document.querySelectorAll('#events .alarm')].map(e => e.textContent)")
     assert alarms == [
-        "robot fails: robot r_5",
-        "lost: task late <b>, reason capacity",
-        "traffic jam: r_0, r_1 hold each other up at 1.00, 2.00 since 40.0 s",
+        "r_5 is out",
+        "task late <b> is lost: capacity",
+        "traffic jam: r_0, r_1 hold each other up at 1.00, 2.00 since 40.00 s",
     ]
     browser.evaluate("document.querySelector('#events .alarm').closest('button').click()")
     assert time_of(browser) == 20
-    assert browser.evaluate("document.querySelector('#robots [data-robot=r_5]').textContent") == "r_5 is out"
+    assert browser.evaluate("document.querySelector('#robots [data-robot=r_5]').textContent") == "r_5 is out: failed"
     assert browser.evaluate("document.querySelector('#map [data-robot=r_5]').classList.contains('gone')")
 
 
@@ -252,3 +258,74 @@ def test_a_window_that_changes(browser, page):
         "[...document.querySelectorAll('#map .robot .body')].map(mark => mark.getBoundingClientRect().right)"
     )
     assert max(boxes) < 500
+
+
+def page_of(events, folder):
+    """The page of a record that has these events alone, and the record."""
+    with RecordWriter(folder / "record.mcap", tied_site()) as writer:
+        for entry in events:
+            writer.on_event(entry["time_s"], entry["kind"], entry["data"])
+    found = read_record(folder / "record.mcap")
+    write_page(folder / "page.html", found)
+    return folder / "page.html", found
+
+
+def test_a_station_and_a_door_are_marked_while_they_serve_nobody_and_are_open(browser, tmp_path):
+    happens = [(10.0, "station_fails", {"station": "rack"}), (10.0, "door_closes", {"door": "a"})]
+    happens += [(20.0, "station_returns", {"station": "rack"}), (20.0, "door_opens", {"door": "a"})]
+    happens += [
+        (30.0, "station_unreachable", {"station": "rack", "robot": "r_0"}),
+        (40.0, "robot_returns", {"robot": "r_0"}),
+    ]
+    events = [{"time_s": at_s, "kind": kind, "data": data} for at_s, kind, data in happens]
+    browser.open(page_of(events, tmp_path)[0], *WIDE)
+    seen = {}
+    for at_s in (0, 11, 21, 31, 40):
+        seek(browser, at_s)
+        marks = ('[data-station="[rack]"]', ".zone")
+        words = [browser.evaluate(f"document.querySelector('#map {mark} title').textContent") for mark in marks]
+        seen[at_s] = [browser.evaluate(f"document.querySelector('#map {marks[0]}').classList.contains('away')"), *words]
+    unload = "station rack: unload"
+    assert seen == {
+        0: [False, unload, "door a, open"],
+        11: [True, f"{unload}; failed, serves nobody", "door a, closed: ground, air"],
+        21: [False, unload, "door a, open"],
+        31: [True, f"{unload}; cut off, serves nobody", "door a, open"],
+        40: [False, unload, "door a, open"],
+    }
+
+
+def test_each_kind_of_event_is_listed_in_words_and_where_somebody_should_look_marked(browser, tmp_path):
+    file, found = page_of(one_of_each(), tmp_path)
+    assert {event.kind for event in found.events} == set(KINDS)
+    browser.open(file, *WIDE)
+    seen = browser.evaluate(
+        "[...document.querySelectorAll('#events li span')].map(e => [e.textContent, e.className === 'alarm'])"
+    )
+    assert seen == [[event.line, event.mark == ALARM] for event in found.events if event.mark != DETAIL]
+    assert browser.complaints == []
+
+
+def test_the_log_of_a_team_without_a_centre_is_shown_in_the_same_words(browser, tmp_path):
+    with RecordWriter(tmp_path / "record.mcap", tied_site()) as writer:
+        log = TeamLog(Problem.compile(tied_site()), writer, lambda event: None)
+        log.take_event(Event(at_s=1, station_fails="rack"), 1.0)
+        log.take("r_0", 2.0, "task_refused", {"task": "t_1", "robot": "r_0", "reason": "skill: lift"}, used=0.0)
+        for robot in ("r_0", "r_1"):
+            log.take(robot, 3.0, "starts", {"task": "t_2", "robot": robot}, used=0.0)
+        for robot in ("r_0", "r_1"):
+            told = {"task": "pair", "robot": robot, "team": ["r_0", "r_1"], "usage": [1.0, 1.0]}
+            log.take(robot, 4.0, "ends", told, used=0.0)
+        log.take_event(Event(at_s=5, station_returns="rack"), 5.0)
+    write_page(tmp_path / "page.html", read_record(tmp_path / "record.mcap"))
+    browser.open(tmp_path / "page.html", *WIDE)
+    assert browser.evaluate("[...document.querySelectorAll('#events li span')].map(e => e.textContent)") == [
+        "station rack fails",
+        "r_0 cannot do task t_1: skill: lift",
+        "r_0 begins task t_2",
+        "r_0, r_1 have both begun task t_2: they could not hear each other",
+        "r_1 begins task t_2",
+        "r_0 has done task pair",
+        "station rack serves again",
+    ]
+    assert log.events[-2].kind == "part_ends"

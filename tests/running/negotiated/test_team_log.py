@@ -6,8 +6,9 @@ from muster import Event, Mission, Robot, Task
 from muster.allocation.problem import Problem
 from muster.execution import report_of
 from muster.execution.record import NoObserver
-from muster.mission.event_descriptions import event_line
+from muster.mission.events import DelayedTask, MovedTask
 from muster.mission.plan import Plan, Reason, Route, Unassigned
+from muster.mission.records import specified
 from muster.running.negotiated.team_log import TeamLog
 
 MISSION = Mission(
@@ -115,7 +116,7 @@ def test_robots_that_agree_anew_without_a_word_have_a_cause_for_it(log):
     agree(log, 0.0)
     agree(log, 5.0)
     (again,) = [event for event in log.events if event.kind == "replanned"]
-    assert event_line(again.kind, again.data).startswith("replanned after new_agreement: ")
+    assert again.line.startswith("replanned, as robots have agreed anew: ")
 
 
 def test_a_task_that_is_ordered_after_another_was_missed_has_a_reason_of_its_own(log):
@@ -124,3 +125,27 @@ def test_a_task_that_is_ordered_after_another_was_missed_has_a_reason_of_its_own
     log.take("a", 3.0, "window_missed", missed, used=1.0)
     log.take_event(Event(at_s=4, new_task=Task(id="new", position=(1, 1), starts_with=("t",))), 4.0)
     assert log.lost() == {"t": "window: closed at 3 s", "new": "not done"}
+
+
+EVENTS = {
+    "robot_fails": "a",
+    "robot_silent": "a",
+    "robot_returns": "a",
+    "robot_joins": Robot(id="c", position=(5, 5)),
+    "new_task": Task(id="new", position=(1, 1)),
+    "cancel_task": "t",
+    "move_task": MovedTask(task="t", position=(3, 3)),
+    "delay_task": DelayedTask(task="t", by_s=2.0),
+    "station_fails": "dock",
+    "station_returns": "dock",
+}
+
+
+@pytest.mark.parametrize("kind", EVENTS)
+def test_each_event_of_a_mission_becomes_one_of_its_kind(log, kind):
+    """But for doors, which a team without a centre does not have."""
+    assert EVENTS.keys() == {field.name for field in specified(Event)} - {"at_s", "door_closes", "door_opens"}
+    log.take_event(Event(at_s=3, **{kind: EVENTS[kind]}), 3.0)
+    (event,) = log.events
+    assert (event.kind, event.time_s) == (kind, 3.0)
+    assert "?" not in event.line

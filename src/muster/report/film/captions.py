@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
@@ -10,9 +10,10 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.event_descriptions import event_line, tells_cancelled
 from muster.motion.grid import Floats
 from muster.state import ExecutionEvent
+from muster.state.reasons import was_cancelled
+from muster.state.words import DETAIL
 
 Picture = npt.NDArray[np.uint8]
 Rgb = tuple[int, int, int]
@@ -29,28 +30,13 @@ _LONGEST = 64
 
 def caption(told: ExecutionEvent) -> str | None:
     """An event in a few words, such as `r_0 has done task 7`; None for events that are visible in the film."""
-    if told.kind in _NOT_TOLD or tells_cancelled(told.kind, told.data):
+    if told.kind in _NOT_TOLD or told.mark == DETAIL or was_cancelled(told.data.get("reason")):
         return None
-    task, robot = (told.data.get(key) for key in ("task", "robot"))
     if told.kind == "replanned":
         moved, dropped = len(told.data.get("moved", ())), len(told.data.get("dropped", ()))
         given_up = f", {dropped} given up" if dropped else ""
         return f"planned anew: {moved or 'no'} task{'' if moved == 1 else 's'} moved{given_up}"
-    words = {
-        "ends": f"{robot} has done task {task}",
-        "returns": f"{robot} goes back",
-        "lost": f"task {task} is lost",
-        "robot_fails": f"{robot} fails",
-        "robot_silent": f"{robot} is silent",
-        "robot_stuck": f"{robot} is stuck",
-        "robot_returns": f"{robot} is back",
-        "robot_joins": f"{_name(robot)} joins",
-        "new_task": f"new: task {_name(task)}",
-        "cancel_task": f"task {task} is cancelled",
-        "move_task": f"task {task} is elsewhere",
-        "found": f"tag {told.data.get('tag')} found by {' '.join(told.data.get('robots', ()))}",
-    }
-    return shortened(words.get(told.kind) or event_line(told.kind, told.data))
+    return shortened(told.line)
 
 
 def shortened(text: str, longest: int = _LONGEST) -> str:
@@ -129,7 +115,3 @@ def rgb(color: str) -> Rgb:
 def _font() -> Any:
     """OpenCV's own sans-serif, with most scripts."""
     return cv2.FontFace("sans")
-
-
-def _name(of: object) -> object:
-    return of.get("id", of) if isinstance(of, Mapping) else getattr(of, "id", of)

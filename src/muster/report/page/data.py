@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.event_descriptions import event_line, tells_cancelled, was_cancelled
 from muster.mission.model import Map, Station, Task, Zone
 from muster.mission.stations import station_sign
 from muster.motion.grid import Grid
@@ -26,21 +25,21 @@ from muster.report.styles import PALETTE
 from muster.report.time_marks import page_marks
 from muster.state import MissionState
 from muster.state.mission_state import OPEN
+from muster.state.reasons import was_cancelled
 from muster.state.robots import OUT
+from muster.state.words import DETAIL
 
 Floats = npt.NDArray[np.float64]
 
 MOST_SAMPLES = 200_000
 """Moments times robots; where a record has more, moments are left out evenly."""
 
-_BACK = "robot_returns"
-
 
 def page_data(recording: Recording) -> dict[str, Any]:
     """All data of the page."""
     tracks = _thinned(recording.tracks)
     order = {robot.id: k for k, robot in enumerate(recording.robots)}
-    gone = _gone(recording)
+    course = _Course(recording)
     bars = spans(recording.events, recording.duration_s)
     return {
         "name": recording.mission.name,
@@ -49,19 +48,19 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "duration": _thousandths(recording.duration_s),
         "spatial": recording.mission.dimensions == 3,
         "times": _differences(tracks.times_s),
-        "robots": [_robot(recording, tracks, k, gone, bars) for k in range(len(order))],
-        "tasks": _tasks(recording),
-        "stations": [_station(station) for station in recording.mission.stations],
+        "robots": [_robot(recording, tracks, k, course, bars) for k in range(len(order))],
+        "tasks": list(course.tasks.values()),
+        "stations": [_station(station, course) for station in recording.mission.stations],
         "plans": _plans(recording, order),
         "spans": [
             [order[bar.robot], bar.goal, bar.kind, _thousandths(bar.from_s), _thousandths(bar.until_s)]
             for bar in bars
             if bar.robot in order
         ],
-        "events": [_event(event) for event in recording.events],
+        "events": [_event(event) for event in recording.events if event.mark != DETAIL],
         "nearest": _nearest(recording, tracks),
         "areas": _areas(recording.tasks),
-        "map": _map(recording.mission.map, recording.image),
+        "map": _map(recording.mission.map, recording.image, course),
         "figures": _figures(recording),
         **page_marks(recording.tasks, recorded_rows(recording), recording.mission.starts_at),
     }
@@ -100,9 +99,7 @@ def _differences(values: Floats) -> list[int | None]:
     return found
 
 
-def _robot(
-    recording: Recording, tracks: Tracks, k: int, gone: Mapping[str, Any], bars: Sequence[Span]
-) -> dict[str, Any]:
+def _robot(recording: Recording, tracks: Tracks, k: int, course: _Course, bars: Sequence[Span]) -> dict[str, Any]:
     robot = recording.robots[k]
     data: dict[str, Any] = {
         "id": robot.id,
@@ -112,7 +109,7 @@ def _robot(
         "x": _differences(tracks.positions[:, k, 0]),
         "y": _differences(tracks.positions[:, k, 1]),
         "heading": _differences(_unwrapped(tracks.headings[:, k])),
-        "gone": gone.get(robot.id, []),
+        "gone": course.gone.get(robot.id, []),
     }
     if recording.mission.dimensions == 3:
         data["z"] = _differences(tracks.positions[:, k, 2])
@@ -123,19 +120,11 @@ def _robot(
     return data
 
 
-def _station(station: Station) -> dict[str, Any]:
+def _station(station: Station, course: _Course) -> dict[str, Any]:
     slots = f", {station.slots} slots" if station.slots > 1 else ""
     label = f"station {station.id}: {', '.join(station.services)}{slots}"
-    return {"sign": station_sign(station.id), "place": _millimetres(station.position[:2]), "label": label}
-
-
-def _gone(recording: Recording) -> dict[str, list[list[Any]]]:
-    """For each robot when it goes out and comes back: [time, whether it is out from then on]."""
-    found: dict[str, list[list[Any]]] = {}
-    for event in recording.events:
-        if event.kind in (*OUT, _BACK):
-            found.setdefault(str(event.data.get("robot")), []).append([_thousandths(event.time_s), event.kind in OUT])
-    return found
+    place, away = _millimetres(station.position[:2]), course.away.get(station.id, [])
+    return {"sign": station_sign(station.id), "place": place, "label": label, "away": away}
 
 
 def _unwrapped(headings: Floats) -> Floats:
@@ -147,23 +136,43 @@ def _unwrapped(headings: Floats) -> Floats:
 
 def _event(event: ExecutionEvent) -> list[Any]:
     """When it was, its line, and whether somebody should look at it."""
-    alarming = event.alarming and not tells_cancelled(event.kind, event.data)
-    return [_thousandths(event.time_s), event_line(event.kind, event.data), alarming]
+    return [_thousandths(event.time_s), event.line, event.alarming]
 
 
-def _tasks(recording: Recording) -> list[dict[str, Any]]:
-    """For each task its place and its state over time."""
-    mission_state = MissionState(recording.mission, forgets=False)
-    tasks = {name: _task(mission_state, name, 0.0) for name in mission_state.tasks}
-    for event in recording.events:
-        now = _thousandths(event.time_s)
-        for name in mission_state.apply(event):
-            if name not in tasks:
-                tasks[name] = _task(mission_state, name, event.time_s)
+class _Course:
+    """What happened to tasks, robots, stations and doors: for each its values over time, each [when, value]."""
+
+    def __init__(self, recording: Recording) -> None:
+        self._state = MissionState(recording.mission, forgets=False)
+        self.tasks = {name: _task(self._state, name, 0.0) for name in self._state.tasks}
+        self.gone: dict[str, list[list[Any]]] = {}
+        self.away: dict[str, list[list[Any]]] = {}
+        self.closed = {name: [[0, name in self._state.doors.closed]] for name in self._state.doors.known}
+        for event in recording.events:
+            self._apply(event)
+
+    def _apply(self, event: ExecutionEvent) -> None:
+        state, now, robot = self._state, _thousandths(event.time_s), event.data.get("robot")
+        for name in state.apply(event):
+            if name not in self.tasks:
+                self.tasks[name] = _task(state, name, event.time_s)
                 continue
-            tasks[name]["places"].append([now, *_millimetres(mission_state.tasks[name].position)])
-            tasks[name]["states"].append([now, mission_state.stage(name), event.data.get("robot")])
-    return list(tasks.values())
+            self.tasks[name]["places"].append([now, *_millimetres(state.tasks[name].position)])
+            self.tasks[name]["states"].append([now, state.stage(name), robot])
+        if isinstance(robot, str) and robot in state.robots:
+            _note(self.gone, robot, now, OUT.get(state.robots[robot].out, ""))
+        for station in (*self.away, *state.failed_stations, *state.cut_off_stations):
+            cut_off = "cut off" if station in state.cut_off_stations else ""
+            _note(self.away, station, now, "failed" if station in state.failed_stations else cut_off)
+        for door in self.closed:
+            _note(self.closed, door, now, door in state.doors.closed)
+
+
+def _note(course: dict[str, list[list[Any]]], name: str, now: int, value: str | bool) -> None:
+    """Note a value from now on, unless it is as before: at first it is empty."""
+    before = course[name][-1][1] if name in course else ""
+    if value != before:
+        course.setdefault(name, []).append([now, value])
 
 
 def _task(mission_state: MissionState, name: str, since: float) -> dict[str, Any]:
@@ -208,12 +217,12 @@ def _nearest(recording: Recording, tracks: Tracks) -> dict[str, Any] | None:
     }
 
 
-def _map(chart: Map | None, image: Grid | None) -> dict[str, Any] | None:
+def _map(chart: Map | None, image: Grid | None, course: _Course) -> dict[str, Any] | None:
     if chart is None:
         return None
     return {
         "boundary": None if chart.boundary is None else [_millimetres(corner) for corner in chart.boundary],
-        "zones": [_zone(zone) for zone in chart.zones],
+        "zones": [_zone(zone, course) for zone in chart.zones],
         "image": None if image is None else _image(image),
     }
 
@@ -224,16 +233,16 @@ def _areas(tasks: Iterable[Task]) -> list[list[list[list[int]]]]:
     return [[[_millimetres(corner) for corner in ring] for ring in area] for area in areas]
 
 
-def _zone(zone: Zone) -> dict[str, Any]:
+def _zone(zone: Zone, course: _Course) -> dict[str, Any]:
     low, high = zone.floor_m, zone.ceiling_m
     heights = (
         "" if low is None and high is None else f", {low or 0:g} m to {'the sky' if high is None else f'{high:g} m'}"
     )
     return {
         "corners": [_millimetres(corner) for corner in zone.polygon],
-        "label": f"door {zone.id}, open at first{heights}"
-        if zone.open
-        else f"no entry: {', '.join(zone.forbidden_to)}{heights}",
+        "label": f"{f'door {zone.id}, closed' if zone.id else 'no entry'}: {', '.join(zone.forbidden_to)}{heights}",
+        "label_open": f"door {zone.id}, open{heights}",
+        "closed": course.closed.get(zone.id or "", [[0, True]]),
     }
 
 

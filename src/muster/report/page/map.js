@@ -17,12 +17,14 @@ let taskPlaces = []; // at the time that is shown, metres; null: it is not there
 let taskSpots = []; // of their marks, pixels
 let stillNames = null; // of tasks and stations
 let stationMarks = [];
+let zoneParts = []; // of zones
 
 function drawMap() {
   const [width, height] = fitted(mapPicture);
   project = projection(width, height);
   routes = svg("g");
   shownPlan = -1;
+  zoneParts = [];
   stationMarks = stations.map(stationMark);
   taskPlaces = [];
   mapPicture.append(...floorParts(), routes, ...stationMarks);
@@ -78,10 +80,9 @@ function floorParts() {
   const parts = data.map.image ? [walls(data.map.image), ...areas] : areas;
   if (data.map.boundary) parts.push(svg("polygon", { class: "boundary", points: points(data.map.boundary) }));
   for (const zone of data.map.zones) {
-    const label = svg("title", {}, zone.label);
-    parts.push(svg("polygon", { class: "zone", points: points(zone.corners) }, label));
+    zoneParts.push(svg("polygon", { class: "zone", points: points(zone.corners) }, svg("title", {}, zone.label)));
   }
-  return parts;
+  return [...parts, ...zoneParts];
 }
 
 // Blocked cells as pixels of a picture, laid on the ground where origin and yaw say.
@@ -163,8 +164,9 @@ function taskMark(task) {
 
 function stationMark({ sign, place: [x, y], label }) {
   const cross = svg("path", { d: "M3-8V-3H8V3H3V8H-3V3H-8V-3H-3V-8Z" });
+  const strike = svg("path", { class: "strike", d: "M-7-7 7 7M-7 7 7-7" });
   const transform = `translate(${project.x(x)} ${project.y(y)})`;
-  const mark = svg("g", { class: "station", "data-station": sign, transform }, cross, svg("title", {}, label));
+  const mark = svg("g", { class: "station", "data-station": sign, transform }, cross, strike, svg("title", {}, label));
   if (stations.length <= MOST_NAMED_STATIONS) mark.append(svg("text", { x: 10, y: 4 }, sign));
   return mark;
 }
@@ -195,7 +197,22 @@ function showMap(now) {
   placeTasks(now);
   tasks.forEach((task, k) => showTask(task, taskMarks[k], now));
   robots.forEach((robot, k) => showRobot(robot, robotMarks[k], now));
+  stations.forEach((station, k) => showStation(station, stationMarks[k], now));
+  (data.map?.zones ?? []).forEach((zone, k) => showZone(zone, zoneParts[k], now));
   nameRobots(now);
+}
+
+// Values over time are in milliseconds.
+function showStation({ away, label }, mark, now) {
+  const [, why] = currentOf(away, 1000 * now) ?? [0, ""];
+  mark.classList.toggle("away", Boolean(why));
+  mark.querySelector("title").textContent = why ? `${label}; ${why}, serves nobody` : label;
+}
+
+function showZone({ closed, label, label_open: labelOpen }, part, now) {
+  const [, isClosed] = currentOf(closed, 1000 * now);
+  part.classList.toggle("open", !isClosed);
+  part.querySelector("title").textContent = isClosed ? label : labelOpen;
 }
 
 // Where marks of tasks are, and the names of what stands still; anew when a task has come or has moved.
@@ -244,5 +261,5 @@ function showRobot(robot, mark, now) {
   Object.assign(mark.dataset, { x: x.toFixed(3), y: y.toFixed(3) });
   mark.setAttribute("transform", `translate(${project.x(x)} ${project.y(y)})`);
   mark.querySelector(".body").setAttribute("transform", `rotate(${(-heading * 180) / Math.PI})`);
-  mark.classList.toggle("gone", isGone(robot, now));
+  mark.classList.toggle("gone", Boolean(isGone(robot, now)));
 }

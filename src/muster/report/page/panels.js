@@ -55,14 +55,14 @@ function showPanels(now) {
   robots.forEach((robot, k) => {
     const words = doing(robot, now);
     if (robotWords[k].textContent !== words) robotWords[k].textContent = words;
-    robotWords[k].classList.toggle("gone", isGone(robot, now));
+    robotWords[k].classList.toggle("gone", Boolean(isGone(robot, now)));
   });
   showEvents(now);
   if (nearest && times.length) showNearest(now);
 }
 
 function doing(robot, now) {
-  if (isGone(robot, now)) return "is out";
+  if (isGone(robot, now)) return `is out: ${isGone(robot, now)}`;
   const goesOn = (until) => until === duration && !data.ended; // beyond where the record breaks off
   const span = spansOf[robot.index].find(({ from, until }) => from <= now && (now < until || goesOn(until)));
   return span ? `${DOING[span.kind]} ${span.task || "its end"}` : "is free";

@@ -20,7 +20,7 @@ const robots = data.robots.map((robot, index) => ({
   z: robot.z ? series(robot.z) : null,
   heading: series(robot.heading),
   level: robot.level ? robot.level.map(([at, share]) => [at / 1000, share / 1000]) : null,
-  gone: robot.gone.map(([at, is]) => [at / 1000, is]),
+  gone: robot.gone.map(([at, why]) => [at / 1000, why]),
 }));
 const tasks = data.tasks.map((task) => ({
   ...task,
@@ -64,8 +64,9 @@ function currentOf(items, now) {
   return items[lastUntil(items, now, (item) => item[0])];
 }
 
+// Why a robot takes no part; empty: it does.
 function isGone(robot, now) {
-  return Boolean((currentOf(robot.gone, now) ?? [0, false])[1]);
+  return (currentOf(robot.gone, now) ?? [0, ""])[1];
 }
 
 function seconds(value) {

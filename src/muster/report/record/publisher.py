@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.mission.event_descriptions import event_line
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
 from muster.report.record import json_messages, scene
@@ -86,7 +85,7 @@ class Publisher(ABC):
         event = event_of(now, kind, data)
         self._add("/muster/event", now, json_messages.json_bytes({"time_s": now, "kind": kind, "data": data}))
         level = json_messages.WARNING if event.alarming else json_messages.INFO
-        self._write("/log", now, json_messages.log(now, level, event_line(kind, data)))
+        self._write("/log", now, json_messages.log(now, level, event.line))
         entities = scene.changed_entities(now, self._mission_state, event)
         if entities:
             self._write("/scene", now, scene.update(entities))

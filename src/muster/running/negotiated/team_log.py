@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 from muster.allocation.problem import Problem
@@ -16,7 +16,8 @@ from muster.mission.plan import Plan, Unassigned, teams_of
 from muster.mission.yaml_writer import plain
 from muster.motion.port import Telemetry
 from muster.state import ExecutionEvent, MissionState, OtherEvent, event_of
-from muster.state.robot_events import RobotFails, RobotJoins, RobotReturns, RobotSilent, RobotStuck, TrafficJam
+from muster.state.event import KINDS
+from muster.state.robot_events import RobotReturns, RobotSilent, RobotStuck, TrafficJam
 from muster.state.run_events import MissionEnded, PlanAdopted, Replanned
 from muster.state.task_events import (
     CancelTask,
@@ -24,7 +25,6 @@ from muster.state.task_events import (
     Ends,
     Lost,
     MoveTask,
-    NewTask,
     PartEnds,
     Starts,
     TaskMissed,
@@ -216,17 +216,8 @@ def _happens(event: Event) -> ExecutionEvent:
     ((kind, said),) = ((key, value) for key, value in plain(event).items() if key != "at_s")
     if event.robot_silent is not None:
         return RobotSilent(robot=said, goes_on=True)
-    if event.new_task is not None:
-        return NewTask(task=said)
-    if event.cancel_task is not None:
-        return CancelTask(task=said)
-    if event.robot_fails is not None:
-        return RobotFails(robot=said)
-    if event.robot_joins is not None:
-        return RobotJoins(robot=said)
-    if event.robot_returns is not None:
-        return RobotReturns(robot=said)
-    return event_of(math.nan, kind, said)
+    named = {fields(KINDS[kind])[1].name: said}  # `time_s` comes first
+    return event_of(math.nan, kind, named if kind not in ("move_task", "delay_task") else said)
 
 
 def _difference(before: Plan, after: Plan) -> dict[str, Any]:

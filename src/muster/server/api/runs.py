@@ -15,9 +15,9 @@ from muster.server.api.dependencies import IdempotencyKey, ThePage, TheServices,
 from muster.server.api.parameter_types import LARGEST, After, Before, Body, MissionQuery, Name, RunId
 from muster.server.api.responses import PAGED, errors, with_location
 from muster.server.api.sockets import answer, message, tell
-from muster.server.runs.log_lines import line_of
 from muster.server.runs.run_settings import MOST_ORDERS
 from muster.server.services.runs import Runs
+from muster.state.words import words_of
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=BoundedRoute)
 
@@ -147,8 +147,8 @@ async def _past(runs: Runs, run: int, after: int) -> AsyncIterator[str]:
     yield message("hello", {"run": found, "mission": None, "seq": after})
     while entries := await runs.entries(run, after, MOST_ROWS):
         for entry in entries:
-            told = {"seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": entry.data}
-            yield message("entry", {**told, "line": line_of(entry.kind, entry.data)})
+            said = {"seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": entry.data}
+            yield message("entry", said | words_of(entry.kind, entry.data))
         after = entries[-1].seq
     ended = {"state": found.state, "speed": found.speed, "time_s": found.time_s, "remark": found.remark}
     yield message("run", ended)

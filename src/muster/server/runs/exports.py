@@ -21,7 +21,6 @@ from muster.exchange.earth import Earth, Spot
 from muster.exchange.formula_cells import cell
 from muster.exchange.geojson import one_or_many
 from muster.exchange.xml_text import add, decimal, text_of
-from muster.mission.event_descriptions import event_line
 from muster.report.record import Recording
 
 Log = Sequence[Mapping[str, Any]]
@@ -37,7 +36,7 @@ def csv_files(recording: Recording, _: Log) -> dict[str, str]:
             if np.isfinite(place).all():
                 speed = float(np.linalg.norm(tracks.velocities[i, k]))
                 rows.append((now, cell(robot), *place.tolist(), float(tracks.headings[i, k]), round(speed, 4)))
-    events = [(event.time_s, cell(event.kind), cell(event_line(event.kind, event.data))) for event in recording.events]
+    events = [(event.time_s, cell(event.kind), cell(event.line)) for event in recording.events]
     return {
         "tracks.csv": _csv(("time_s", "robot", "x", "y", "z", "heading_rad", "speed_mps"), rows),
         "events.csv": _csv(("time_s", "kind", "what"), events),

@@ -20,9 +20,9 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.report.record.json_messages import json_bytes
 from muster.report.record.routes import RouteLines
-from muster.server.runs.log_lines import line_of
 from muster.server.runs.tracks import Floats, Row, Steps, Track, packed
 from muster.state import MissionState, event_of
+from muster.state.words import words_of
 
 RESUMED = "resumed"
 
@@ -154,7 +154,7 @@ class LogRecorder:
         if self._said:
             self._compare(entry, self._said.popleft())
         else:
-            self._out.entry({"type": "entry", **entry, "line": line_of(kind, plain)})
+            self._out.entry({"type": "entry", **entry, **words_of(kind, plain)})
 
     def _skip_resumed(self) -> None:
         """Skip entries of earlier resumes, which are not produced again."""

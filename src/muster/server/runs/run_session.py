@@ -17,12 +17,12 @@ from muster.running.worlds import WORLDS
 from muster.server.runs.crash_history import CrashHistory
 from muster.server.runs.journal import Journal
 from muster.server.runs.journal_replay import TOO_LATE
-from muster.server.runs.log_lines import line_of
 from muster.server.runs.log_writer import LogWriter
 from muster.server.runs.runner_input import RunnerInput
 from muster.server.runs.runner_process import RunnerProcess
 from muster.server.runs.subscribers import Subscribers
 from muster.server.store.actions import id_at
+from muster.state.words import words_of
 
 if TYPE_CHECKING:
     from muster.server.store.store import Store
@@ -340,5 +340,4 @@ def _order(action: Action) -> dict[str, Any]:
 
 def _entry_text(entry: Entry) -> str:
     said = {"type": "entry", "seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": dict(entry.data)}
-    line = line_of(entry.kind, entry.data)
-    return json.dumps(said | {"line": line}, ensure_ascii=False, separators=(",", ":"))
+    return json.dumps(said | words_of(entry.kind, entry.data), ensure_ascii=False, separators=(",", ":"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from muster.mission.event_descriptions import was_cancelled
+from muster.state.reasons import was_cancelled
 
 UNKNOWN = "not told"
 ROBOT_HEADS = ("robot", "planned", "flown", "more or less")

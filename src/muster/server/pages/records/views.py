@@ -24,7 +24,7 @@ from muster.server.pages.records.figures import (
 )
 from muster.server.pages.tables import address, pager_text, search_text, table
 from muster.server.pages.visitor import PATIENCE_S, is_seen, the_services
-from muster.server.runs.log_lines import deed_of, line_of
+from muster.state.words import DETAIL, deed_of, line_of, mark_of
 
 KEYS = {
     "space, arrows, home, end": "in the replay: play or pause, go through time (after a click or Tab into it)",
@@ -174,7 +174,8 @@ def _compared(run: Run) -> None:
 
 def _events(run: int, entries: Sequence[Entry], after: int) -> None:
     shown = entries[:MOST_ROWS]
-    lines = [(seconds(entry.time_s), line_of(entry.kind, entry.data)) for entry in shown]
+    told = [entry for entry in shown if mark_of(entry.kind, entry.data) != DETAIL]
+    lines = [(seconds(entry.time_s), line_of(entry.kind, entry.data)) for entry in told]
     whole = not after and len(entries) == len(shown)
     words = f"Events ({len(shown)})" if whole or not shown else f"Events {shown[0].seq} to {shown[-1].seq}"
     with _folded(words, is_open=after > 0):

@@ -98,8 +98,17 @@ export class Bodies {
     return parts;
   }
 
+  // Of a task that is long over, and forgotten.
+  removeTask(id) {
+    const { ball, down, name } = this.tasks.get(id);
+    if (name) ball.remove(name);
+    this.scene.remove(ball, down);
+    this.tasks.delete(id);
+  }
+
   show(team, selected) {
     const named = team.tasks.size + team.robots.size <= MOST_NAMES;
+    for (const id of this.tasks.keys()) if (!team.tasks.has(id)) this.removeTask(id);
     for (const task of team.tasks.values()) this.showTask(task, this.tasks.get(task.id) ?? this.addTask(task, named), team, selected);
     for (const robot of team.robots.values()) this.showRobot(robot, this.robots.get(robot.id) ?? this.addRobot(robot, named), team);
   }

@@ -66,11 +66,19 @@ function robotFacts(robot, { takenOut }) {
 function taskFacts(task, team) {
   const facts = [["state", `${TASK_MARKS[task.state]} ${task.state}`]];
   const robot = team.robotOf(task.id);
-  if (robot) facts.push(["by", robot.id]);
+  const { refusals, missed, delays, lying, doneTwice } = team.state;
+  if (task.robots.length) facts.push(["by", task.robots.join(", ")]);
+  else if (robot) facts.push(["by", robot.id]);
   else if (task.state === "open") facts.push(["by", ["nobody", team.whyNobody(task.id)].filter(Boolean).join(": ")]);
+  const refused = Object.entries(refusals.get(task.id) ?? {}).map(([name, why]) => `${name}: ${why}`);
+  if (refused.length) facts.push(["refused", refused.join("; ")]);
+  if (missed.has(task.id)) facts.push(["missed", missed.get(task.id).reason]);
+  if (delays.get(task.id)) facts.push(["delayed", `by ${delays.get(task.id)} s`]);
+  if (lying.has(task.id)) facts.push(["load", `lies where ${lying.get(task.id).robot} failed`]);
+  if (doneTwice.has(task.id)) facts.push(["twice", `begun by ${doneTwice.get(task.id).join(" and ")}`]);
   if (task.type) facts.push(["type", task.type]);
   if (task.requires?.length) facts.push(["takes", task.requires.join(", ")]);
-  if (task.prerequisites?.length) facts.push(["after", task.prerequisites.map((one) => withState(one.task ?? one, team)).join(", ")]);
+  if (task.prerequisites?.length) facts.push(["after", [task.prerequisites].flat().map((one) => withState(one.task ?? one, team)).join(", ")]);
   facts.push(["at", task.place.slice(0, team.spatial ? 3 : 2).map((value) => value.toFixed(2)).join(", ")]);
   return facts;
 }

@@ -5,8 +5,8 @@ import { html, seconds } from "./elements.js";
 const MOST_SHOWN = 400;
 const FILTERS = {
   all: ["all", () => true],
-  alarms: ["alarming", (entry) => entry.alarming],
-  changes: ["changes of the plan", (entry) => entry.change || entry.alarming],
+  alarms: ["alarming", ({ mark }) => mark === "alarm"],
+  changes: ["changes of the plan", ({ mark }) => ["alarm", "change"].includes(mark)],
   selected: ["of what is selected", (entry, selected) => concerns(entry, selected)],
 };
 
@@ -40,9 +40,9 @@ export class EventList {
 
   add(entry) {
     const [, wanted] = FILTERS[this.choice.value];
-    if (!entry.line || !wanted(entry, this.selected)) return;
-    const words = html("span", {}, entry.alarming ? "⚠ " : "", entry.line);
-    const item = html("li", { class: entry.alarming ? "alarm" : entry.change ? "change" : null, "data-kind": entry.kind });
+    if (entry.mark === "detail" || !wanted(entry, this.selected)) return;
+    const words = html("span", {}, entry.mark === "alarm" ? "⚠ " : "", entry.line);
+    const item = html("li", { class: entry.mark || null, "data-kind": entry.kind });
     item.append(html("time", {}, seconds(entry.time)), words);
     const about = subject(entry, this.team);
     if (about) item.addEventListener("click", () => this.onSelect(about));

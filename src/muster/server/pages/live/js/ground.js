@@ -24,6 +24,18 @@ class RunStage extends Stage {
     return why ? `cannot be done: ${why}` : "nobody is to do it";
   }
 
+  stateOf(id) {
+    return this.team.tasks.get(id)?.state ?? null;
+  }
+
+  robotAt(robot, now = performance.now()) {
+    return { ...super.robotAt(robot, now), out: Boolean(this.team.robots.get(robot.id)?.out) };
+  }
+
+  whyNoService(station) {
+    return this.team.state.whyNoService(station);
+  }
+
   namesOf(task) {
     const move = this.team.moved.get(task.id);
     return move ? [`${task.id}: ${moveWords(move)}`, ...super.namesOf(task)] : super.namesOf(task);
@@ -113,11 +125,11 @@ export class Ground {
     const robots = [...this.team.robots.values()].map(({ id, type, kind = "ground", radius_m: radius = 0, home: [x, y] }) =>
       ({ id, type: type ?? "", kind, radius, x, y }));
     const tasks = [...this.team.tasks.values()].map(({ id, type, action, place: [x, y], prerequisites = [] }) =>
-      ({ id, type: type ?? action?.name ?? "", x, y, prerequisites }));
+      ({ id, type: type ?? action?.name ?? "", x, y, prerequisites: [prerequisites].flat().map((one) => one.task ?? one) }));
     this.types = shapedTypes(this.types, tasks);
     for (const task of tasks) task.shape = this.types.indexOf(task.type) % SHAPES.length;
     const areas = areasOf([...this.team.tasks.values()]);
-    this.stage.show({ ...groundOf(this.team.mission), ...this.under, areas, robots, tasks });
+    this.stage.show({ ...groundOf(this.team.mission, this.team.state), ...this.under, areas, robots, tasks });
     this.stage.theme = readTheme(this.host);
     this.showTasks();
   }
@@ -179,11 +191,13 @@ function areasOf(tasks) {
 }
 
 // Boundary, zones and stations of a plain mission.
-function groundOf({ map: chart, stations = [] }) {
-  const zones = (chart?.zones ?? []).map(({ polygon, forbidden_to: whom = ["ground", "air"], floor_m: floor, ceiling_m: ceiling }, k) => ({
+function groundOf({ map: chart, stations = [] }, { closedDoors }) {
+  const zones = (chart?.zones ?? []).map(({ id, polygon, forbidden_to: whom = ["ground", "air"], floor_m: floor, ceiling_m: ceiling }, k) => ({
     corners: polygon,
     partly: whom.length < 2 || (floor ?? null) !== null || (ceiling ?? null) !== null,
-    label: `zone ${k + 1}, closed to ${whom.map((kind) => `${kind} robots`).join(" and ")}`,
+    open: Boolean(id) && !closedDoors.has(id),
+    label: id && !closedDoors.has(id) ? `door ${id}, open`
+      : `${id ? `door ${id}` : `zone ${k + 1}`}, closed to ${whom.map((kind) => `${kind} robots`).join(" and ")}`,
   }));
   return { boundary: chart?.boundary ?? null, zones, stations: stations.map(laid) };
 }

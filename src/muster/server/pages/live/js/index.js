@@ -9,12 +9,14 @@ import { Ground } from "./ground.js";
 import { listenToKeys } from "./keys.js";
 import { Notices } from "./notices.js";
 import { RobotTable } from "./robots.js";
+import { SiteTable } from "./sites.js";
 import { openSpace } from "./space.js";
 import { Stream } from "./stream.js";
 import { Team } from "./team.js";
 
 const PANELS_MS = 200; // at most so often panels are written anew
-const SCENE_KINDS = ["new_task", "move_task", "robot_joins"];
+const SCENE_KINDS = ["new_task", "move_task", "load_lies", "forgets", "robot_joins", "mission_begins", "door_closes", "door_opens"];
+const TASK_KINDS = ["plan", "replanned", "station_fails", "station_returns", "station_unreachable"];
 
 export class LiveView {
   // `act({token, verb, data})` asks the desk; its answer comes to `answer`.
@@ -46,6 +48,7 @@ export class LiveView {
       onMove: ({ id, x, y }) => this.moveTask(id, [x, y]),
     });
     this.robots = new RobotTable({ onSelect: select });
+    this.sites = new SiteTable();
     this.chosen = new Chosen({ may, act, onSelect: select, onCancel: (task) => this.cancel(task), onDelay: (task) => this.delay(task), onMove: (task) => this.setMoving(task) });
     this.events = new EventList({ onSelect: select });
     this.notices = new Notices({
@@ -57,7 +60,7 @@ export class LiveView {
     this.spaceHost = html("div", { class: "space-host", hidden: true });
     const field = html("section", { class: "field", "aria-label": "Map" }, this.ground.element, this.spaceHost, this.hint, this.notices.element);
     const team = html("section", { class: "team", "aria-label": "Robots" }, this.robots.element);
-    const side = html("aside", {}, this.chosen.element, team, this.events.element);
+    const side = html("aside", {}, this.chosen.element, team, this.sites.element, this.events.element);
     this.host.append(this.controls.element, this.over, html("div", { class: "floor" }, field, side));
   }
 
@@ -78,7 +81,7 @@ export class LiveView {
       this.controls.forget();
     }
     if (what === "status") this.ground.showTasks();
-    if (what === "entry" && ["plan", "replanned"].includes(message.kind)) this.ground.showTasks();
+    if (what === "entry" && TASK_KINDS.includes(message.kind)) this.ground.showTasks();
     if (what === "states" || what === "entry") this.ground.move();
     if (what === "entry") this.notices.happened(message);
     if (what === "action") this.notices.outcome(message.id, message.outcome, this.team.time);
@@ -93,6 +96,7 @@ export class LiveView {
     const { team, selected } = this;
     this.controls.show(team, this.notices.undoable.length > 0);
     this.robots.show(team, selected);
+    this.sites.show(team);
     this.chosen.show(team, selected);
     this.events.show(team, selected);
     if (team.over && this.over.hidden) this.showOver();

@@ -1,11 +1,11 @@
-// What is known of a run: its robots, tasks and routes, as the stream tells it. Metres, seconds, radians.
+// What is known of a run: the state of its mission, and what the stream tells beside events. Metres, seconds, radians.
 
 import { Live } from "muster-map/live.js";
 
+import { MissionState, three } from "./mission_state.js";
+
 const OVER = ["ended", "cancelled", "failed"];
 export const FINAL = ["done", "lost", "cancelled"];
-const ALARMING = ["lost", "robot_fails", "robot_silent", "robot_stuck", "contact", "traffic_jam"];
-const CHANGES = ["replanned", "new_task", "cancel_task", "move_task", "delay_task", "robot_joins", "robot_returns", "command", "resumed"];
 const HIGHLIGHT_MS = 12000;
 const ASTRAY_M = 1;
 
@@ -13,10 +13,8 @@ export class Team {
   constructor() {
     this.run = null;
     this.mission = null;
-    this.robots = new Map();
-    this.tasks = new Map();
+    this.state = new MissionState({});
     this.routes = new Map(); // robot -> [[x, y, z], ...]
-    this.leftOut = new Map(); // task -> why no robot has it, by the plan as it is
     this.takenOut = new Map(); // robot -> who took it out
     this.entries = [];
     this.past = 0;
@@ -24,6 +22,10 @@ export class Team {
     this.time = 0;
     this.live = new Live(); // where robots are, and have been
   }
+
+  get robots() { return this.state.robots; }
+
+  get tasks() { return this.state.tasks; }
 
   get over() {
     return this.run !== null && OVER.includes(this.run.state);
@@ -48,30 +50,18 @@ export class Team {
   hear({ run, mission, seq }) {
     this.past = Math.max(this.past, seq); // entries up to here have happened before anybody looked
     this.run = run;
+    if (!this.mission) this.state = new MissionState(mission ?? {});
     this.mission = mission ?? this.mission ?? {}; // of a run that goes on no more nobody tells it again
     this.time = Math.max(this.time, run.time_s ?? 0);
-    for (const robot of this.mission.robots ?? []) this.join(robot);
-    for (const task of this.mission.tasks ?? []) this.add(task);
+    this.makeReady();
   }
 
-  join(robot) {
-    if (this.robots.has(robot.id)) return;
-    const place = three(robot.position ?? [0, 0]);
-    this.robots.set(robot.id, {
-      ...robot,
-      index: this.robots.size,
-      home: place,
-      activity: "idle",
-      out: "",
-      waits_for: [],
-      route: [],
-      available: true,
+  // What a robot does before a status tells it.
+  makeReady() {
+    [...this.robots.values()].forEach((robot, index) => {
+      const { activity = "idle", waits_for: waitsFor = [], available = true } = robot;
+      Object.assign(robot, { index, activity, waits_for: waitsFor, available });
     });
-  }
-
-  add(task) {
-    const known = this.tasks.get(task.id);
-    this.tasks.set(task.id, { state: "open", ...known, ...task, place: known?.place ?? three(task.position) });
   }
 
   move(message) {
@@ -88,37 +78,32 @@ export class Team {
     return this.live.robots.get(robot.id)?.trail ?? [];
   }
 
+  // Of a robot what it does now; what became of it and its tasks, and its route, the state knows by events.
   learn(message) {
-    const { time_s: time, robots = {}, tasks = {} } = message;
+    const { time_s: time, robots = {} } = message;
     this.time = Math.max(this.time, time);
     this.live.status(message);
-    for (const [id, status] of Object.entries(robots)) {
-      if (this.robots.has(id)) Object.assign(this.robots.get(id), status);
-    }
-    for (const [id, state] of Object.entries(tasks)) {
-      if (this.tasks.has(id)) this.tasks.get(id).state = state;
+    for (const [id, { out: outWords, route: _, ...status }] of Object.entries(robots)) {
+      if (this.robots.has(id)) Object.assign(this.robots.get(id), { ...status, outWords });
     }
   }
 
-  log({ seq, time_s: time, kind, data, line }) {
+  log(entry) {
+    const { seq, time_s: time, kind, data } = entry;
     this.time = Math.max(this.time, time);
-    const expected = kind === "lost" && this.tasks.get(data.task)?.state === "cancelled";
-    const hopeless = Object.keys({ ...data.dropped, ...data.left_out }).length > 0;
-    const alarming = (ALARMING.includes(kind) || hopeless) && !expected;
-    this.entries.push({ seq, time, kind, data, line, alarming, change: CHANGES.includes(kind) });
+    this.entries.push({ ...entry, time });
+    this.state.apply(entry);
     if (kind === "plan") this.follow(data);
     if (kind === "command" && data.outcome === "done") this.obey(data);
     if (kind === "robot_returns") this.takenOut.delete(data.robot);
-    if (kind === "new_task" && typeof data.task === "object") this.add(data.task);
-    if (kind === "robot_joins" && typeof data.robot === "object") this.join(data.robot);
-    if (kind === "move_task" && this.tasks.has(data.task)) this.tasks.get(data.task).place = three(data.position);
+    if (kind === "robot_joins") this.makeReady();
     if (kind === "replanned" && seq > this.past) this.mark(data);
   }
 
-  follow({ plan = {}, lines = {} }) {
-    this.routes = new Map(Object.entries(lines).map(([robot, line]) => [robot, line.map(three)]));
-    const why = (reasons = []) => reasons.map(({ robot, detail }) => [robot, detail].filter(Boolean).join(": ")).join("; ");
-    this.leftOut = new Map((plan.unassigned ?? []).map(({ task, reasons }) => [task, why(reasons)]));
+  // The lines of a whole plan, or of robots whose routes have changed.
+  follow({ plan = null, lines = {} }) {
+    if (plan) this.routes.clear();
+    for (const [robot, line] of Object.entries(lines)) this.routes.set(robot, line.map(three));
   }
 
   obey({ who, data }) {
@@ -127,11 +112,11 @@ export class Team {
 
   // Why no robot is to do a task that is open, as the plan is now; null: one is, or it is open no more.
   whyNobody(id) {
-    return this.tasks.get(id)?.state === "open" && this.leftOut.has(id) ? this.leftOut.get(id) : null;
+    return this.tasks.get(id)?.state === "open" ? (this.state.leftOut.get(id) ?? null) : null;
   }
 
   get hopeless() {
-    return [...this.leftOut.keys()].filter((id) => this.whyNobody(id) !== null);
+    return [...this.state.leftOut.keys()].filter((id) => this.whyNobody(id) !== null);
   }
 
   mark({ moved = {}, added = {} }) {
@@ -153,7 +138,7 @@ export class Team {
 
   // How many tasks are in each state.
   counts() {
-    const found = { open: 0, "under way": 0, done: 0, lost: 0, cancelled: 0 };
+    const found = { open: 0, "under way": 0, ...this.state.forgotten };
     for (const task of this.tasks.values()) found[task.state] += 1;
     return found;
   }
@@ -196,8 +181,4 @@ function distance(place, from, to) {
   const share = length && place.reduce((sum, value, k) => sum + (value - from[k]) * along[k], 0) / length;
   const at = Math.min(Math.max(share, 0), 1);
   return Math.hypot(...place.map((value, k) => value - from[k] - at * along[k]));
-}
-
-function three([x, y, z = 0]) {
-  return [x, y, z];
 }

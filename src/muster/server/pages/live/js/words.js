@@ -6,7 +6,8 @@ export const RUN_MARKS = { starting: "…", running: "▶", paused: "❚❚", en
 
 // Why a robot takes no part. `takenOut`: robot -> who took it out; nobody did where it failed of itself.
 export function outOf(robot, takenOut) {
-  return robot.out === "failed" && takenOut.has(robot.id) ? `taken out by ${takenOut.get(robot.id)}` : robot.out;
+  if (robot.out === "robot_fails" && takenOut.has(robot.id)) return `taken out by ${takenOut.get(robot.id)}`;
+  return robot.outWords || "out";
 }
 
 export function doing(robot, takenOut) {

@@ -56,23 +56,23 @@ function drawArea(context, view, { corners, holes }, theme) {
   context.stroke();
 }
 
-// A zone is hatched where nobody may go, and only framed by dashes where some may.
+// A zone is hatched where nobody may go, and only framed by dashes where some may; a door that is open has no ground.
 function drawZone(context, view, zone, theme) {
   context.beginPath();
   trace(context, view, zone.corners);
   context.save();
   context.fillStyle = theme.zone;
   context.globalAlpha = zone.partly ? 0.35 : 0.8;
-  context.fill();
+  if (!zone.open) context.fill();
   context.globalAlpha = 1;
   context.strokeStyle = theme.frame;
   context.lineWidth = 1.3;
-  context.setLineDash(zone.partly ? [6, 4] : []);
+  context.setLineDash(zone.open ? [2, 4] : zone.partly ? [6, 4] : []);
   context.stroke();
   context.clip();
   context.setLineDash([]);
   context.globalAlpha = 0.45;
-  hatch(context, view, zone);
+  if (!zone.open) hatch(context, view, zone);
   context.restore();
 }
 

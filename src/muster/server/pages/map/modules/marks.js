@@ -54,7 +54,7 @@ function drawStem(context, view, [px, py], { x, y }, theme) {
 
 function drawTask(context, x, y, radius, task, stage) {
   const { theme, places, chosen, impossible } = stage;
-  const state = stage.live.tasks.get(task.id) ?? "open";
+  const state = stage.stateOf(task.id) ?? "open";
   const robot = places.robotIndex.get(stage.assigned.get(task.id));
   const color = robot === undefined ? null : robotColor(theme, robot);
   context.globalAlpha = state === "cancelled" ? 0.5 : 1;
@@ -82,7 +82,7 @@ function strike(context, x, y, size, corners, color) {
   context.stroke();
 }
 
-function cross(context, x, y, size, color) {
+export function cross(context, x, y, size, color) {
   strike(context, x, y, size, [[-2.6, -2.6], [2.6, 2.6]], color);
   strike(context, x, y, size, [[-2.6, 2.6], [2.6, -2.6]], color);
 }

@@ -167,6 +167,16 @@ export class Stage {
     return { ...robot, ...(this.live.position(robot.id, now) ?? {}), activity, out };
   }
 
+  // How far a task is, where the mission is under way.
+  stateOf(id) {
+    return this.live.tasks.get(id) ?? null;
+  }
+
+  // Why a station serves nobody; null: it serves.
+  whyNoService() {
+    return null;
+  }
+
   find({ what, id, corner }) {
     if (what === "task") return this.places.tasks.get(id) ?? null;
     if (what === "station") return this.places.stations.get(id) ?? null;

@@ -30,7 +30,8 @@ function toldStation(stage, station) {
   const sign = `[${station.id}]`;
   const who = stage.routes.filter(({ order }) => order?.includes(sign)).map(({ robot }) => robot);
   const served = who.length ? `serves ${who.join(", ")}` : "";
-  return [`station ${station.id}`, station.services.join(", "), slots, place(station), served].filter(Boolean).join("; ");
+  const why = stage.whyNoService(station.id);
+  return [`station ${station.id}`, station.services.join(", "), slots, place(station), why ?? served].filter(Boolean).join("; ");
 }
 
 function toldTask(stage, task) {
@@ -41,7 +42,7 @@ function toldTask(stage, task) {
   if (stage.impossible.has(task.id)) parts.push(stage.whyNot(task));
   if (task.prerequisites.length) parts.push(`after ${task.prerequisites.join(", ")}`);
   if (task.delivers) parts.push(`delivers ${task.delivers}`);
-  const state = stage.live.tasks.get(task.id);
+  const state = stage.stateOf(task.id);
   if (state) parts.push(state);
   return parts.filter(Boolean).join("; ");
 }

@@ -1,10 +1,17 @@
 """A log's entries in words: who did what, and what followed."""
 
+from dataclasses import fields
+from string import Formatter
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.server.runs.log_lines import _DOES, _HAPPENS, line_of
+from muster.mission.events import Event
+from muster.mission.records import specified
+from muster.state.event import KINDS
+from muster.state.task_events import Starts
+from muster.state.words import _DOES, ALARM, CHANGE, DETAIL, SAYS, line_of, mark_of
 
 AT_DOCK = {"robot": "r_0", "station": "dock"}
 
@@ -12,11 +19,33 @@ AT_DOCK = {"robot": "r_0", "station": "dock"}
 @pytest.mark.parametrize(
     ("kind", "data", "line"),
     [
-        ("starts", {"robot": "r_0", "task": "7"}, "r_0 begins 7"),
+        ("starts", {"robot": "r_0", "task": "7"}, "r_0 begins task 7"),
         ("robot_fails", {"robot": "r_0", "reason": "no battery"}, "r_0 is out: no battery"),
         ("new_task", {"task": {"id": "new-1", "position": [1, 2]}}, "task new-1 is added"),
         ("move_task", {"task": "7", "position": [1.0, 2.5]}, "task 7 is moved to 1.00, 2.50"),
-        ("contact", {"robots": ["a", "b"]}, "contact: robots a b"),
+        ("contact", {"robots": ["a", "b"]}, "a, b touch each other"),
+        ("of no kind", {"robots": ["a", "b"], "much": 1.5}, "of no kind: robots a, b, much 1.50"),
+        (
+            "task_refused",
+            {"robot": "a", "task": "7", "reason": "skill: lift", "others": {"8": ["b", "c"]}},
+            "a cannot do task 7: skill: lift; nor can b, c do 8",
+        ),
+        (
+            "standstill",
+            {"task": "7", "words": "waits for 6", "given_up": "window: closes"},
+            "no robot gets on: task 7 waits for 6; it is given up: window: closes",
+        ),
+        (
+            "event_refused",
+            {"event": {"at_s": 3, "cancel_task": "x"}, "reason": "no such task"},
+            "refused: cancels task x: no such task",
+        ),
+        (
+            "load_lies",
+            {"task": "7", "robot": "a", "position": [1.0, 2.0], "load": {}},
+            "what task 7 took on lies at 1.00, 2.00, where a failed",
+        ),
+        ("goes_on", {"robot": "a", "waited_s": {"b": 2.0}}, "a goes on, after 2.0 s for b"),
         ("lost", {"task": "7", "reason": "no robot takes part"}, "task 7 is lost: no robot takes part"),
         ("lost", {"task": "7", "reason": "cancelled at 40.4 s"}, "task 7 is not done: cancelled at 40.4 s"),
         ("goes_to_station", {**AT_DOCK, "charge": 0.5}, "r_0 goes to [dock] (50 % in its battery)"),
@@ -90,30 +119,51 @@ def test_why_it_was_planned_again_and_what_nobody_can_do():
 
 
 @given(
-    st.sampled_from(sorted(_HAPPENS)) | st.text(),
+    st.sampled_from(sorted(kind for kind, says in SAYS.items() if isinstance(says, str))) | st.text(),
     st.dictionaries(
         st.sampled_from(["task", "robot", "position", "reason"]), st.none() | st.text() | st.lists(st.text())
     ),
 )
 def test_whatever_was_asked_for_has_words(kind, data):
     """A command that is refused may hold anything, and is in the log."""
-    assert isinstance(line_of(kind if kind in _HAPPENS else "lost", data), str)
+    assert isinstance(line_of(kind if isinstance(SAYS.get(kind), str) else "no such kind", data), str)
     assert line_of("command", {"who": "ada", "verb": "event", "data": {kind: data}, "outcome": "no"}).startswith("ada ")
     assert line_of("command", {"who": "ada", "verb": "event", "data": {kind: None}, "outcome": "no"}).startswith("ada ")
 
 
-def test_words_name_only_what_there_is():
-    for words in (*_HAPPENS.values(), *_DOES.values()):
-        assert "?" not in words.format(
-            robot="r",
-            task="t",
-            position="p",
-            by_s="1",
-            words="w",
-            waits_for="o",
-            robots="q",
-            door="d",
-            station="s",
-            round="b",
-            makes_room_for="o",
-        )
+def test_words_name_only_fields_that_the_event_has():
+    for kind, cls in KINDS.items():
+        if isinstance(SAYS[kind], str):
+            used = {name for _, name, _, _ in Formatter().parse(SAYS[kind]) if name}
+            assert used <= {field.name for field in fields(cls)}, kind
+
+
+def test_each_event_of_a_mission_file_has_words_for_who_had_it_happen():
+    assert {field.name for field in specified(Event)} - {"at_s"} <= _DOES.keys()
+    for kind, words in _DOES.items():
+        used = {name for _, name, _, _ in Formatter().parse(words) if name}
+        assert used <= {field.name for field in fields(KINDS[kind])} if kind in KINDS else not used, kind
+
+
+@pytest.mark.parametrize(
+    ("kind", "data", "mark"),
+    [
+        ("lost", {"task": "7", "reason": "no robot takes part"}, ALARM),
+        ("lost", {"task": "7", "reason": "cancelled at 4 s"}, ""),
+        ("window_missed", {"task": "7", "reason": "window: closed at 3 s", "next_s": None}, ALARM),
+        ("window_missed", {"task": "7", "reason": "window: closed at 3 s", "next_s": 9.0}, ""),
+        ("replanned", {"moved": {"7": ["a", "b"]}, "dropped": {}, "left_out": {}}, CHANGE),
+        ("replanned", {"moved": {}, "dropped": {"7": "skill"}, "left_out": {}}, ALARM),
+        ("part_ends", {"task": "7", "robot": "a", "usage": [1, 1]}, DETAIL),
+        ("contact", {"robots": ["a", "b"]}, ALARM),
+        ("command", {"verb": "pause"}, CHANGE),
+        ("of no kind", {}, ""),
+    ],
+)
+def test_a_mark_says_who_should_look(kind, data, mark):
+    assert mark_of(kind, data) == mark
+
+
+def test_an_event_is_printed_as_its_time_and_words():
+    assert str(Starts(time_s=3.25, task="7", robot="r_0")) == "3.2 s: r_0 begins task 7"
+    assert str(Starts(task="7", robot="r_0")) == "r_0 begins task 7"
