@@ -98,7 +98,7 @@ def command(
     hover. The exit code is 4 if a drone is armed at the end. Read docs/mavlink.md before the first flight.
     """
     from muster.bridges.mavlink import MavlinkFleet
-    from muster.bridges.mavlink.settings import Settings
+    from muster.bridges.fleet_settings import FlightSettings
     from muster.running.claim_locks import robots_claimed
     from muster.running.robot_claims import claims_of
 

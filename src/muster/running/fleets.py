@@ -74,7 +74,7 @@ def open_ros2(mission: Mission, settings: Mapping[str, Any], halt: threading.Eve
 @claims(mavlink_claims)
 def open_mavlink(mission: Mission, settings: Mapping[str, Any], _halt: threading.Event, again: bool) -> Opened:
     from muster.bridges.mavlink import MavlinkFleet
-    from muster.bridges.mavlink.settings import Settings
+    from muster.bridges.fleet_settings import FlightSettings
 
     endpoints = settings.get("endpoints")
     if not isinstance(endpoints, Mapping):

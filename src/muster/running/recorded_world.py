@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
 from muster.motion.laws import PROFILE
+from muster.motion.noise import CALM, Wind
 from muster.running.worlds import MakeWorld, world_named
 from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
-from muster.simulation.wind import CALM, Wind
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
