@@ -56,7 +56,7 @@ class RosSettings(Settings):
     """Where robots on ROS are, and when they are waited for no longer."""
 
     namespace: str = spec(
-        _Name(r"/?[A-Za-z]\w*(/\w+)*/?", "names such as team or lab/team: letters, digits, _"),
+        _Name(r"/*([A-Za-z]\w*(/\w+)*)?/*", "names such as team or lab/team: letters, digits, _"),
         "namespace that holds those of the robots; empty: the root",
         default="",
         metavar="NAME",

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from muster.bridges.final_state import final_states_of
 from muster.bridges.fleet import Fleet
-from muster.execution import Recorder, Report, Standing, Status, broken_off
+from muster.execution import Recorder, Report, Status, broken_off
 from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
-from muster.planning.options import PlanningOptions
 from muster.running.live import Live, elsewhere, with_reported_starts
+from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.server.runs.crash_recovery import recovered_from
-from muster.traffic.names import DEFAULT
 
 _OF_WORK = ("sets_out", "arrives", "starts", "ends", "goes_to_station", "service_begins", "service_ends")
 LOOK_S = 0.1
@@ -28,14 +28,12 @@ class RealRun:
 
     Parameters
     ----------
+    request
+        how the plan is carried out; by default as `RunRequest` says. A run that resumes keeps its start.
     log
         the log before a crash; empty for a new run.
-    standing
-        of a fleet that stays on duty.
-    traffic
-        who says which robot passes first; see `Simulation`.
-    starts, wall
-        when the mission starts, and the wall clock; see `Live`. A run that resumes keeps its start.
+    wall
+        the wall clock; see `Live`.
     at_end
         called when all tasks are done.
     """
@@ -49,12 +47,8 @@ class RealRun:
         fleet: Fleet,
         recorder: Recorder,
         *,
-        seed: int = 0,
-        planning: PlanningOptions | None = None,
-        standing: Standing | None = None,
-        traffic: str = DEFAULT,
+        request: RunRequest | None = None,
         log: Sequence[Mapping[str, Any]] = (),
-        starts: str = "given",
         wall: Clock | None = None,
         at_end: Callable[[], None] = lambda: None,
     ) -> None:
@@ -67,15 +61,10 @@ class RealRun:
             there,
             found.plan,
             fleet,
-            seed=seed,
-            planning=planning,
-            standing=standing,
-            traffic=traffic,
-            ignore=found.plan.ignored,
+            replace(request or RunRequest(world=OPEN_FLEET), ignore=found.plan.ignored),
             recorder=gauged,
             past=found.past if log else None,
             zero_s=zero_in(log) if log else None,
-            starts=starts,
             wall=wall,
         )
         gauged.live = self._live

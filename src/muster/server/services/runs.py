@@ -9,14 +9,15 @@ from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User
-from muster.mission.errors import MusterError, ParameterError
-from muster.running.robot_claims import claims_as_far_as_known, claims_of
-from muster.running.worlds import WORLDS
+from muster.mission.errors import MusterError
+from muster.running.robot_claims import claims_as_far_as_known, claims_of_request
+from muster.running.run_request import RunRequest
 from muster.server.runs.run_session import TOO_LATE, RunSession
-from muster.server.runs.run_settings import require_action, require_speed, require_world
+from muster.server.runs.run_settings import new_request, require_action
 from muster.server.runs.subscribers import Subscribers
 from muster.server.runs.unsaved_actions import unsaved_action
 from muster.server.services.actions import Actions, Refused, ignore_refusal, outcome_of
@@ -29,6 +30,7 @@ from muster.server.work.temporary_folders import OF_RUNS, sweep
 if TYPE_CHECKING:
     from muster.server.store.store import Store
 
+NO_SETTINGS: Mapping[str, Any] = MappingProxyType({})
 PATIENCE_S = 0.7
 """Seconds that a command to a run waits for the database; it takes effect then in any case."""
 
@@ -71,9 +73,9 @@ class Runs:
         plan: int,
         world: str = "kinematic",
         speed: float | None = 1.0,
+        settings: Mapping[str, Any] = NO_SETTINGS,
         *,
         request: RequestKey | None = None,
-        **settings: Any,
     ) -> Run:
         """Start to carry out a plan. A repeated request returns the run of the first.
 
@@ -101,11 +103,8 @@ class Runs:
     ) -> Run:
         asked = {"plan": plan, "world": world, "speed": speed, "settings": settings}
         async with self._written_if_refused(who, "run.start", asked):
-            require_world(world, self._settings.bridges, settings)
-            speed = require_speed(speed)
-            if world not in WORLDS and speed != 1.0:
-                raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
-            claims = await asyncio.to_thread(claims_of, world, settings)  # which may load a package
+            asked_for, claims = await asyncio.to_thread(self._asked, world, speed, settings)
+            speed = 1.0 if asked_for.is_real else asked_for.speed
             self._require_unclaimed(claims)
             if self.under_way + len(self._beginning) >= self._settings.runs:
                 raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
@@ -115,6 +114,11 @@ class Runs:
                 return self._open_session(run).run
             finally:
                 self._beginning.remove(claims)
+
+    def _asked(self, world: str, speed: float | None, settings: Mapping[str, Any]) -> tuple[RunRequest, frozenset[str]]:
+        """The request of a run, and the robots that it claims; this may load the package of a fleet."""
+        request = new_request(world, self._settings.bridges, settings, speed)
+        return request, claims_of_request(request)
 
     async def list(self, limit: int = 200) -> Sequence[Run]:
         """Runs, newest first."""
