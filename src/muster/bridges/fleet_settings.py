@@ -39,7 +39,7 @@ class _Name:
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         """See `Kind`."""
-        fits = isinstance(value, str) and (not value or re.fullmatch(self.pattern, value))
+        fits = isinstance(value, str) and (not value or re.fullmatch(self.pattern, value, re.ASCII))
         return value if fits else refuse(self, value, at, faults)
 
     def schema(self) -> JsonSchema:

@@ -85,7 +85,8 @@ class LocalBackend:
             on_line(event.time_s, event_line(event.kind, event.data))
 
         with ctrl_c_halts() as halt:
+            on_event = None if on_line is None else report
             # What is accepted of a plan is the verb's to check.
-            how = {"accept_partial": True, "halt": halt, "on_event": None if on_line is None else report}
-            outcome = simulated(mission, plan, replace(request, **how))
+            here = replace(request, accept_partial=True, halt=halt, on_event=on_event)
+            outcome = simulated(mission, plan, here)
         return outcome, outcome.mission_time_s if halt.is_set() else None

@@ -20,7 +20,7 @@ from muster.cli.options import Verb
 from muster.mission.errors import ParameterError
 from muster.mission.field_help import unit_of
 from muster.mission.order_files import OrderFile
-from muster.mission.records import Record, Settings, key_of, specified
+from muster.mission.records import Checked, Record, Settings, key_of, specified
 from muster.mission.value_types import FLAGS, Choice, Flag, Kind, Many, Table
 from muster.running.request_kinds import ByRobot, Orders, Sensors
 
@@ -95,7 +95,7 @@ def _unit_in_name(f: Field[Any]) -> bool:
     return not f.metadata["unit"] and bool(unit_of(f))
 
 
-def _with_options(of: type[Settings]) -> Iterator[Field[Any]]:
+def _with_options(of: type[Checked]) -> Iterator[Field[Any]]:
     return (f for f in specified(of) if f.metadata.get("option") != "")
 
 
@@ -135,7 +135,8 @@ def _help(f: Field[Any]) -> str:
 
 
 def _shown(f: Field[Any]) -> str:
-    value = 100 * f.default if isinstance(f.metadata["kind"], Share) else f.default
+    default: Any = f.default
+    value = 100 * default if isinstance(f.metadata["kind"], Share) else default
     return value if isinstance(value, str) else f"{value:g}"
 
 

@@ -166,7 +166,7 @@ def _request(asked: _Asked, options: PlanningOptions, how: Mapping[str, Any]) ->
     """The request of the run; what is wrong with it is said before anything is read."""
     if "speed" not in how and (asked.negotiate or asked.foxglove is not None):
         how = {**how, "speed": 1.0}
-    rules = {} if asked.negotiate else {"ignore": options.ignore, "planning": options}
+    rules: dict[str, Any] = {} if asked.negotiate else {"ignore": options.ignore, "planning": options}
     return ObservedRun(**how, seed=options.seed, **rules)
 
 

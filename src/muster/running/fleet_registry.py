@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Collection, Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from muster.bridges.fleet import Fleet
 from muster.mission.errors import ParameterError, PluginError
 from muster.mission.keywords import require_known
-from muster.mission.model import Mission
 from muster.mission.plugins import Registry, function_expected
 from muster.mission.records import Record, Settings, key_of, specified
 from muster.mission.value_types import Fault, shown
 
-Opened = tuple[Fleet, Callable[[], None]]
+if TYPE_CHECKING:
+    from muster.bridges.fleet import Fleet
+    from muster.mission.model import Mission
+
+Opened = tuple["Fleet", Callable[[], None]]
 """Robots that are ready, and what to call when all is done."""
-OpenFleet = Callable[[Mission, Any, threading.Event, bool], Opened]
+OpenFleet = Callable[["Mission", Any, threading.Event, bool], Opened]
 """Opens a fleet: the mission, the settings of the run, an event that ends waiting, whether the run goes on."""
 Claims = Callable[[Any], Iterable[str]]
 """Returns what a run with some settings claims: words for robots, the same for the same robots."""

@@ -22,7 +22,11 @@ if TYPE_CHECKING:
     from muster.simulation import SimulatedWorld
 
 P = ParamSpec("P")
-Q, R, A, B, C = TypeVar("Q"), TypeVar("R"), TypeVar("A"), TypeVar("B"), TypeVar("C")
+Q = TypeVar("Q")
+R = TypeVar("R")
+A = TypeVar("A")
+B = TypeVar("B")
+C = TypeVar("C")
 
 
 @record

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections import ChainMap
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from muster.mission.errors import ParameterError
 from muster.mission.keywords import require_known
@@ -84,7 +84,7 @@ class RunRequest(Settings):
     law: str = spec(Choice(LAWS), "how robots move", default=PROFILE, counts=SIMULATED)
     dt_s: float = spec(Number(minimum=0.001, maximum=1.0), "step of the world", default=0.1, counts=SIMULATED)
     speed: float | None = spec(
-        Number(above=0.0, maximum=1e6),
+        Number(minimum=0.001, maximum=1e6),
         "times real time; as fast as it goes without it",
         default=None,
         metavar="X",
@@ -166,7 +166,7 @@ class RunRequest(Settings):
     )
 
     @classmethod
-    def from_settings(cls, world: str, settings: Mapping[str, Any], speed: float | None = None) -> RunRequest:
+    def from_settings(cls, world: str, settings: Mapping[str, Any], speed: float | None = None) -> Self:
         """Return the request of settings as the API and the database hold them: a fleet's own beside all others.
 
         Raises

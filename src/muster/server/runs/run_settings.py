@@ -12,6 +12,7 @@ from muster.mission.near_matches import did_you_mean
 from muster.mission.order_files import OF_TASKS
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
+from muster.running.fleet_registry import FLEETS
 from muster.running.run_request import RunRequest
 from muster.running.worlds import WORLDS
 
@@ -21,7 +22,9 @@ MOST_ORDERS = 1000
 _FASTEST = 1e6
 
 
-def new_request(world: str, bridges: Sequence[str], settings: Mapping[str, Any], speed: object = None) -> RunRequest:
+def new_request(
+    world: str, bridges: Sequence[str], settings: Mapping[str, Any], speed: float | None = None
+) -> RunRequest:
     """Return the request of a run that a user asks for.
 
     Raises
@@ -29,8 +32,10 @@ def new_request(world: str, bridges: Sequence[str], settings: Mapping[str, Any],
     MusterError
         if a server does not start such runs, or a setting is wrong.
     """
-    _require_choice("world", world, (*WORLDS, *bridges))
-    request = RunRequest.from_settings(world, settings, require_speed(speed) if world in WORLDS else None)
+    if world in FLEETS and world not in bridges:
+        lacks = f"muster serve has no --bridge {world}"
+        raise ParameterError(f"world: {world}; expected {', '.join((*WORLDS, *bridges))}: {lacks}")
+    request = RunRequest.from_settings(world, settings, speed if world in WORLDS else None)
     if request.is_real and speed not in (None, 1.0):
         raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
     given = len(settings.get("orders", ()))

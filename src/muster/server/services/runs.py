@@ -9,7 +9,6 @@ from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User
@@ -30,7 +29,6 @@ from muster.server.work.temporary_folders import OF_RUNS, sweep
 if TYPE_CHECKING:
     from muster.server.store.store import Store
 
-NO_SETTINGS: Mapping[str, Any] = MappingProxyType({})
 PATIENCE_S = 0.7
 """Seconds that a command to a run waits for the database; it takes effect then in any case."""
 
@@ -73,7 +71,7 @@ class Runs:
         plan: int,
         world: str = "kinematic",
         speed: float | None = 1.0,
-        settings: Mapping[str, Any] = NO_SETTINGS,
+        settings: Mapping[str, Any] | None = None,
         *,
         request: RequestKey | None = None,
     ) -> Run:
@@ -89,7 +87,7 @@ class Runs:
         BusyError
             if the most runs are under way.
         """
-        start = partial(self._start, who, plan, world, speed, settings, request)
+        start = partial(self._start, who, plan, world, speed, dict(settings or {}), request)
         return await made_once(self._store, request, start, self.get)
 
     async def _start(
