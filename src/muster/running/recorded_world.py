@@ -7,6 +7,8 @@ from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
+from muster.mission.value_types import shown
+from muster.mission.yaml_writer import plain
 from muster.motion.laws import PROFILE
 from muster.motion.noise import CALM
 from muster.running.worlds import MakeWorld, world_named
@@ -53,7 +55,7 @@ def _taken(make: MakeWorld, option: str, value: Any, expected: str) -> Any:
     """The value, if the world takes the option."""
     taken = signature(make).parameters
     if option not in taken and not any(parameter.kind is Parameter.VAR_KEYWORD for parameter in taken.values()):
-        raise ParameterError(f"{option}: {value}; {expected}")
+        raise ParameterError(f"{option}: {shown(plain(value))}; {expected}")
     return value
 
 
