@@ -135,13 +135,14 @@ def test_a_simulation_is_as_here(plan, muster, url):
     assert "search has no parameter hott" in err
 
 
-def test_conditions_of_a_run_are_those_of_the_command(plan, muster, url):
-    orders = {"at_s": 1.0, "new_task": {"id": "ordered", "type": "D", "position": [2, 2]}}
-    Path("orders.jsonl").write_text(json.dumps(orders), encoding="utf-8")
-    how = ("--noise", "slip=0.05", "--drain", "2", "--battery", "all=0.9", "--orders", "orders.jsonl", "--dt", 0.2)
-    short = ("simulate", "31T-6R50", "--iterations", 5, *how, "--format", "json", "-q")
-    here, there = (json.loads(muster(*short, *more)[1]) for more in ((), ("--server", url)))
-    assert "ordered" in here["tasks_done"]
+@pytest.mark.parametrize("more", [("--drain", "1.1"), pytest.param(("--orders", "o.jsonl"), marks=pytest.mark.long)])
+def test_conditions_of_a_run_are_those_of_the_command(folder, muster, url, more):
+    order = {"at_s": 1.0, "new_task": {"id": "ordered", "type": "D", "position": [2, 2]}}
+    Path("o.jsonl").write_text(json.dumps(order), encoding="utf-8")
+    how = ("--noise", "slip=0.05", "--battery", "all=1", "--dt", 0.2, *more)
+    call = ("simulate", "31T-6R50", "--iterations", 5, *how, "--format", "json", "-q")
+    here, there = (json.loads(muster(*call, *server)[1]) for server in ((), ("--server", url)))
+    assert ("ordered" in here["tasks_done"]) == ("--orders" in more)
     assert there["tasks_done"] == here["tasks_done"]
     for one, other in zip(there["robots"], here["robots"], strict=True):
         assert one["charge"] == pytest.approx(other["charge"])
