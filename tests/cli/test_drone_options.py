@@ -49,7 +49,7 @@ def test_options_become_fields(asked):
         (("--battery", "r_0=x"), 'batteries.r_0: "x"; expected a finite number, at least 0 and at most 1'),
         (("--battery", "r_0=1", "--battery", "r_0=0.5"), "--battery: r_0=0.5; expected ROBOT=SHARE, each name at most"),
         (("--drain", "x"), 'drain.all: "x"; expected a finite number, above 0'),
-        (("--drain", "r_0=1", "--drain", "r_0=2"), "--drain: r_0=2; expected ROBOT=FACTOR, each name at most once"),
+        (("--drain", "r_0=1", "--drain", "r_0=2"), "--drain: r_0=2; expected [ROBOT=]FACTOR, each name at most once"),
     ],
 )
 def test_conditions_that_are_none_are_refused(asked, capsys, options, message):

@@ -351,6 +351,13 @@ def test_a_fleet_carries_no_robots_of_a_kind_that_it_does_not_have(acme):
         muster.carry_out(flies, muster.solve(flies, "greedy"), "acme", settings={"url": "x"})
 
 
+def test_no_robot_joins_a_fleet_that_does_not_let_robots_join(acme):
+    joins = Event(at_s=1.0, robot_joins=Robot(id="new", position=(0.0, 9.0)))
+    there = replace(a_mission_for_fleets(), events=(joins,))
+    with pytest.raises(MusterError, match='robot "new": joins; expected none: no robot joins fleet acme'):
+        muster.carry_out(there, muster.solve(there, "greedy"), "acme", settings={"url": "x"})
+
+
 def test_no_fleet_of_that_name(for_fleets, capsys):
     _, _, call = for_fleets
     assert run([*call, "--fleet", "ros3"]) == 2

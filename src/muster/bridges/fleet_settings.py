@@ -61,7 +61,7 @@ class RosSettings(Settings):
         default="",
         metavar="NAME",
     )
-    wait_s: float = spec(_WAIT, "seconds to wait for the mission's robots", default=10.0)
+    wait_s: float = spec(_WAIT, "how long the mission's robots are waited for", default=10.0)
     known_only: bool = spec(Flag(), "robots that the mission does not name do not join", default=False)
 
 
@@ -156,7 +156,7 @@ class FlightSettings(Settings):
         Share(above=0.0, below=1.0), "battery level below which a drone returns", unit="share", default=0.25
     )
     link_lost_s: float = spec(
-        Number(above=0.0), "seconds without a heartbeat after which the link counts as lost", default=5.0, option=""
+        Number(above=0.0), "time without a heartbeat after which the link counts as lost", default=5.0, option=""
     )
     far_m: float = spec(
         Number(above=0.0), "how far from its start in the mission a drone may stand", default=20.0, option=""
@@ -169,14 +169,14 @@ class MavlinkSettings(FlightSettings):
 
     endpoints: Mapping[str, str] = spec(
         Table(Text(), "a mapping from each robot to its endpoint, such as udp:0.0.0.0:14550"),
-        "udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM after it, of several on it",
+        "how each robot is reached: udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM after it, of several on it",
         option="--endpoint",
         metavar="ROBOT=ENDPOINT",
     )
     height_m: float | None = spec(
         Number(minimum=0.5, maximum=500.0), "height of flight above home, for a mission in the plane", default=None
     )
-    wait_s: float = spec(_WAIT, "seconds to wait for drones to answer", default=10.0)
+    wait_s: float = spec(_WAIT, "how long answers of drones are waited for", default=10.0)
     at_end: Literal["hold", "return", "land"] = spec(
         Choice(("hold", "return", "land")),
         "what drones do when all is done; return and land wait until they have landed",

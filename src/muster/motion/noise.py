@@ -112,7 +112,11 @@ class Wind(Settings):
     """
 
     velocity_mps: tuple[float, float, float] = spec(
-        _Velocity(), "velocity of the air: east, north, up", default=(0.0, 0.0, 0.0), option="--wind"
+        _Velocity(),
+        "velocity of the air: east, north, up",
+        default=(0.0, 0.0, 0.0),
+        option="--wind",
+        metavar="EAST,NORTH[,UP]",
     )
     gusts_mps: float = spec(
         _AMOUNT,

@@ -102,7 +102,7 @@ def checked_settings(fleet: str, given: object) -> Any:
 
 
 def require_able(fleet: str, mission: Mission) -> None:
-    """Raise `ParameterError` if a mission has a robot of a kind that a fleet does not carry."""
+    """Raise `ParameterError` if a mission has robots, or lets robots join, that a fleet does not carry."""
     able = getattr(FLEETS.named(fleet), "abilities", ABILITIES)
     for robot in mission.robots:
         if robot.kind not in able:
@@ -110,3 +110,7 @@ def require_able(fleet: str, mission: Mission) -> None:
             raise ParameterError(
                 f"robot {shown(robot.id)}: kind {robot.kind}; expected {kinds}: fleet {fleet} has no others"
             )
+    if mission.newcomers and JOINS not in able:
+        raise ParameterError(
+            f"robot {shown(mission.newcomers[0].id)}: joins; expected none: no robot joins fleet {fleet}"
+        )

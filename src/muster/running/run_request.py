@@ -63,7 +63,7 @@ class RunRequest(Settings):
 
     world: str = spec(
         _World(ChainMap(FLEETS, WORLDS)),  # type: ignore[arg-type]
-        "kinematic, physics, or a world of an installed package",
+        "the world: kinematic, physics, or one of an installed package",
         default="kinematic",
         metavar="WORLD",
         counts=SIMULATED,
@@ -85,7 +85,7 @@ class RunRequest(Settings):
     dt_s: float = spec(Number(minimum=0.001, maximum=1.0), "step of the world", default=0.1, counts=SIMULATED)
     speed: float | None = spec(
         Number(minimum=0.001, maximum=1e6),
-        "times real time; as fast as it goes without it",
+        "times real time; the run is as fast as possible without it",
         default=None,
         metavar="X",
         counts=SIMULATED,
@@ -98,10 +98,10 @@ class RunRequest(Settings):
         metavar="KIND=AMOUNT",
         counts=SIMULATED,
     )
-    stay: bool = spec(Flag(), "stay on duty when all tasks are done, until --until or Ctrl-C", default=False)
+    stay: bool = spec(Flag(), "stay on duty when all tasks are done, until the duty ends or Ctrl-C", default=False)
     until_s: float | None = spec(
         Number(minimum=0.0),
-        "with --stay: take orders for so many seconds, then end what is open",
+        "end of the duty of a fleet that stays: later orders are not taken, and what is open is ended",
         default=None,
     )
     orders: Iterable[Event] = spec(
@@ -112,11 +112,15 @@ class RunRequest(Settings):
     )
     wind: Wind = spec(Record(Wind, "a mapping"), "wind in which drones fly", default=CALM, counts=SIMULATED)
     rotor_level: bool = spec(
-        Flag(), "drones rotor by rotor, in the physics world", default=False, option="--rotors", counts=SIMULATED
+        Flag(),
+        "simulate drones rotor by rotor, in the physics world",
+        default=False,
+        option="--rotors",
+        counts=SIMULATED,
     )
     batteries: Mapping[str, float] | None = spec(
         ByRobot(Number(minimum=0.0, maximum=1.0), "shares of full batteries by robot, or for `all`"),
-        "a battery that begins with this share, 0 to 1; `all` for every robot",
+        "shares, 0 to 1, of full batteries with which robots begin, by robot or for `all`",
         default=None,
         option="--battery",
         metavar="ROBOT=SHARE",
@@ -124,14 +128,14 @@ class RunRequest(Settings):
     )
     drain: Mapping[str, float] | None = spec(
         ByRobot(Number(above=0.0), "factors by robot, or for `all`", all_alone=True),
-        "a battery that drains so many times as fast as by usage; FACTOR alone for every robot",
+        "how many times as fast as by usage batteries drain, by robot or for `all`",
         default=None,
-        metavar="ROBOT=FACTOR",
+        metavar="[ROBOT=]FACTOR",
         counts=SIMULATED,
     )
     pose: str | None = spec(
         Choice(POSES),
-        "what robots steer by; estimate with sensors or noise of poses or odometry, else true, without it",
+        "what robots steer by; without it estimate where sensors are named or poses or odometry have noise, else true",
         default=None,
         counts=SIMULATED,
     )
@@ -145,13 +149,13 @@ class RunRequest(Settings):
     )
     starts: str = spec(
         Choice(STARTS),
-        "given: the mission starts at its starts_at; now: when robots are ready, with all its times shifted",
+        "when the mission starts: given, at its starts_at; now, when robots are ready, with all its times shifted",
         default="given",
         counts=REAL,
     )
     accept_partial: bool = spec(
         Flag(),
-        "accept a plan that the time limit cut short; else it is not carried out, and the exit code is 3",
+        "accept a plan that the time limit cut short; else it is not carried out",
         default=False,
     )
     seed: int = spec(Whole(maximum=LARGEST_SEED), "seed of the world and of planning again", default=0, option="")
