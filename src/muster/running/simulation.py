@@ -32,13 +32,14 @@ from muster.running.run_request import RunRequest
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
 from muster.simulation import NO_NOISE, SimulatedWorld
+from muster.state import OtherEvent
 from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
-    from muster.execution.record import ExecutionEvent
     from muster.execution.report import Report
     from muster.execution.standing import EventLog
+    from muster.state import ExecutionEvent
 
 OnWorld = Callable[[SimulatedWorld], None]
 LOOK_S = 0.5
@@ -196,7 +197,7 @@ class Simulation:
 
     def note_lag(self, seconds: float) -> None:
         """Note, for the report, by how much the mission's clock is behind the wall clock that it goes by."""
-        self._executor.orders.clock_lag.add(seconds)
+        self._executor.clock_lag.add(seconds)
 
     def replan(self) -> None:
         """Plan the rest again at once if events that were reported ask for that, and send robots on."""
@@ -249,7 +250,7 @@ class Simulation:
             return
         for found, event in self._camera_search.look(self.time_s):
             self._executor.set_clock(self.time_s)
-            self._executor.emit("found", found)
+            self._executor.emit(OtherEvent(kind="found", content=found))
             if event is None or not (event.new_task or self._is_open(event)):
                 continue
             if not self._executor.report_if_it_fits(event) and event.new_task is not None:

@@ -19,10 +19,10 @@ from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.report.record.json_messages import json_bytes
-from muster.report.record.mission_state import KEPT_OVER, MissionState
 from muster.report.record.routes import RouteLines
 from muster.server.runs.log_lines import line_of
 from muster.server.runs.tracks import Floats, Row, Steps, Track, packed
+from muster.state import MissionState, event_of
 
 RESUMED = "resumed"
 
@@ -69,7 +69,7 @@ class LogRecorder:
     ) -> None:
         entries = list(log)
         self._out = out
-        self._mission_state = MissionState(mission, KEPT_OVER)
+        self._mission_state = MissionState(mission)
         self._routes = RouteLines(mission)
         self._said = deque(entries if again else ())
         self._seq = 0 if again or not entries else int(entries[-1]["seq"])
@@ -81,7 +81,7 @@ class LogRecorder:
         self.rows_s = 0.0
         for entry in entries if not again else ():
             if entry["kind"] not in (RESUMED, "plan", "command", "report"):
-                self._mission_state.take(entry["kind"], entry["data"])
+                self._mission_state.apply(event_of(entry["time_s"], entry["kind"], entry["data"]))
 
     def keep_robots(self, robots: Collection[str]) -> None:
         """Forget all other robots: those that joined before a crash and cannot be reached join again."""
@@ -105,7 +105,7 @@ class LogRecorder:
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         """See `Recorder`."""
-        self._mission_state.take(kind, data)
+        self._mission_state.apply(event_of(now, kind, data))
         self.write(now, kind, data)
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:

@@ -12,13 +12,11 @@ from muster.execution import Recorder, Report, Status, broken_off
 from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.grid import Floats
-from muster.motion.port import Telemetry
 from muster.running.live import Live, elsewhere, with_reported_starts
 from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.server.runs.crash_recovery import recovered_from
+from muster.state.robot_events import Elsewhere, FinalStates
 
-_OF_WORK = ("sets_out", "arrives", "starts", "ends", "goes_to_station", "service_begins", "service_ends")
 LOOK_S = 0.1
 """Seconds between two looks at the robots, where nothing is heard before."""
 
@@ -54,25 +52,19 @@ class RealRun:
     ) -> None:
         self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
         self._paused = False
-        found = recovered_from(mission, plan, log, fleet.ports)
-        there = with_reported_starts(found.mission, fleet)
-        gauged = _Gauged(recorder)
+        state = recovered_from(mission, plan, log) if log else None
+        there = mission if log else with_reported_starts(mission, fleet)
         self._live = Live(
             there,
-            found.plan,
+            plan,
             fleet,
-            replace(request or RunRequest(world=OPEN_FLEET), ignore=found.plan.ignored),
-            recorder=gauged,
-            past=found.past if log else None,
-            zero_s=zero_in(log) if log else None,
+            replace(request or RunRequest(world=OPEN_FLEET), ignore=plan.ignored),
+            recorder=recorder,
+            state=state,
             wall=wall,
         )
-        gauged.live = self._live
-        if log:
-            self._live.executor.plan_again("resumed", {"how": "from where robots stand"})
-        else:
-            for line in elsewhere(mission, there):
-                self._live.executor.emit("elsewhere", {"what": line})
+        for line in () if log else elsewhere(mission, there):
+            self._live.executor.emit(Elsewhere(what=line))
 
     @property
     def starts_at(self) -> str | None:
@@ -131,7 +123,7 @@ class RealRun:
         """Log where each robot is at the end, what it does, and whether it still flies, drives or is armed."""
         states = final_states_of(self._fleet, self._live.start.mission)
         robots = [{"robot": one.robot, "moving": one.moving, "words": str(one)} for one in states]
-        self._live.executor.emit("final_states", {"robots": robots})
+        self._live.executor.emit(FinalStates(robots=tuple(robots)))
 
     def pause(self) -> None:
         self._live.pause()
@@ -147,36 +139,3 @@ class RealRun:
             self._fleet.stop()
         finally:
             self._fleet.close()
-
-
-def zero_in(log: Sequence[Mapping[str, Any]]) -> float | None:
-    """Return when the clock of a run was 0, seconds since 1970; None if its log does not say so."""
-    return next((float(entry["data"]["zero_s"]) for entry in log if "zero_s" in entry["data"]), None)
-
-
-class _Gauged:
-    """A recorder that adds the robots' usage to events, so that the log alone is enough for recovery."""
-
-    def __init__(self, recorder: Recorder) -> None:
-        self._recorder = recorder
-        self.live: Live | None = None
-
-    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        if kind in _OF_WORK and self.live is not None:
-            data = {**data, "used": self.live.executor.crew[data["robot"]].used}
-            if kind == "ends":
-                ledger, task = self.live.executor.ledger, data["task"]
-                data |= {"usage": list(ledger.usage[task]), "arrival_usage": ledger.arrival_usage[task]}
-        self._recorder.on_event(now, kind, data)
-
-    def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
-        self._recorder.on_telemetry(now, robot, telemetry)
-
-    def on_plan(self, now: float, plan: Plan) -> None:
-        self._recorder.on_plan(now, plan)
-
-    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
-        self._recorder.on_step(now, positions, headings, velocities)
-
-    def on_report(self, report: dict[str, Any]) -> None:
-        self._recorder.on_report(report)

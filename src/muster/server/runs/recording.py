@@ -18,10 +18,10 @@ from muster.mission.model import Mission
 from muster.mission.plan_reader import plan_from
 from muster.report.page.page import page_text
 from muster.report.record import Recording, RecordWriter, read_record
-from muster.report.record.mission_state import MissionState
 from muster.server.runs.exports import EXPORTS
 from muster.server.runs.tracks import VALUES, Steps, unpacked
 from muster.server.work.missions import mission_of
+from muster.state import MissionState, event_of
 
 Logged = Mapping[str, Any]
 """An entry: `time_s`, `kind`, `data`."""
@@ -53,7 +53,7 @@ def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) 
 
 def write_record(file: Path, mission: Mission, log: Sequence[Logged], stretches: Sequence[Steps]) -> None:
     """Pass a run's log and tracks to a recorder in the order of time, steps before events."""
-    mission_state, steps = MissionState(mission), _steps(stretches)
+    mission_state, steps = MissionState(mission, forgets=False), _steps(stretches)
     with RecordWriter(file, mission) as writer:
         step = next(steps, None)
         for entry in log:
@@ -62,7 +62,7 @@ def write_record(file: Path, mission: Mission, log: Sequence[Logged], stretches:
                 step = next(steps, None)
             _tell(writer, entry)
             if entry["kind"] not in _OURS:
-                mission_state.take(entry["kind"], entry["data"])
+                mission_state.apply(event_of(entry["time_s"], entry["kind"], entry["data"]))
         while step is not None:
             _tell_step(writer, list(mission_state.robots), *step)
             step = next(steps, None)
@@ -95,7 +95,7 @@ def flown(recording: Recording) -> dict[str, Any]:
             for row in told.get("tasks", ())
         ],
         "tasks_lost": told.get("tasks_lost", []),
-        "states": dict(recording.outcome.states),
+        "states": recording.outcome.stages,
         "planned": dict(recording.plans[0].lines) if recording.plans else {},
         "tracks": ways,
     }
