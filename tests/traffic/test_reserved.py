@@ -38,5 +38,5 @@ def test_it_is_the_same_again():
 
 def test_an_unknown_manager_is_refused():
     mission = scenes.pair("holonomic", 0)
-    with pytest.raises(ParameterError, match="\"reserv\"; expected auto, free, reserve; did you mean 'reserve'"):
+    with pytest.raises(ParameterError, match="\"reserv\"; expected auto or free or reserve; did you mean 'reserve'"):
         Simulation(mission, solve(mission, "greedy"), traffic="reserv")

@@ -35,7 +35,6 @@ from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
-from muster.traffic.names import DEFAULT
 
 _ENDS_WITHIN_S = 30.0
 """Seconds within which another run of the same robots, which is over, tells them to stand and ends."""
@@ -129,24 +128,12 @@ def _world_run(
         return SimulatedRun(mission, plan, begin["world"], settings, recorder)
     from muster.running.fleets import fleet_ready
     from muster.server.runs.real_run import RealRun
-    from muster.server.runs.run_settings import standing_of
-    from muster.server.work.tasks.check_request import checked_options
+    from muster.server.runs.run_settings import request_of
 
-    fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
+    request = request_of(begin["world"], settings, plan)
+    fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=bool(log))
     try:
-        run = RealRun(
-            mission,
-            plan,
-            fleet,
-            recorder,
-            seed=settings.get("seed", 0),
-            planning=checked_options(settings.get("planning", {})),
-            standing=standing_of(settings),
-            traffic=settings.get("traffic", DEFAULT),
-            log=log,
-            starts=settings.get("starts", "given"),
-            at_end=at_end,
-        )
+        run = RealRun(mission, plan, fleet, recorder, request=request, log=log, at_end=at_end)
         recorder.keep_robots(run.robots)
         return run
     except BaseException:

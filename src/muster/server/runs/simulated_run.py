@@ -6,7 +6,6 @@ crash it is simulated again up to where the log reaches, and goes on.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,9 +13,7 @@ from muster.execution import Recorder, Report, Status
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.running.simulation import Simulation
-from muster.server.runs.run_settings import standing_of
-from muster.server.work.tasks.check_request import checked_options
-from muster.simulation import Noise
+from muster.server.runs.run_settings import request_of
 
 QUANTUM_S = 0.1
 """Seconds of mission time between two moments at which users can have a say."""
@@ -30,13 +27,7 @@ class SimulatedRun:
     def __init__(
         self, mission: Mission, plan: Plan, world: str, settings: Mapping[str, Any], recorder: Recorder
     ) -> None:
-        how = dict(settings)
-        noise = Noise(**how.pop("noise", {}))
-        how["standing"] = standing_of({"stay": how.pop("stay", False), "until_s": how.pop("until_s", math.inf)})
-        how["ignore"] = plan.ignored
-        how.pop("accept_partial", None)  # the plan was accepted
-        how["planning"] = checked_options(how.get("planning", {}))
-        self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)
+        self._simulation = Simulation(mission, plan, request_of(world, settings, plan), recorder=recorder)
         self._quanta = 0
         self.starts_at = mission.starts_at
 
