@@ -7,6 +7,7 @@ from muster_studies.auction_5.paths import Paths, Positions
 from muster_studies.auction_5.pictures import FIGURES
 from muster_studies.auction_5.rounds import Bids, SubmittedBids
 from muster_studies.auction_5.teams import SCENARIO_1, SCENARIO_2, SCENARIO_3, SCENARIO_3_LEAST_CONTESTED
+from muster_studies.descriptions import description
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 
 _NOT_AS_DESCRIBED = (
@@ -45,22 +46,8 @@ _TABLES: tuple[Reproduction[Auction, AuctionResult], ...] = (
     SCENARIO_3_LEAST_CONTESTED,
 )
 
-_LEGEND = (
-    "MiniSum, MiniMax and MiniAve are the bids total, max and average. append: a task goes to the end of the path; "
-    "insert: to where the path grows least. The lowest bid wins, unless a title says otherwise.",
-    "Own bids are those of the auction's book; with the one decimal that the thesis prints here, in full in the data. "
-    "-: no bid (-1 in the thesis).",
-    "Lengths in metres, those of published paths too, are recomputed by muster.verify. total: of all paths; max: of "
-    "the longest; average: of the way to a task.",
-    "done: tasks completed; most: tasks of the drone that has most; idle: drones without tasks; ms: processor time of "
-    "the allocator.",
-)
-
 AUCTION_5 = Repetition(
-    name="auction-5",
-    summary="sequential auction of tasks among drones, auction thesis, chapter 5",
-    document="auction thesis, chapter 5",
-    legend=_LEGEND,
+    **description("auction-5"),
     reproductions=_TABLES,
     perform=one_by_one(hold),
     seeds=lambda _: None,

@@ -8,6 +8,7 @@ from statistics import fmean
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
 from muster_studies.peers.contest import (
@@ -100,9 +101,7 @@ def peers_study(limits: Limits | None = None) -> Repetition[Run, Result]:
     `limits` take the place of the usual ones.
     """
     return Repetition(
-        name="peers",
-        summary="search against OR-Tools, PyVRP and VROOM at equal time",
-        document="search against solvers from elsewhere",
+        **description("peers"),
         reproductions=tuple(Comparison(number=number, limits=limits) for number in (*OBJECTIVES, LARGE)),
         perform=one_by_one(undisturbed),
         seeds=_seeds,
