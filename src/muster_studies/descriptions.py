@@ -35,10 +35,11 @@ class _Study(msgspec.Struct, forbid_unknown_fields=True):
     figures: dict[str, _Caption] = {}
 
 
-def description(study: str) -> Description:
-    """Return the words of a study, by its name."""
+def description(study: str, legend: tuple[str, ...] = ()) -> Description:
+    """Return the words of a study, by its name; `legend` follows the lines that the file has."""
     words = _studies()[study]
-    return {"name": study, "summary": words.summary, "document": words.document, "legend": words.legend}
+    lines = (*words.legend, *legend)
+    return {"name": study, "summary": words.summary, "document": words.document, "legend": lines}
 
 
 def captioned(study: str, drawings: Mapping[str, Draw]) -> tuple[StudyFigure, ...]:

@@ -150,7 +150,7 @@ _LEGEND = (
 )
 
 LOCALISATION = Repetition(
-    **{**description("localisation"), "legend": _LEGEND},
+    **description("localisation", _LEGEND),
     reproductions=_TABLES,
     perform=one_by_one(Job.perform),
     extras=("map",),

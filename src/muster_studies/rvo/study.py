@@ -11,7 +11,7 @@ from muster_studies.rvo.runs import Job
 _TABLES: tuple[Reproduction[Job, Found], ...] = (Published("A.17"), Published("A.22"), Circle())
 
 RVO = Repetition(
-    **{**description("rvo"), "legend": LEGEND},
+    **description("rvo", LEGEND),
     reproductions=_TABLES,
     perform=one_by_one(lambda job: Found.of(job.perform())),
     figures=FIGURES,
