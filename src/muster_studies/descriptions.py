@@ -28,11 +28,20 @@ class _Caption(msgspec.Struct, forbid_unknown_fields=True):
     differs: str = ""
 
 
+class Comparison(msgspec.Struct, forbid_unknown_fields=True):
+    """The texts of a study as a verb of `muster bench`: what `--quick` does, its tables if several, and the help."""
+
+    quick: str
+    help: str
+    tables: str | None = None
+
+
 class _Study(msgspec.Struct, forbid_unknown_fields=True):
     summary: str
     document: str
     legend: tuple[str, ...] = ()
     figures: dict[str, _Caption] = {}
+    comparison: Comparison | None = None
 
 
 def description(study: str, legend: tuple[str, ...] = ()) -> Description:
@@ -64,6 +73,11 @@ def captioned(study: str, drawings: Mapping[str, Draw]) -> tuple[StudyFigure, ..
         StudyFigure(number=number, draw=drawings[number], **msgspec.structs.asdict(caption))
         for number, caption in captions.items()
     )
+
+
+def comparisons() -> dict[str, Comparison]:
+    """Return the texts of the studies that `muster bench` has too, by name."""
+    return {name: words.comparison for name, words in _studies().items() if words.comparison is not None}
 
 
 @cache

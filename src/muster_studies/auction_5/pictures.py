@@ -121,6 +121,9 @@ FIGURES = captioned(
     {
         **{number: partial(scenario.world, at_s) for scenario, number, at_s in _WORLDS},
         **{number: partial(scenario.places, drones, tasks) for scenario, number, drones, tasks in _PLACES},
-        **{number: partial(scenario.paths, *shown) for scenario, number, *shown in _PATHS},
+        **{
+            number: partial(scenario.paths, bid, spatial, seen_from)
+            for scenario, number, bid, spatial, seen_from in _PATHS
+        },
     },
 )
