@@ -19,6 +19,7 @@ import numpy.typing as npt
 from muster import core
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts
 
 Bools = npt.NDArray[np.bool_]
 Indices = npt.NDArray[np.int64]
@@ -41,8 +42,7 @@ class Parameters:
     refine: bool = False
 
     def __post_init__(self) -> None:
-        if self.samples < 1:
-            raise ParameterError(f"samples: {self.samples}; expected at least 1")
+        require_counts(1, samples=self.samples)
         if self.anytime and self.refine:
             raise ParameterError("refine: with anytime; expected one of them")
 

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
 from muster.motion.maps.raster import grid_of
@@ -96,8 +97,7 @@ def shared_paths(
     """
     if not isinstance(space, GridSpace | PolygonSpace):
         raise ParameterError("space: with heights; expected the plane: robots of one height share it")
-    if not 0 < speed_mps < math.inf:
-        raise ParameterError(f"speed_mps: {speed_mps}; expected a finite number above 0")
+    require_finite_positive(speed_mps=speed_mps)
     cell, neighbours = _cell(space, radius_m, cell_m)
     grid = _cells(space, cell)
     finder = PathFinder(space)

@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass
 from statistics import fmean
 
-from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
+from muster.mission.ranges import require_positive
 from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
@@ -61,9 +61,7 @@ class Limits:
     peers_large: float
 
     def __post_init__(self) -> None:
-        for name, value in asdict(self).items():
-            if not value > 0:
-                raise ParameterError(f"{name}: {value}; expected a number above 0")
+        require_positive(**asdict(self))
 
 
 _USUAL, _SHORT = Limits(2.0, 1.0, 60.0), Limits(0.3, 0.1, 0.5)

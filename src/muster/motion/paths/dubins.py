@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.dubins_words import Pose, words
@@ -42,8 +43,7 @@ class Parameters:
     goal_heading_rad: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0 < self.turning_radius_m < math.inf:
-            raise ParameterError(f"turning_radius_m: {self.turning_radius_m}; expected a finite number above 0")
+        require_finite_positive(turning_radius_m=self.turning_radius_m)
         for name in ("start_heading_rad", "goal_heading_rad"):
             value = getattr(self, name)
             if value is not None and not math.isfinite(value):

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_positive
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.raster import grid_of
@@ -26,8 +27,7 @@ class Parameters:
     resolution_m: float | None = None
 
     def __post_init__(self) -> None:
-        if self.resolution_m is not None and not self.resolution_m > 0:
-            raise ParameterError(f"resolution_m: {self.resolution_m:g}; expected a number above 0")
+        require_positive(resolution_m=self.resolution_m)
 
 
 @dataclass(frozen=True)

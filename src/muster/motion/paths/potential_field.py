@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.free_region import part_around
@@ -44,10 +44,8 @@ class Parameters:
     steps: int = 20_000
 
     def __post_init__(self) -> None:
-        for name in ("attraction", "repulsion", "influence_m", "steps"):
-            value = getattr(self, name)
-            if value is not None and not 0 < value < math.inf:
-                raise ParameterError(f"{name}: {value}; expected a finite number above 0")
+        require_finite_positive(attraction=self.attraction, repulsion=self.repulsion)
+        require_finite_positive(influence_m=self.influence_m, steps=self.steps)
 
 
 @dataclass(frozen=True)

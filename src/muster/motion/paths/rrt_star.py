@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import Planner, blocked
@@ -25,8 +25,7 @@ class Parameters(TreeParameters):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not self.reach > 0:
-            raise ParameterError(f"reach: {self.reach}; expected a number above 0")
+        require_positive(reach=self.reach)
 
 
 def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:
