@@ -21,8 +21,8 @@ from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.mission.ranges import require_finite_positive
@@ -30,7 +30,6 @@ from muster.motion.kinematics.kinematics import Kinematics, approach
 from muster.motion.limits import Limits
 from muster.motion.path import Path
 
-Floats = npt.NDArray[np.float64]
 _SETTLING_S = 1.0
 """Within this many seconds of the goal a robot slows down."""
 

@@ -16,8 +16,8 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.ranges import require_finite_positive
 from muster.motion.map_world import Body, World
 from muster.motion.path import NoPath, Path
@@ -26,7 +26,6 @@ from muster.perception.laser import NO_DISCS, Scanner, faces_at
 from muster.perception.obstacles import Detection, Obstacle, obstacles
 from muster.simulation.walls import faces_and_slabs
 
-Floats = npt.NDArray[np.float64]
 _LASER_M = 0.1
 """Height of the laser of a robot on the ground."""
 _LOOKED_AT = 8

@@ -14,15 +14,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Bools, Indices
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
 from muster.mission.ranges import require_counts
 
-Bools = npt.NDArray[np.bool_]
-Indices = npt.NDArray[np.int64]
 _AT_ONCE = 100
 """Expansions between two looks at the clock."""
 _MOST_ENTRIES = 40_000_000

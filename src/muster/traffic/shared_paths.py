@@ -13,8 +13,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
@@ -25,7 +25,6 @@ from muster.motion.paths import PathFinder
 from muster.traffic.reservations import Cell
 from muster.traffic.space_time import NotTogether, Parameters, together
 
-Floats = npt.NDArray[np.float64]
 Ends = Mapping[str, tuple[Sequence[float], Sequence[float]]]
 _DIAGONAL, _STRAIGHT = math.sqrt(5), math.sqrt(2)
 _CELLS_OF_POINTS = 60

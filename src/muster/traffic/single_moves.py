@@ -21,11 +21,10 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Floats, Indices
 from muster.mission.errors import ParameterError
 from muster.mission.ranges import require_counts
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 Outcome = Literal["arrived", "horizon", "unfinished", "impossible"]
 NO_GOAL = -1
 

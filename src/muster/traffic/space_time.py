@@ -18,13 +18,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Bools
 from muster.mission.errors import ParameterError
 from muster.mission.ranges import require_counts
 from muster.traffic.reservations import Cell, Reservations
 
-Bools = npt.NDArray[np.bool_]
 Ways = dict[str, list[Cell]]
 """The cells of each robot, one a step."""
 _SIDES = ((0, 1), (1, 0), (0, -1), (-1, 0))

@@ -10,14 +10,12 @@ from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.extras import needs_extra
 from muster.motion.avoidance import Agents, Orca
 from muster.motion.avoidance.orca import Parameters
 from muster_studies.benches.measurement import Measurement
-
-Floats = npt.NDArray[np.float64]
 
 RADIUS_M, TOP_SPEED_MPS, SPACING_M, DT_S = 1.5, 2.0, 4.5, 0.25
 HORIZON_S, NEIGHBOURS, DISTANCE_M = 10.0, 10, 15.0

@@ -7,11 +7,11 @@ from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Stop
+from muster.mission.arrays import Floats
 from muster.mission.plan import Plan, Route
 from muster.report.canvas import new_figure
 from muster_studies.descriptions import captioned
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Floats = NDArray[np.float64]
 _INSTANTS = 300
 _QUICK_SHARE = 10
 

@@ -12,8 +12,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import Space
@@ -23,7 +23,6 @@ from muster.motion.paths.on_grid import without_repetitions
 from muster.motion.paths.path_finder import PathFinder
 from muster.motion.paths.planner import Planner, in_plane
 
-Floats = npt.NDArray[np.float64]
 _OFFSETS = math.pi / 8 * np.array([0.0, 1.0, -1.0, 2.0, -2.0])
 """Of headings at a corner from the one that halves the turn."""
 _CHORD = 0.05

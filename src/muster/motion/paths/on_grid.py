@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.mission.ranges import require_positive
 from muster.motion.free_space import GridSpace, PolygonSpace
@@ -16,7 +16,6 @@ from muster.motion.maps.raster import grid_of
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import blocked, disconnected, not_free
 
-Floats = npt.NDArray[np.float64]
 _CELLS_ALONG_A_REGION = 500
 
 

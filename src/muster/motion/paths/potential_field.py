@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
@@ -25,7 +25,6 @@ from muster.motion.paths.planner import Planner, blocked, in_plane, shown
 if TYPE_CHECKING:
     import shapely
 
-Floats = npt.NDArray[np.float64]
 _LEAST_STEP = 2.0**-12
 _SLOPE = 1e-6
 """Half the distance over which a slope is measured, as a share of the influence."""

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.bridges.ros2.description import Message
 from muster.bridges.ros2.message_types import (
@@ -26,12 +25,11 @@ from muster.bridges.ros2.message_types import (
     Vector3,
 )
 from muster.bridges.ros2.serialization import from_cdr, from_ros1
+from muster.mission.arrays import Floats
 from muster.mission.errors import Finding, InputError, ParameterError
 from muster.mission.extras import needs_extra
 from muster.report.record.reader import whole_records
 from muster.report.record.writer import require_mcap
-
-Floats = npt.NDArray[np.float64]
 
 _EXPECTED = "a recording of ROS with poses: MCAP, a folder of rosbag2, or a bag of ROS 1"
 _MCAP, _BAG = b"\x89MCAP0\r\n", b"#ROSBAG V2.0"
