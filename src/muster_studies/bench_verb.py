@@ -17,6 +17,7 @@ from muster.mission.platforms import require_posix
 from muster.mission.value_types import shown
 from muster_studies import study_verb
 from muster_studies.benches import BENCHES, bench_named
+from muster_studies.descriptions import comparisons
 
 _Verb = Callable[..., Any]
 
@@ -82,67 +83,13 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
     print_table(("what", "median", "range", "unit", "aim", "note"), rows, right=("median", "range"))
 
 
-@command.command("peers")
-@_comparison_options(
-    quick="Small missions and short time limits, to see that everything works.",
-    tables="total+max, total, max, average, makespan, large",
-)
-def peers(ctx: click.Context, /, **options: Any) -> int:
-    """Compare search with OR-Tools, PyVRP and VROOM.
-
-    All have the same time, and run one after the other. This is `muster study peers`; it needs the extra `studies`.
-    """
+def _compare(ctx: click.Context, /, **options: Any) -> int:
     return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
 
 
-@command.command("peers-timed")
-@_comparison_options(quick="One or two missions a table and short time limits.", tables="windows, ordered, teams")
-def peers_timed(ctx: click.Context, /, **options: Any) -> int:
-    """Compare search with others on missions with time windows, prerequisites and teams.
-
-    Time windows beside PyVRP, OR-Tools and VROOM; windows with prerequisites beside greedy, auction, CP-SAT and
-    OR-Tools; teams beside the best plans known. This is `muster study peers-timed`; it needs the extra `studies`.
-    """
-    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
-
-
-@command.command("peers-routes")
-@_comparison_options(
-    quick="One small mission a table and short time limits.",
-    tables="orienteering, longest, depots, tour",
-)
-def peers_routes(ctx: click.Context, /, **options: Any) -> int:
-    """Compare search with PyVRP and OR-Tools on routes, beside the best known.
-
-    Team orienteering (more tasks than the team can do), the shortest longest route, clusters of tasks among many
-    depots, one long tour. This is `muster study peers-routes`; it needs the extra `studies`.
-    """
-    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
-
-
-@command.command("peers-waiting")
-@_comparison_options(quick="Missions of 20 tasks and short time limits.")
-def peers_waiting(ctx: click.Context, /, **options: Any) -> int:
-    """Compare search with CP-SAT, which has more time, where tasks wait for each other.
-
-    The makespan of missions of 20 to 400 tasks with prerequisites. This is `muster study peers-waiting`; it needs the
-    extra `studies`.
-    """
-    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
-
-
-@command.command("peers-goods")
-@_comparison_options(
-    quick="One small mission a table, two of transports, and short time limits.",
-    tables="loads, customers, transports, charging",
-)
-def peers_goods(ctx: click.Context, /, **options: Any) -> int:
-    """Compare search with PyVRP, OR-Tools and VROOM on missions with goods and energy.
-
-    Loads and windows, pickups and deliveries; charging beside the best known, as the others have no stations. This is
-    `muster study peers-goods`; it needs the extra `studies`.
-    """
-    return int(ctx.invoke(study_verb.command, name=ctx.info_name, **options))
+for _name, _words in comparisons().items():
+    _options = _comparison_options(quick=_words.quick, tables=_words.tables)
+    command.command(_name, help=_words.help)(_options(_compare))
 
 
 @command.command("scale")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
+from muster.mission.ranges import require_counts
 from muster_studies.tables import span
 
 SEEDS, QUICK_SEEDS = 10, 2
@@ -42,10 +43,8 @@ class Effort:
     figures: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.seeds is not None and self.seeds < 1:
-            raise ParameterError(f"seeds: {self.seeds}; expected a whole number of at least 1")
-        if self.iterations is not None and self.iterations < 0:
-            raise ParameterError(f"iterations: {self.iterations}; expected a whole number of at least 0")
+        require_counts(1, seeds=self.seeds)
+        require_counts(0, iterations=self.iterations)
 
     @property
     def seed_count(self) -> int:

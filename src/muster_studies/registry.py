@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Protocol
+from typing import Any
 
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.areas import AREAS
 from muster_studies.auction_5 import AUCTION_5
-from muster_studies.effort import Effort
-from muster_studies.figures import StudyFigure
 from muster_studies.flown import FLOWN
 from muster_studies.jams import JAMS
 from muster_studies.localisation import LOCALISATION
@@ -26,41 +24,17 @@ from muster_studies.peers import (
     peers_timed_study,
     peers_waiting_study,
 )
-from muster_studies.repetition import OnDone
+from muster_studies.repetition import Repetition
 from muster_studies.rescue import RESCUE
 from muster_studies.rotors.study import ROTORS
 from muster_studies.rvo import RVO
-from muster_studies.tables import Report
 from muster_studies.thesis_2 import THESIS_2
 from muster_studies.thesis_3_3 import THESIS_3_3
 from muster_studies.thesis_6 import THESIS_6
 from muster_studies.thesis_6_1 import THESIS_6_1
 
-
-class Study(Protocol):
-    """A published experiment that can be repeated.
-
-    `tables` are the numbers of its tables, `figures` the pictures that it draws, `extras` the optional parts of Muster
-    that it needs.
-    """
-
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def summary(self) -> str: ...
-
-    @property
-    def tables(self) -> tuple[str, ...]: ...
-
-    @property
-    def figures(self) -> tuple[StudyFigure, ...]: ...
-
-    @property
-    def extras(self) -> tuple[str, ...]: ...
-
-    def run(self, effort: Effort, workers: int = 1, on_done: OnDone | None = None) -> Report: ...
-
+Study = Repetition[Any, Any]
+"""A published experiment that can be repeated."""
 
 _IMPLEMENTATIONS: tuple[Study, ...] = (
     THESIS_2,

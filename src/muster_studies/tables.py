@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,6 +42,22 @@ class Table:
         ticked = any(isinstance(cell, str) and CHECK_MARK in cell for row in self.rows for cell in row)
         if ticked and not self.mark_rule.startswith(f"{CHECK_MARK}: "):
             raise ValueError(f"{self.heading}: check marks without their rule; expected mark_rule, '{CHECK_MARK}: ...'")
+
+    @classmethod
+    def of_cells(
+        cls,
+        number: str,
+        title: str,
+        cells: Iterable[Mapping[str, Cell]],
+        notes: tuple[str, ...] = (),
+        *,
+        decimals: int = 2,
+        mark_rule: str = "",
+    ) -> Table:
+        """Return the table whose rows have these cells by column; columns are in the order in which rows name them."""
+        named = list(cells)
+        columns = tuple(dict.fromkeys(column for one in named for column in one))
+        return cls(number, title, columns, tuple(row(columns, one) for one in named), notes, decimals, mark_rule)
 
     @property
     def heading(self) -> str:

@@ -126,7 +126,7 @@ def test_within_the_margin_the_way_around_begins_where_the_robot_is():
 def test_refusals():
     with pytest.raises(ParameterError, match=r"^window: 2; expected an odd number of at least 1$"):
         Detection(window=2)
-    with pytest.raises(ParameterError, match=r"^fewest: 0; expected at least 1$"):
+    with pytest.raises(ParameterError, match=r"^fewest: 0; expected a whole number of at least 1$"):
         Detection(fewest=0)
     with pytest.raises(ParameterError, match=r"^gap_m: 0; expected a finite number above 0$"):
         Detection(gap_m=0)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import pytest
 
 from muster.mission.errors import ParameterError
+from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
 from muster_studies.figures import StudyFigure, draw_figures
 from muster_studies.repetition import Repetition, one_by_one
@@ -94,3 +95,8 @@ def test_figures_of_an_effort(tmp_path, effort, names):
 def test_a_figure_that_there_is_not(tmp_path):
     with pytest.raises(ParameterError, match=r"figure: 4.2; expected all or 4.1 or A.2 or own; did you mean"):
         list(draw_figures(FIGURES, Effort(figures=("4.2",)), tmp_path))
+
+
+def test_each_figure_needs_its_caption():
+    with pytest.raises(ValueError, match=r"^rvo: figures \['A.1'\]; expected those with captions, \['A.15'"):
+        captioned("rvo", {"A.1": blank})

@@ -20,7 +20,7 @@ from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.motivation import Team
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,10 +37,8 @@ class Parameters:
     acquiescence: float = 0.5
 
     def __post_init__(self) -> None:
-        if not 1 <= self.patience <= 1e6:
-            raise ParameterError(f"patience: {self.patience:g}; expected a number from 1 to 1e+06")
-        if not 0 <= self.acquiescence <= 1:
-            raise ParameterError(f"acquiescence: {self.acquiescence:g}; expected a number from 0 to 1")
+        require_within(1, 1e6, patience=self.patience)
+        require_within(0, 1, acquiescence=self.acquiescence)
 
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:

@@ -22,7 +22,7 @@ from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Best, Floats
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts, require_within
 
 _LEAST_PHEROMONE = 1e-9  # beside 1 at the beginning: no path is lost to rounding
 
@@ -44,11 +44,10 @@ class Parameters:
     elite: float = 5.0
 
     def __post_init__(self) -> None:
-        if self.population_size < 1:
-            raise ParameterError(f"population_size: {self.population_size}; expected a whole number of at least 1")
-        for name, most in (("alpha", 20.0), ("beta", 20.0), ("evaporation", 1.0), ("elite", 1e6)):
-            if not 0 <= getattr(self, name) <= most:
-                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to {most:g}")
+        require_counts(1, population_size=self.population_size)
+        require_within(0, 20, alpha=self.alpha, beta=self.beta)
+        require_within(0, 1, evaporation=self.evaporation)
+        require_within(0, 1e6, elite=self.elite)
 
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:

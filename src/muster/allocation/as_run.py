@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from muster.allocation import genetic, greedy_genetic, greedy_hill_climbing, hill_climbing
+from muster.allocation.allocator import Allocator
 from muster.allocation.bounds_of_mutation import AS_RUN
 from muster.allocation.capabilities import BY_OBJECTIVE
 
@@ -32,31 +33,26 @@ class GeneticParameters(genetic.Parameters):
     bounds: str = AS_RUN
 
 
-HILL_CLIMBING_AS_RUN = replace(
+def _as_run(allocator: Allocator, parameters: type[object], summary: str) -> Allocator:
+    name = f"{allocator.name}-as-run"
+    return replace(allocator, name=name, summary=summary, parameters=parameters, can=BY_OBJECTIVE)
+
+
+HILL_CLIMBING_AS_RUN = _as_run(
     hill_climbing.HILL_CLIMBING,
-    name="hill-climbing-as-run",
-    summary="hill climbing as the thesis' runs of HCTA had it: trapped early",
-    parameters=ClimbingParameters,
-    can=BY_OBJECTIVE,
+    ClimbingParameters,
+    "hill climbing as the thesis' runs of HCTA had it: trapped early",
 )
-GENETIC_AS_RUN = replace(
-    genetic.GENETIC,
-    name="genetic-as-run",
-    summary="the genetic algorithm as the thesis' runs of GenTA had it",
-    parameters=GeneticParameters,
-    can=BY_OBJECTIVE,
+GENETIC_AS_RUN = _as_run(
+    genetic.GENETIC, GeneticParameters, "the genetic algorithm as the thesis' runs of GenTA had it"
 )
-GREEDY_HILL_CLIMBING_AS_RUN = replace(
+GREEDY_HILL_CLIMBING_AS_RUN = _as_run(
     greedy_hill_climbing.GREEDY_HILL_CLIMBING,
-    name="greedy+hill-climbing-as-run",
-    summary="greedy, then hill climbing as the thesis' runs of GrdHCTA had it",
-    parameters=ClimbingParameters,
-    can=BY_OBJECTIVE,
+    ClimbingParameters,
+    "greedy, then hill climbing as the thesis' runs of GrdHCTA had it",
 )
-GREEDY_GENETIC_AS_RUN = replace(
+GREEDY_GENETIC_AS_RUN = _as_run(
     greedy_genetic.GREEDY_GENETIC,
-    name="greedy+genetic-as-run",
-    summary="greedy, then the genetic algorithm as the thesis' runs of GrdGenTA had it",
-    parameters=GeneticParameters,
-    can=BY_OBJECTIVE,
+    GeneticParameters,
+    "greedy, then the genetic algorithm as the thesis' runs of GrdGenTA had it",
 )

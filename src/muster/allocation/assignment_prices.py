@@ -12,10 +12,8 @@ from __future__ import annotations
 from collections import deque
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from muster.mission.arrays import Floats, Indices
 
 _SCALE = 5.0
 _NOBODY = -1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_within
 
 BIDS = ("total", "max", "average", "average-as-printed", "total+max", "makespan")
 PLACEMENTS = ("append", "insert")
@@ -41,9 +42,8 @@ class BidTerms:
             value = getattr(self, name, words[0])
             if value not in words and not (name == "bid" and value is None):
                 raise ParameterError(f"{name}: {value}; expected {' or '.join(words)}")
-        for name in ("battery_weight", "suitability_weight", "quality_weight"):
-            if not 0 <= getattr(self, name) <= _MOST_WEIGHT:
-                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to {_MOST_WEIGHT:g}")
+        require_within(0, _MOST_WEIGHT, battery_weight=self.battery_weight, suitability_weight=self.suitability_weight)
+        require_within(0, _MOST_WEIGHT, quality_weight=self.quality_weight)
 
     @property
     def winner_rule(self) -> str:

@@ -21,7 +21,7 @@ from muster.allocation.book_keeper import book_of
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.winners import Floats, Sale
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,8 +38,7 @@ class Parameters(BidTerms):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 1e-9 <= self.precision <= 1:
-            raise ParameterError(f"precision: {self.precision:g}; expected a number from 1e-09 to 1")
+        require_within(1e-9, 1, precision=self.precision)
 
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:

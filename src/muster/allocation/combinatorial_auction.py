@@ -26,6 +26,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.winners import Floats, Sale
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,9 +46,7 @@ class Parameters(BidTerms):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in ("bundle_size", "seeds", "combinations"):
-            if getattr(self, name) < 1:
-                raise ParameterError(f"{name}: {getattr(self, name)}; expected a whole number of at least 1")
+        require_counts(1, bundle_size=self.bundle_size, seeds=self.seeds, combinations=self.combinations)
         if not 1 < self.worth <= 1e6:
             raise ParameterError(f"worth: {self.worth:g}; expected a number above 1, at most 1e+06")
 

@@ -39,6 +39,7 @@ from muster.allocation.consensus import NO_BID, NOBODY, TOPOLOGIES, Beliefs, Led
 from muster.allocation.problem import Bools, Floats, Indices, Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import MusterError, ParameterError
+from muster.mission.ranges import require_counts
 
 _CROSSING = 50.0  # units of time across the mission's extent
 _PATIENCE = 10  # times the paper's bound of tasks x diameter, within which its scores agree
@@ -71,8 +72,7 @@ class Parameters:
     discount: float = 0.95
 
     def __post_init__(self) -> None:
-        if self.bundle_size < 0:
-            raise ParameterError(f"bundle_size: {self.bundle_size}; expected a whole number of at least 0")
+        require_counts(0, bundle_size=self.bundle_size)
         if self.topology not in TOPOLOGIES:
             raise ParameterError(f"topology: {self.topology}; expected complete, ring or line")
         if not 0 < self.discount < 1:

@@ -21,7 +21,7 @@ from muster.allocation.capabilities import ALL
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.unit_population import UnitPopulation
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts, require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,13 +42,10 @@ class Parameters:
     bounds: str = RECEIVER
 
     def __post_init__(self) -> None:
-        if self.population_size < 1:
-            raise ParameterError(f"population_size: {self.population_size}; expected a whole number of at least 1")
-        for name in ("mutation_probability", "crossover_probability", "replaced_share"):
-            if not 0 <= getattr(self, name) <= 1:
-                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to 1")
-        if self.start_mutants < 0:
-            raise ParameterError(f"start_mutants: {self.start_mutants}; expected a whole number of at least 0")
+        require_counts(1, population_size=self.population_size)
+        require_within(0, 1, mutation_probability=self.mutation_probability, replaced_share=self.replaced_share)
+        require_within(0, 1, crossover_probability=self.crossover_probability)
+        require_counts(0, start_mutants=self.start_mutants)
         checked_bounds(self.bounds)
 
 

@@ -19,6 +19,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Decoded, Floats, Strings, random_strings, ranking, string_of
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,8 +36,7 @@ class Parameters:
     group_size: int = 10
 
     def __post_init__(self) -> None:
-        if self.group_size < 2:
-            raise ParameterError(f"group_size: {self.group_size}; expected a whole number of at least 2")
+        require_counts(2, group_size=self.group_size)
         if self.population_size < self.group_size or self.population_size % self.group_size:
             raise ParameterError(
                 f"population_size: {self.population_size}; expected a multiple of group_size, {self.group_size}"

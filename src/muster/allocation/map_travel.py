@@ -8,17 +8,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.allocation.lengths import Measured
 from muster.allocation.task_geometry import TaskGeometry
+from muster.mission.arrays import Floats
 from muster.mission.model import Robot
 from muster.motion.actions.action import Leg
 from muster.motion.map_world import Body, body_of
 from muster.motion.path import NoPath
 from muster.motion.robot_paths import RobotPaths
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

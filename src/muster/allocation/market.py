@@ -22,7 +22,7 @@ from muster.allocation.book_keeper import book_of
 from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts, require_within
 
 _TRADING = 0.9  # share of a time limit; the rest is for the annealing
 
@@ -42,10 +42,8 @@ class Parameters(Terms):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 0 <= self.ro <= 1:
-            raise ParameterError(f"ro: {self.ro:g}; expected a number from 0 to 1")
-        if self.annealing_steps < 0:
-            raise ParameterError(f"annealing_steps: {self.annealing_steps}; expected a whole number of at least 0")
+        require_within(0, 1, ro=self.ro)
+        require_counts(0, annealing_steps=self.annealing_steps)
 
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:

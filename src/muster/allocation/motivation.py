@@ -6,12 +6,10 @@ Motivations are 0 to 1, the threshold; [parker1998].
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.allocation.allocator import Routes
 from muster.allocation.problem import Problem
-
-Floats = npt.NDArray[np.float64]
+from muster.mission.arrays import Floats
 
 _FREE = -1
 _ROUNDING = 1e-12  # as the core allows for a capacity that is filled exactly

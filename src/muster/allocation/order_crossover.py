@@ -18,7 +18,7 @@ from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Decoded, Floats, Strings, random_strings, ranking, roulette, string_of
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts, require_within
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,11 +36,9 @@ class Parameters:
     mutation_probability: float = 0.3  # of a string to be mutated once
 
     def __post_init__(self) -> None:
-        if self.population_size < 2:
-            raise ParameterError(f"population_size: {self.population_size}; expected a whole number of at least 2")
-        for name in ("crossover_probability", "mutation_probability"):
-            if not 0 <= getattr(self, name) <= 1:
-                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to 1")
+        require_counts(2, population_size=self.population_size)
+        require_within(0, 1, crossover_probability=self.crossover_probability)
+        require_within(0, 1, mutation_probability=self.mutation_probability)
 
 
 def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start: Routes | None) -> Outcome:

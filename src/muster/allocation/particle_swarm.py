@@ -23,6 +23,7 @@ from muster.allocation.problem import Bools, Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Best, Floats, Strings, fitness, ranking, spun
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts, require_within
 
 LEADERS = ("best", "pareto")
 _INSIDE = 1.0 - 1e-9  # the upper wall belongs to the last robot
@@ -45,11 +46,8 @@ class Parameters:
     leader: str = "best"
 
     def __post_init__(self) -> None:
-        if self.population_size < 1:
-            raise ParameterError(f"population_size: {self.population_size}; expected a whole number of at least 1")
-        for name in ("inertia", "own_weight", "leader_weight"):
-            if not 0 <= getattr(self, name) <= 10:
-                raise ParameterError(f"{name}: {getattr(self, name):g}; expected a number from 0 to 10")
+        require_counts(1, population_size=self.population_size)
+        require_within(0, 10, inertia=self.inertia, own_weight=self.own_weight, leader_weight=self.leader_weight)
         if self.leader not in LEADERS:
             raise ParameterError(f"leader: {self.leader}; expected {' or '.join(LEADERS)}")
 

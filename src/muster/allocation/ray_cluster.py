@@ -23,6 +23,7 @@ from typing import Any
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Job, Offer
 from muster.mission.errors import MissingExtraError, MusterError, ParameterError
+from muster.mission.extras import needs_extra
 from muster.mission.interrupts import on_ctrl_c
 
 EXPECTED = "local, auto, HOST:PORT of the head from a machine of the cluster, or ray://HOST:PORT from any other"
@@ -64,10 +65,8 @@ def joined(address: str) -> Iterator[Cluster]:
     """
     for name, value in _ENVIRONMENT.items():
         os.environ.setdefault(name, value)
-    try:
+    with needs_extra("ray", "working on a Ray cluster"):
         import ray
-    except ImportError:
-        raise MissingExtraError("ray", "working on a Ray cluster") from None
     if ray.is_initialized():
         if address != "auto":
             raise ParameterError(f"ray: {address}, in a process that has joined a cluster; expected auto")

@@ -36,6 +36,7 @@ from muster.allocation.stop import Stop
 from muster.allocation.workers import Threads, Workers
 from muster.mission.errors import ParameterError
 from muster.mission.platforms import usable_processors
+from muster.mission.ranges import require_counts
 
 _Search = core.Search | core.ScheduleSearch
 
@@ -78,24 +79,17 @@ class Parameters:
     near: int = 12  # tasks beside which a task is tried, in large teams
 
     def __post_init__(self) -> None:
-        if self.parts < 0:
-            raise ParameterError(f"parts: {self.parts}; expected a whole number of at least 0")
+        require_counts(0, parts=self.parts)
         if not isinstance(self.ray, str):
             raise ParameterError(f"ray: {self.ray}; expected the address of a Ray cluster, or none")
         if self.ray != "none" and self.threads > 1:
             raise ParameterError(f"threads: {self.threads}, with a Ray cluster; expected one of the two")
-        if self.threads < 0:
-            raise ParameterError(f"threads: {self.threads}; expected a whole number of at least 0")
-        if self.plans < 0:
-            raise ParameterError(f"plans: {self.plans}; expected a whole number of at least 0")
-        if self.near < 1:
-            raise ParameterError(f"near: {self.near}; expected a whole number of at least 1")
+        require_counts(0, threads=self.threads, plans=self.plans, longest_string=self.longest_string)
+        require_counts(1, near=self.near)
         if not 0 < self.cold <= (self.hot or self.cold) < float("inf"):
             raise ParameterError(f"cold, hot: {self.cold:g}, {self.hot:g}; expected 0 < cold <= hot, or hot 0")
         if self.removed != 0 and not 1 <= self.removed < float("inf"):
             raise ParameterError(f"removed: {self.removed:g}; expected a number of at least 1, or 0")
-        if self.longest_string < 0:
-            raise ParameterError(f"longest_string: {self.longest_string}; expected a whole number of at least 0")
         if not 0 <= self.blink < 1:
             raise ParameterError(f"blink: {self.blink:g}; expected a number from 0 to below 1")
 

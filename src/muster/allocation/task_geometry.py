@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.model import Point, Robot, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
 from muster.motion.actions.action import Leg
 
-Floats = npt.NDArray[np.float64]
 Classes = npt.NDArray[np.int32]
 
 

@@ -9,13 +9,10 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Bools, Floats
 from muster.mission.model import Robot, Task
 from muster.mission.task_relations import tied_by
-
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
 
 ROUNDING = 2e-9
 """By how much a time may be above a limit, relative; a little more than the judge allows."""

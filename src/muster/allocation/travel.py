@@ -8,12 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import Finding, NotSupportedError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.map_world import World, body_of
 from muster.motion.straight_ways import StraightWays
-
-Floats = npt.NDArray[np.float64]
 
 _MOST_PLACES = 6_000  # tasks, starts and ends: 288 MB a table
 

@@ -9,10 +9,9 @@ import numpy.typing as npt
 
 from muster.allocation.lengths import Measured
 from muster.allocation.task_geometry import TaskGeometry
+from muster.mission.arrays import Floats
 from muster.mission.model import Robot
 from muster.motion.leg_times import LegTimes
-
-Floats = npt.NDArray[np.float64]
 
 
 def work_times(

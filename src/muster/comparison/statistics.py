@@ -28,7 +28,7 @@ from muster.comparison.ranking import (
     typical,
 )
 from muster.comparison.run import FAILED, INVALID, NOT_APPLICABLE, Run
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 
 _CONFIDENCE = 0.95
 _RESAMPLES = 9999
@@ -124,10 +124,8 @@ class Profile:
 
 def require_scipy() -> None:
     """Raise MissingExtraError where SciPy is not installed."""
-    try:
+    with needs_extra("compare", "a comparison"):
         import scipy.stats  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("compare", "a comparison") from None
 
 
 def standings_of(runs: Sequence[Run], allocators: Sequence[str]) -> tuple[Standing, ...]:

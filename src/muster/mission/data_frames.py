@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -20,10 +20,8 @@ def data_frame(rows: Iterable[Mapping[str, Any]], columns: Iterable[str]) -> Dat
     MissingExtraError
         without pandas.
     """
-    try:
+    with needs_extra("frames", "a DataFrame"):
         from pandas import DataFrame
-    except ImportError:
-        raise MissingExtraError("frames", "a DataFrame") from None
     return DataFrame(list(rows), columns=list(columns))
 
 

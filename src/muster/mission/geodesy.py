@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.errors import MissingExtraError
-
-Floats = npt.NDArray[np.float64]
+from muster.mission.arrays import Floats
+from muster.mission.extras import needs_extra
 
 
 def wgs84_to_enu(places: npt.ArrayLike, origin: npt.ArrayLike) -> Floats:
@@ -47,8 +46,6 @@ def _numbers(origin: npt.ArrayLike) -> tuple[float, ...]:
 
 
 def _pymap3d() -> Any:
-    try:
+    with needs_extra("map", "a place in degrees (lat_lon)"):
         import pymap3d
-    except ImportError:
-        raise MissingExtraError("map", "a place in degrees (lat_lon)") from None
     return pymap3d

@@ -17,9 +17,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from muster.mission.arrays import Floats
 
 _PIECE = math.pi / 6
 """The largest angle of one segment: its curvature differs from its arc's by less than 1e-4."""

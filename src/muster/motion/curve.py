@@ -9,10 +9,8 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Bools, Floats
 from muster.motion.path import Path
-
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
 
 _PIECES = 32  # of a segment, in the table of arc lengths
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)

@@ -21,15 +21,15 @@ from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
+from muster.mission.ranges import require_finite_positive
 from muster.motion.kinematics.kinematics import Kinematics, approach
 from muster.motion.limits import Limits
 from muster.motion.path import Path
 
-Floats = npt.NDArray[np.float64]
 _SETTLING_S = 1.0
 """Within this many seconds of the goal a robot slows down."""
 
@@ -223,9 +223,7 @@ def follow(
     """
     if law not in GUIDANCE:
         raise ParameterError(f"guidance: {law}; expected {', '.join(GUIDANCE)}{did_you_mean(law, GUIDANCE)}")
-    for name, value in (("lookahead_m", lookahead_m), ("dt", dt), ("arrival_m", arrival_m)):
-        if not 0 < value < math.inf:
-            raise ParameterError(f"{name}: {value}; expected a finite number above 0")
+    require_finite_positive(lookahead_m=lookahead_m, dt=dt, arrival_m=arrival_m)
     line = Line(path)
     if line.length_m == 0:
         return Tracked(dt, np.append(line.points[0], 0.0)[np.newaxis], np.zeros(1), True)

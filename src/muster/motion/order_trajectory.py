@@ -12,16 +12,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.motion.limits import Limits
 from muster.motion.path import Path
 from muster.motion.port import Waypoint
 from muster.motion.smoothing import Clear, Smoothed, smoothed
 from muster.motion.trajectory import Trajectory, joined
 from muster.motion.velocity import timed
-
-Floats = npt.NDArray[np.float64]
 
 RESERVE = 0.05
 """The share of its limits that a robot keeps to catch up."""

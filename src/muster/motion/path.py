@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from muster.mission.arrays import Floats
 
 _STRAIGHT = 1e-9  # rad: what turns by less goes straight on
 

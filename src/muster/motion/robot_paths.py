@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.model import Mission, Point
 from muster.motion.free_space import PrismSpace, Space
 from muster.motion.map_world import Body, World
@@ -18,8 +19,6 @@ from muster.motion.paths import PathFinder
 from muster.motion.smoothing import Smoothed, smoothed
 from muster.motion.straight_ways import StraightWays
 from muster.motion.unreachable_places import checked_world, why_blocked
-
-Floats = npt.NDArray[np.float64]
 
 _MOST_LEGS = 100_000  # that are kept: a standing fleet is asked for new ones for ever
 

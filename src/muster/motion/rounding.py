@@ -10,13 +10,11 @@ from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.motion.corners import Corner
 from muster.motion.curve import Curve
 from muster.motion.path import Path
-
-Floats = npt.NDArray[np.float64]
 
 _SPARE = 1e-9
 """Metres: what remains of a piece may be so much shorter than nothing."""

@@ -14,13 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Bools, Floats
 from muster.mission.errors import ParameterError
 from muster.motion.curve import Curve
 from muster.motion.path import Path
 from muster.motion.rounding import Rounding
-
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
 
 Clear = Callable[[Floats], bool]
 """Whether straight pieces through points (k, d) are free from end to end."""

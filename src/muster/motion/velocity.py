@@ -13,6 +13,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.motion.curve import Curve
 from muster.motion.frames import wrapped
@@ -20,7 +21,6 @@ from muster.motion.limits import BENDS_SHARE, Limits
 from muster.motion.trajectory import Trajectory, joined
 from muster.motion.wheels import fastest_translation
 
-Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 
 _CORNER = 1e-6  # radians; a smaller turn between two segments is rounding

@@ -14,8 +14,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-
+from muster.mission.arrays import Floats
 
 TRACK_RADII = 0.287 / 0.3
 """The distance between the wheels in radii of the robot: the Wafflebot's of [tcf-thesis] at its inflated radius."""

@@ -18,11 +18,11 @@ from collections import deque
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.perception.estimates import NO_TAG, RawEstimates
 from muster.perception.optional_parts import require_physics
 
-Floats = npt.NDArray[np.float64]
 Labels = npt.NDArray[np.int64]
 
 LONE = -1

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.perception.apriltag import new_detector
 from muster.perception.camera import Intrinsics
 from muster.perception.images import Image, grey
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass
 
-from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_not_negative
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -13,10 +12,7 @@ class _Deviations:
     """Numbers of at least 0."""
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not 0 <= value < math.inf:
-                raise ParameterError(f"{field.name}: {value}; expected a finite number of at least 0")
+        require_finite_not_negative(**asdict(self))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,14 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.motion.frames import moved
 from muster.perception.camera import View
 from muster.perception.detection import Sighting, Sightings
 from muster.perception.tags import CORNERS
-
-Floats = npt.NDArray[np.float64]
 
 LEAST_PX = 16.0
 """The pixels across its black square with which a tag is found in every image (docs/perception.md)."""

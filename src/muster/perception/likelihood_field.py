@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_positive
 from muster.motion.grid import Grid
 from muster.motion.maps.distance_field import distance_field
 from muster.perception.kalman import Floats
@@ -52,8 +53,7 @@ class LikelihoodField:
         ends = np.asarray(walls, dtype=np.float64)
         if ends.ndim != 2 or ends.shape[1:] != (4,) or not len(ends) or not np.isfinite(ends).all():
             raise ParameterError(f"walls: shape {ends.shape}; expected (any, 4) finite numbers, at least one wall")
-        if not 0 < resolution_m < math.inf:
-            raise ParameterError(f"resolution_m: {resolution_m}; expected a finite number above 0")
+        require_finite_positive(resolution_m=resolution_m)
         points = _along(ends, resolution_m / 2)
         margin = math.ceil(_MARGIN_M / resolution_m)
         west, south = points.min(axis=0) - 2 * margin * resolution_m

@@ -17,13 +17,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.motion.frames import moved, transform
 from muster.perception.camera import View
 from muster.perception.optional_parts import require_physics
 from muster.perception.tags import CORNERS
-
-Floats = npt.NDArray[np.float64]
 
 
 def on_ground(view: View, pixels: npt.ArrayLike, ground_m: float = 0.0) -> Floats:

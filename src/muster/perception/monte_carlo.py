@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_positive
 from muster.motion.frames import wrapped
 from muster.perception.kalman import Estimate, Floats
 from muster.perception.laser import require_scan
@@ -82,10 +83,7 @@ class MonteCarloParameters:
     fit_share: float = 0.3
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if not 0 < value < math.inf:
-                raise ParameterError(f"{field.name}: {value}; expected a finite number above 0")
+        require_finite_positive(**asdict(self))
         if not self.least <= self.most:
             raise ParameterError(f"most: {self.most}; expected at least {self.least}, as many as least")
         for name in ("stray_share", "good_fit", "fit_share"):

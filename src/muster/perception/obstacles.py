@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts, require_finite_positive
 from muster.perception.kalman import Floats
 from muster.perception.laser import points_of, require_scan
 from muster.perception.shapes import Shape, shape_of
@@ -48,11 +49,8 @@ class Detection:
     def __post_init__(self) -> None:
         if self.window < 1 or self.window % 2 == 0:
             raise ParameterError(f"window: {self.window}; expected an odd number of at least 1")
-        if self.fewest < 1:
-            raise ParameterError(f"fewest: {self.fewest}; expected at least 1")
-        for name in ("gap_m", "tolerance_m"):
-            if not 0 < getattr(self, name) < math.inf:
-                raise ParameterError(f"{name}: {getattr(self, name)}; expected a finite number above 0")
+        require_counts(1, fewest=self.fewest)
+        require_finite_positive(gap_m=self.gap_m, tolerance_m=self.tolerance_m)
 
 
 @dataclass(frozen=True, eq=False)

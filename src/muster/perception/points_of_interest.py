@@ -20,11 +20,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.perception.clusters import LONE, Labels
 from muster.perception.estimates import NO_TAG, RawEstimates
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

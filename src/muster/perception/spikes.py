@@ -14,11 +14,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_positive
 from muster.perception.kalman import Floats
 from muster.perception.laser import require_scan
 
@@ -54,10 +55,7 @@ class SpikeParameters:
     misfit_m: float = 0.02
 
     def __post_init__(self) -> None:
-        for name in ("depth_m", "radius_m", "smallest_m", "largest_m", "misfit_m"):
-            value = getattr(self, name)
-            if value is not None and not 0 < value < math.inf:
-                raise ParameterError(f"{name}: {value}; expected a finite number above 0")
+        require_finite_positive(**asdict(self))
         if self.smallest_m > self.largest_m:
             raise ParameterError(f"smallest_m: {self.smallest_m}; expected at most largest_m, {self.largest_m}")
 

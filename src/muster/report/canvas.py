@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
 from muster.report.fonts import Names
@@ -46,15 +46,11 @@ def new_axes(width_in: float, height_in: float, *, spatial: bool = False) -> Axe
     MissingExtraError
         if matplotlib is not installed.
     """
-    require_matplotlib()
+    figure = new_figure(width_in, height_in)
     from matplotlib import rc_context
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
     from muster.report.picture_axes import PictureAxes, PictureAxes3D
 
-    figure = Figure(figsize=(width_in, height_in), dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
     if not spatial:
         return figure.add_subplot(axes_class=PictureAxes)
     with rc_context({"grid.color": GRID, "grid.linewidth": 0.6}):  # 3-D axes read these once, when they are made
@@ -102,10 +98,8 @@ def limits(points: NDArray[np.float64], margin: float, *, on_ground: bool) -> tu
 
 def require_matplotlib() -> None:
     """Raise MissingExtraError where matplotlib is not installed."""
-    try:
+    with needs_extra("plot", "drawing"):
         import matplotlib  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("plot", "drawing") from None
 
 
 def is_spatial(ax: Axes) -> bool:

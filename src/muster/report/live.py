@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from types import TracebackType
 from typing import Any, Self
 
-from muster.mission.errors import MissingExtraError, NetworkError
+from muster.mission.errors import NetworkError
+from muster.mission.extras import needs_extra
 from muster.mission.model import Mission
 from muster.report.record import json_messages, scene
 from muster.report.record.publisher import Publisher
@@ -121,10 +122,8 @@ class _Listener:
 
 
 def _foxglove() -> Any:
-    try:
+    with needs_extra("foxglove", "a mission shown live in Foxglove"):
         import foxglove
-    except ImportError:
-        raise MissingExtraError("foxglove", "a mission shown live in Foxglove") from None
     return foxglove
 
 

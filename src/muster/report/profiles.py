@@ -7,15 +7,14 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.report.canvas import new_axes, quiet_frame
 from muster.report.styles import DASHED, PALETTE, QUIET_TEXT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Floats = npt.NDArray[np.float64]
 Steps = tuple[str, Floats, Floats]
 """A name, ratios (k,) in order, and the share (k,) from each of them on."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.model import Map
@@ -101,6 +102,16 @@ class Measure:
     means: Mapping[str, float]
     spreads: Mapping[str, float]
     printed: float | None = None
+
+    @classmethod
+    def of(cls, label: str, values: Mapping[str, Sequence[float]], printed: float | None = None) -> Measure:
+        """Return the measure whose `values` were found for each robot, one a run; the spread of one value is 0."""
+        return cls(
+            label=label,
+            means={robot: fmean(each) for robot, each in values.items()},
+            spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
+            printed=printed,
+        )
 
 
 def plot_measures(measures: Sequence[Measure], title: str, columns: int = 4) -> Figure:

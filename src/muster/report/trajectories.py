@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.report.canvas import new_figure, quiet_frame
 from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Floats = npt.NDArray[np.float64]
 
 _INCHES = 3.6
 """Width and height of one panel."""

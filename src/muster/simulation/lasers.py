@@ -12,6 +12,7 @@ import numpy as np
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
+from muster.mission.ranges import require_counts
 from muster.motion.grid import Floats
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.world import SimulatedWorld
@@ -55,8 +56,7 @@ class Laser:
         seed: int = 0,
         height_m: float | None = None,
     ) -> None:
-        if seed < 0:
-            raise ParameterError(f"seed: {seed}; expected a whole number of at least 0")
+        require_counts(0, seed=seed)
         self.scanner = scanner or Scanner()
         self._world = world
         self._robot = robot

@@ -16,9 +16,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
-from muster.mission.errors import ParameterError
+from muster.mission.arrays import Floats
+from muster.mission.ranges import require_finite_positive
 from muster.motion.map_world import Body, World
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.dubins_words import Pose, words
@@ -26,7 +26,6 @@ from muster.perception.laser import NO_DISCS, Scanner, faces_at
 from muster.perception.obstacles import Detection, Obstacle, obstacles
 from muster.simulation.walls import faces_and_slabs
 
-Floats = npt.NDArray[np.float64]
 _LASER_M = 0.1
 """Height of the laser of a robot on the ground."""
 _LOOKED_AT = 8
@@ -60,9 +59,8 @@ class Parameters:
     patience: float = 5.0
 
     def __post_init__(self) -> None:
-        for name in ("turning_radius_m", "safe_m", "step_m", "arrival_m", "patience"):
-            if not 0 < getattr(self, name) < math.inf:
-                raise ParameterError(f"{name}: {getattr(self, name)}; expected a finite number above 0")
+        require_finite_positive(turning_radius_m=self.turning_radius_m, safe_m=self.safe_m, step_m=self.step_m)
+        require_finite_positive(arrival_m=self.arrival_m, patience=self.patience)
 
 
 @dataclass(frozen=True, eq=False)

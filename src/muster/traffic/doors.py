@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Bools
 from muster.mission.lanes import Lanes
 from muster.mission.model import Mission
 from muster.motion.grid import Floats
@@ -18,7 +18,6 @@ from muster.traffic.lane_sections import ON_LANE_M
 if TYPE_CHECKING:
     import shapely
 
-Bools = npt.NDArray[np.bool_]
 Pieces = Floats
 """(n, 2 ends, 2) metres."""
 

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats, Indices
 from muster.traffic.lane_sections import Section, held_back
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 _NEARER_M = 1e-9
 

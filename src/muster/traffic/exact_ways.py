@@ -10,8 +10,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Bools, Floats, Indices
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.path import Path
 from muster.motion.paths import PathFinder
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 
     from scipy.spatial import cKDTree
 
-Bools = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 _CANDIDATES = 12
 """Nearest points that a place may be joined to."""

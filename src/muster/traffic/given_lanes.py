@@ -9,17 +9,15 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Floats
 from muster.mission.lanes import Lane, Lanes
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.paths import PathFinder
 from muster.traffic.exact_ways import Network, with_place
 from muster.traffic.lane_sections import ON_LANE_M, Section, sections
 from muster.traffic.part import planar
-
-Floats = npt.NDArray[np.float64]
 
 _WHOLE = 1e-9
 """Of a lane's length: as many robots fit as do, whatever float64 says."""

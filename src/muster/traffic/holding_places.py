@@ -5,11 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-Bools = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from muster.mission.arrays import Bools, Floats, Indices
 
 _AROUND = 2.0
 """Others get past where they do so within so many times the length of the edges there, and the reach of a robot."""

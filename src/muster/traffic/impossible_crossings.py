@@ -12,13 +12,11 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Bools, Indices
 from muster.traffic.joint_positions import JointPositions, most_moves
 from muster.traffic.roadmap import Roadmap
 
-Bools = npt.NDArray[np.bool_]
-Indices = npt.NDArray[np.int64]
 T = TypeVar("T")
 
 _MOST_MOVES = 4_000_000

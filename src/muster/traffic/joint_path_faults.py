@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-import numpy.typing as npt
-
-Bools = npt.NDArray[np.bool_]
+from muster.mission.arrays import Bools
 
 
 def faults(

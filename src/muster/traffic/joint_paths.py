@@ -14,14 +14,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Bools, Indices
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts
 
-Bools = npt.NDArray[np.bool_]
-Indices = npt.NDArray[np.int64]
 _AT_ONCE = 100
 """Expansions between two looks at the clock."""
 _MOST_ENTRIES = 40_000_000
@@ -41,8 +40,7 @@ class Parameters:
     refine: bool = False
 
     def __post_init__(self) -> None:
-        if self.samples < 1:
-            raise ParameterError(f"samples: {self.samples}; expected at least 1")
+        require_counts(1, samples=self.samples)
         if self.anytime and self.refine:
             raise ParameterError("refine: with anytime; expected one of them")
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
-
-Bools = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
 
 _FARTHEST = 0.75
 """Cells that a point moves at most."""

@@ -7,9 +7,9 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Bools, Floats, Indices
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.distance_field import distance_field
@@ -18,10 +18,6 @@ from muster.traffic.exact_ways import Network, joined_exactly
 from muster.traffic.lane_middles import to_middle
 from muster.traffic.lane_points import Room, lane_points
 from muster.traffic.roadmap_edges import Regions, Sight, detours, pruned, visible_pairs, ways_to_lanes
-
-Bools = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 _CELLS = 12
 """Cells between two robots that do not touch, where the map leaves the choice."""

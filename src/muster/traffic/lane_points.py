@@ -19,11 +19,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Bools = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from muster.mission.arrays import Bools, Floats
 
 _SHIFTS = 8
 """Shifts of the lattice that are tried, along each axis."""

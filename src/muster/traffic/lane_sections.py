@@ -10,11 +10,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-Bools = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from muster.mission.arrays import Bools, Floats, Indices
 
 ON_LANE_M = 0.05
 """Who is no farther from the middle of a lane is on it, and who is no farther from its end is at its node."""

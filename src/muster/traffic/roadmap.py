@@ -7,7 +7,6 @@ widest robots, with the distances, as [hoenig2018] annotates roadmaps; for two s
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,6 +15,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.mission.lanes import Lanes
+from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
 from muster.traffic.edge_conflicts import conflicts
@@ -251,9 +251,7 @@ class Roadmap:
 
 def _checked(radius_m: float, margin_m: float, places: npt.ArrayLike) -> tuple[float, Floats]:
     """How far apart two robots do not touch, and the places (k, 2)."""
-    for name, value in (("radius_m", radius_m), ("margin_m", margin_m)):
-        if not 0 < value < math.inf:
-            raise ParameterError(f"{name}: {value}; expected a finite number above 0")
+    require_finite_positive(radius_m=radius_m, margin_m=margin_m)
     given = np.asarray(places, dtype=np.float64)
     return 2 * radius_m + margin_m, given[:, :2] if given.size else np.zeros((0, 2))
 

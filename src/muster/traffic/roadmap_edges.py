@@ -7,13 +7,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
-
-Bools = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from muster.mission.arrays import Bools, Floats, Indices
 
 _SAME = 1e-6
 """Relative: pieces of a square count as what they are, whatever float64 says."""

@@ -13,9 +13,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
 from muster.motion.maps.raster import grid_of
@@ -24,7 +25,6 @@ from muster.motion.paths import PathFinder
 from muster.traffic.reservations import Cell
 from muster.traffic.space_time import NotTogether, Parameters, together
 
-Floats = npt.NDArray[np.float64]
 Ends = Mapping[str, tuple[Sequence[float], Sequence[float]]]
 _DIAGONAL, _STRAIGHT = math.sqrt(5), math.sqrt(2)
 _CELLS_OF_POINTS = 60
@@ -96,8 +96,7 @@ def shared_paths(
     """
     if not isinstance(space, GridSpace | PolygonSpace):
         raise ParameterError("space: with heights; expected the plane: robots of one height share it")
-    if not 0 < speed_mps < math.inf:
-        raise ParameterError(f"speed_mps: {speed_mps}; expected a finite number above 0")
+    require_finite_positive(speed_mps=speed_mps)
     cell, neighbours = _cell(space, radius_m, cell_m)
     grid = _cells(space, cell)
     finder = PathFinder(space)

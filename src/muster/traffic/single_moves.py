@@ -21,10 +21,10 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Floats, Indices
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 Outcome = Literal["arrived", "horizon", "unfinished", "impossible"]
 NO_GOAL = -1
 
@@ -78,9 +78,7 @@ class Parameters:
     def __post_init__(self) -> None:
         if not self.turn_m_per_rad >= 0:
             raise ParameterError(f"turn_m_per_rad: {self.turn_m_per_rad}; expected at least 0")
-        for name, value in (("horizon", self.horizon), ("expansions", self.expansions), ("tries", self.tries)):
-            if value is not None and value < 1:
-                raise ParameterError(f"{name}: {value}; expected at least 1")
+        require_counts(1, horizon=self.horizon, expansions=self.expansions, tries=self.tries)
 
 
 @dataclass(frozen=True)

@@ -18,12 +18,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Bools
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts
 from muster.traffic.reservations import Cell, Reservations
 
-Bools = npt.NDArray[np.bool_]
 Ways = dict[str, list[Cell]]
 """The cells of each robot, one a step."""
 _SIDES = ((0, 1), (1, 0), (0, -1), (-1, 0))
@@ -46,10 +46,8 @@ class Parameters:
     def __post_init__(self) -> None:
         if self.neighbours not in (4, 8):
             raise ParameterError(f"neighbours: {self.neighbours}; expected 4 or 8")
-        for name, least in (("window", 2), ("orders", 1), ("steps", 1)):
-            value = getattr(self, name)
-            if value is not None and value < least:
-                raise ParameterError(f"{name}: {value}; expected at least {least}")
+        require_counts(2, window=self.window)
+        require_counts(1, orders=self.orders, steps=self.steps)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from statistics import fmean
 from muster.allocation.registry import ALLOCATORS
 from muster.library import mission_names, mission_path
 from muster.mission.model import OBJECTIVES as ALL_OBJECTIVES
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, over_seeds
 from muster_studies.runs import Case, Outcome, Sample, mission_named
@@ -136,9 +137,7 @@ def _remarks(effort: Effort, found: Samples) -> tuple[str, ...]:
 
 
 ALLOCATORS_STUDY = Repetition(
-    name="allocators",
-    summary="all allocators on all shipped missions and objectives",
-    document="all shipped missions",
+    **description("allocators"),
     reproductions=(Summary(), *map(MissionTable, MISSIONS)),
     perform=over_seeds,
     seeds=lambda effort: effort.seeds or 1,

@@ -18,6 +18,7 @@ from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster_studies.areas.regions import PublishedWay, regions
 from muster_studies.areas.shapes import GRIDS, SHAPES, Field, field_of_grid, random_field
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.instances.random_areas import surface
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
@@ -262,9 +263,7 @@ def _survey_field() -> Field:
 _TABLES: tuple[Reproduction[Job, Found], ...] = (Shapes(), Drawn(), Grids(), Regions(), Teams())
 
 AREAS = Repetition(
-    name="areas",
-    summary="ways over areas beside a lower bound, spanning trees and published ways, shared among 1 to 5 robots",
-    document="lower bounds; lengths by Gabriely and Rimon (2001), Kapoutsis et al. (2017), Apostolidis et al. (2022)",
+    **description("areas"),
     reproductions=_TABLES,
     perform=one_by_one(perform),
     seeds=lambda effort: None,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
@@ -13,8 +13,8 @@ from muster.mission.model import Mission, Robot, Task
 from muster.report.canvas import new_figure, quiet_frame
 from muster.report.styles import ALARM, QUIET_TEXT, TEXT
 from muster_studies.auction_5.auctions import PUBLISHED_NAMES, Auction, AuctionResult, hold
+from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
-from muster_studies.figures import StudyFigure
 from muster_studies.plan_pictures import PlanPanel, plan_figure
 from muster_studies.runs import mission_named
 from muster_studies.world_pictures import world_figure
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 _SEEN_FROM = ((25.0, -60.0), (20.0, 30.0), (60.0, -60.0))
 """Elevations and azimuths, degrees: where the print has several views of the same paths."""
-_NOT_PRINTED = "the thesis prints no coordinates of scenario 3: an instance of the same size, drawn with a fixed seed"
 
 
 @dataclass(frozen=True)
@@ -32,19 +31,6 @@ class _Scenario:
     number: int
     mission: str
     placement: str
-    tables: dict[str, str]
-    """By objective the table of the paths."""
-    differs: str = ""
-
-    def figure(self, number: str, bid: str, shows: str, draw: Any, differs: str = "") -> StudyFigure:
-        return StudyFigure(
-            number=number,
-            source="auction-thesis",
-            shows=f"scenario {self.number}: {shows}",
-            draw=draw,
-            tables=(self.tables[bid], f"scenario-{self.number}"),
-            differs="; ".join(text for text in (differs, self.differs) if text),
-        )
 
     def auction(self, bid: str) -> Auction:
         rule = "average-as-printed" if bid == "average" else bid
@@ -100,9 +86,9 @@ def _places(mission: Mission, drones: bool, tasks: bool) -> Figure:
     return figure
 
 
-_ONE = _Scenario(1, "auction-1", "append", {"total": "5.15"})
-_TWO = _Scenario(2, "auction-2-as-run", "insert", {"total": "5.18", "max": "5.19", "average": "5.20"})
-_THREE = _Scenario(3, "auction-3-seeded", "insert", dict.fromkeys(PUBLISHED_NAMES, "scenario-3"), _NOT_PRINTED)
+_ONE = _Scenario(1, "auction-1", "append")
+_TWO = _Scenario(2, "auction-2-as-run", "insert")
+_THREE = _Scenario(3, "auction-3-seeded", "insert")
 
 _PATHS = (
     (_ONE, "5.2", "total", False, 0),
@@ -130,16 +116,14 @@ _PLACES = ((_THREE, "5.13", True, False), (_THREE, "5.14", False, True), (_THREE
 """The scenario, the figure, whether drones are drawn, and whether tasks are."""
 
 
-def _figures() -> Iterator[StudyFigure]:
-    for scenario, number, at_s in _WORLDS:
-        shows, differs = "the drones on their way in Gazebo", "the physics world; its quadcopters, not the Firefly"
-        yield scenario.figure(number, "total", shows, partial(scenario.world, at_s), differs)
-    for scenario, number, drones, tasks in _PLACES:
-        what = " and ".join(word for word, drawn in (("drones", drones), ("tasks", tasks)) if drawn)
-        yield scenario.figure(number, "total", f"where the {what} are", partial(scenario.places, drones, tasks))
-    for scenario, number, bid, spatial, seen_from in _PATHS:
-        shows = f"the drones' paths {'in space' if spatial else 'from above'}, {PUBLISHED_NAMES[bid]}"
-        yield scenario.figure(number, bid, shows, partial(scenario.paths, bid, spatial, seen_from))
-
-
-FIGURES = tuple(sorted(_figures(), key=lambda figure: int(figure.number.partition(".")[2])))
+FIGURES = captioned(
+    "auction-5",
+    {
+        **{number: partial(scenario.world, at_s) for scenario, number, at_s in _WORLDS},
+        **{number: partial(scenario.places, drones, tasks) for scenario, number, drones, tasks in _PLACES},
+        **{
+            number: partial(scenario.paths, bid, spatial, seen_from)
+            for scenario, number, bid, spatial, seen_from in _PATHS
+        },
+    },
+)

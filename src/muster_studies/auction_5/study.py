@@ -7,6 +7,7 @@ from muster_studies.auction_5.paths import Paths, Positions
 from muster_studies.auction_5.pictures import FIGURES
 from muster_studies.auction_5.rounds import Bids, SubmittedBids
 from muster_studies.auction_5.teams import SCENARIO_1, SCENARIO_2, SCENARIO_3, SCENARIO_3_LEAST_CONTESTED
+from muster_studies.descriptions import description
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 
 _NOT_AS_DESCRIBED = (
@@ -17,18 +18,7 @@ _NOT_AS_DESCRIBED = (
 
 _TABLES: tuple[Reproduction[Auction, AuctionResult], ...] = (
     Bids("5.2"),
-    Bids("5.3"),
-    SubmittedBids("5.4"),
-    Bids("5.5"),
-    SubmittedBids("5.6"),
-    Bids("5.7"),
-    SubmittedBids("5.8"),
-    Bids("5.9"),
-    SubmittedBids("5.10"),
-    Bids("5.11"),
-    SubmittedBids("5.12"),
-    Bids("5.13"),
-    SubmittedBids("5.14"),
+    *(table for k in range(3, 15, 2) for table in (Bids(f"5.{k}"), SubmittedBids(f"5.{k + 1}"))),
     Paths("5.15", bids=("total",), placements=("append",)),
     SCENARIO_1,
     Positions(),
@@ -45,22 +35,8 @@ _TABLES: tuple[Reproduction[Auction, AuctionResult], ...] = (
     SCENARIO_3_LEAST_CONTESTED,
 )
 
-_LEGEND = (
-    "MiniSum, MiniMax and MiniAve are the bids total, max and average. append: a task goes to the end of the path; "
-    "insert: to where the path grows least. The lowest bid wins, unless a title says otherwise.",
-    "Own bids are those of the auction's book; with the one decimal that the thesis prints here, in full in the data. "
-    "-: no bid (-1 in the thesis).",
-    "Lengths in metres, those of published paths too, are recomputed by muster.verify. total: of all paths; max: of "
-    "the longest; average: of the way to a task.",
-    "done: tasks completed; most: tasks of the drone that has most; idle: drones without tasks; ms: processor time of "
-    "the allocator.",
-)
-
 AUCTION_5 = Repetition(
-    name="auction-5",
-    summary="sequential auction of tasks among drones, auction thesis, chapter 5",
-    document="auction thesis, chapter 5",
-    legend=_LEGEND,
+    **description("auction-5"),
     reproductions=_TABLES,
     perform=one_by_one(hold),
     seeds=lambda _: None,

@@ -10,14 +10,12 @@ from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from muster.mission.errors import MissingExtraError
+from muster.mission.arrays import Floats
+from muster.mission.extras import needs_extra
 from muster.motion.avoidance import Agents, Orca
 from muster.motion.avoidance.orca import Parameters
 from muster_studies.benches.measurement import Measurement
-
-Floats = npt.NDArray[np.float64]
 
 RADIUS_M, TOP_SPEED_MPS, SPACING_M, DT_S = 1.5, 2.0, 4.5, 0.25
 HORIZON_S, NEIGHBOURS, DISTANCE_M = 10.0, 10, 15.0
@@ -85,10 +83,8 @@ def rvo2_ms(scene: Scene) -> float:
 
 def rvo2(scene: Scene) -> Any:
     """A simulator of RVO2 with the scene's robots."""
-    try:
+    with needs_extra("studies", "comparing with RVO2"):
         import pyrvo
-    except ImportError:
-        raise MissingExtraError("studies", "comparing with RVO2") from None
     simulator = pyrvo.RVOSimulator(DT_S, DISTANCE_M, NEIGHBOURS, HORIZON_S, HORIZON_S, RADIUS_M, TOP_SPEED_MPS)
     for (x, y), (vx, vy) in zip(scene.positions, scene.preferred, strict=True):
         agent = simulator.add_agent((x, y))

@@ -16,8 +16,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Bools
 from muster.traffic.joint_path_faults import faults
 from muster.traffic.joint_paths import JointPaths, Parameters, costs, grid_graph, joint_paths
 from muster.traffic.move_faults import distances
@@ -26,7 +26,6 @@ from muster.traffic.movingai import Ends, read_map, read_scenario
 from muster.traffic.single_moves import MovePlanner
 from muster_studies.benches.measurement import Measurement
 
-Bools = npt.NDArray[np.bool_]
 FOLDER = "MUSTER_MAPF"
 WAREHOUSE, RANDOM, SCENARIO = "warehouse-10-20-10-2-1.map", "random-32-32-10.map", "random-32-32-10-random-1.scen"
 PREFIXES = (50, 100, 200, 300, 400)

@@ -9,16 +9,14 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Bools, Floats
 from muster.motion.free_space import GridSpace
 from muster.motion.grid import Grid
 from muster.motion.path import Path
 from muster.motion.paths import PathFinder, find
 from muster_studies.benches.measurement import Measurement
 
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
 Answer = TypeVar("Answer")
 
 

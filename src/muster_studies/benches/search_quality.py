@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from importlib.resources import files
+
+import msgspec
 
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
@@ -15,7 +17,6 @@ from muster.verification import Verdict
 from muster_studies.benches.measurement import Measurement
 from muster_studies.runs import accepted
 
-_FREE = ("prerequisites", "suitability")
 _WITHIN = 1e-4  # of the best known value: 0.01 %
 
 
@@ -44,37 +45,8 @@ class Case:
         return load(self.mission, salesmen=self.salesmen) if self.salesmen else load(self.mission)
 
 
-def _under_rules(mission: str, values: Sequence[float], seconds: float) -> Iterator[Case]:
-    """Without constraints, with prerequisites, with suitability, with both."""
-    rules: tuple[tuple[str, ...], ...] = (_FREE, ("suitability",), ("prerequisites",), ())
-    for ignored, best in zip(rules, values, strict=True):
-        yield Case(mission, "total+max", best, seconds, ignored)
-
-
-def _salesmen(mission: str, values: Sequence[float], seconds: float) -> Iterator[Case]:
-    for salesmen, best in zip((2, 3, 5, 7), values, strict=True):
-        yield Case(mission, "max", best, seconds, salesmen=salesmen)
-
-
-CASES: tuple[Case, ...] = (
-    *_under_rules("31T-6R", (191.1537, 199.3274, 206.6694, 213.5615), 1.0),
-    Case("31T-6R-as-run", "total+max", 206.0983, 1.0, ("prerequisites",)),
-    Case("31T-6R-as-run", "total+max", 210.4557, 1.0),
-    *_under_rules("16T-3R", (320.9016, 321.3168, 340.7139, 342.9001), 0.2),
-    *_under_rules("24T-5R", (170.7460, 174.4141, 186.3985, 189.2522), 0.5),
-    Case("31T-6R50", "total+max", 213.5615, 1.0),
-    Case("31T-3R44-3R26", "total+max", 219.4802, 1.0),
-    Case("31T-2R65-4R25", "total+max", 232.1816, 1.0),
-    Case("eil51-3", "total+max", 629.9601, 0.5),
-    Case("eil51-5", "total+max", 629.9601, 0.5),
-    Case("eil51-7", "total+max", 629.9601, 0.5),
-    Case("berlin52-5", "total+max", 11923.2947, 1.0),
-    Case("eil76-7", "total+max", 778.0283, 1.0),
-    *_salesmen("eil51", (222.7334, 159.5715, 118.1338, 112.0714), 2.0),
-    *_salesmen("berlin52", (4110.2131, 3069.5857, 2440.9220, 2440.9220), 2.0),
-    Case("flood", "total", 1501.7281, 2.0, weight=124.0),
-    *_salesmen("eil76", (280.8539, 195.7222, 142.8842, 127.5617), 5.0),
-)
+_FILE = files("muster_studies.benches") / "best_known.yaml"
+CASES: tuple[Case, ...] = msgspec.yaml.decode(_FILE.read_bytes(), type=tuple[Case, ...])
 
 
 @dataclass(frozen=True)

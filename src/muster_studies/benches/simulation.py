@@ -19,7 +19,7 @@ from typing import Any
 
 import yaml
 
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 from muster.mission.model import Mission, Robot
 from muster.motion.port import Waypoint
 from muster.simulation import KinematicWorld
@@ -66,11 +66,9 @@ def ir_sim_rate(count: int) -> float:
     """
     os.environ["MPLBACKEND"] = "Agg"  # no window
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
-    try:
-        with contextlib.redirect_stdout(sys.stderr):  # it tells about windows that it cannot open
-            import irsim
-    except ImportError:
-        raise MissingExtraError("studies", "the comparison with IR-SIM") from None
+    # It tells about windows that it cannot open.
+    with needs_extra("studies", "the comparison with IR-SIM"), contextlib.redirect_stdout(sys.stderr):
+        import irsim
     with tempfile.TemporaryDirectory() as folder:
         scene = Path(folder) / "ring.yaml"
         scene.write_text(yaml.safe_dump(_their_scene(count)), encoding="utf-8")

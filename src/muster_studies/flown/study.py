@@ -14,6 +14,7 @@ from muster.mission.model import Mission
 from muster.planning.judging import verify
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.runs import mission_named
@@ -128,9 +129,7 @@ def _has_bodies(name: str) -> bool:
 _TABLES: tuple[Reproduction[Job, Times], ...] = (Shipped(), Drawn())
 
 FLOWN = Repetition(
-    name="flown",
-    summary="planned makespans beside those of the kinematic world",
-    document="no publication: the kinematic world, without other robots in the way",
+    **description("flown"),
     reproductions=_TABLES,
     perform=one_by_one(lambda job: times_of(job.mission)),
     seeds=lambda effort: None,

@@ -5,13 +5,12 @@ A battery lasts for 0.6 of the mean route of the best plan without batteries.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from random import Random
-from types import MappingProxyType
 
 from muster.generation.charging import with_batteries
 from muster.mission.model import Mission
+from muster_studies.instances.references import numbered
 from muster_studies.instances.solomon import REFERENCES, solomon_instance
 
 _STATIONS = 20
@@ -19,9 +18,7 @@ _SHARE_OF_ROUTE = 0.6
 _ROBOTS = 2
 """So many times the robots of the plan without batteries."""
 
-CHARGING_REFERENCES: Mapping[tuple[str, int], float] = MappingProxyType(
-    {("R101", 0): 1912.1572, ("C101", 0): 1448.0674}
-)
+CHARGING_REFERENCES = numbered("charging")
 """By instance and seed: the total that `search` found in 150 s of processor time."""
 
 

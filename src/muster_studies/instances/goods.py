@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from importlib.resources import as_file, files
-from types import MappingProxyType
 
 from muster.mission.electric_vrptw import read_electric_vrptw
 from muster.mission.errors import ParameterError
 from muster.mission.li_lim import read_li_lim
 from muster.mission.model import Mission
+from muster_studies.instances.references import numbered
 
 _FOLDER = "goods_instances"
 _TRANSPORTS = ("lc101", "lr101")
 
-GOODS_REFERENCES: Mapping[tuple[str, int], float] = MappingProxyType(
-    {
-        ("lc101", 10): 828.94,
-        ("lr101", 19): 1650.80,
-        ("c101C5", 2): 257.75,
-        ("r105C5", 2): 156.08,
-        ("c101_21", 12): 1053.83,
-    }
-)
+GOODS_REFERENCES = numbered("goods")
 """By instance and number of robots: the total distance of the best plan known."""
 
 

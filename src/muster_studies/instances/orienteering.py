@@ -9,55 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib.resources import files
-from types import MappingProxyType
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Rules, Task
+from muster_studies.instances.references import references
 
 _FOLDER = "orienteering_instances"
 
-LIMITS: Mapping[str, float] = MappingProxyType(
-    {
-        "p1.3.p": 25.0,
-        "p2.3.g": 10.7,
-        "p3.2.o": 42.5,
-        "p3.4.p": 22.5,
-        "p4.2.k": 75.0,
-        "p4.2.n": 90.0,
-        "p4.3.k": 50.0,
-        "p4.3.r": 73.3,
-        "p4.4.l": 40.0,
-        "p4.4.t": 60.0,
-        "p5.2.h": 20.0,
-        "p5.3.x": 40.0,
-        "p6.2.n": 40.0,
-        "p7.2.m": 130.0,
-        "p7.3.o": 100.0,
-        "p7.4.t": 100.0,
-    }
-)
+LIMITS: Mapping[str, float] = {name: row["limit"] for name, row in references()["orienteering"].items()}
 """By instance, pSET.ROBOTS.LETTER, the limit on each path."""
 
-BEST_SCORES: Mapping[str, int] = MappingProxyType(
-    {
-        "p1.3.p": 220,
-        "p2.3.g": 145,
-        "p3.2.o": 690,
-        "p3.4.p": 560,
-        "p4.2.k": 1022,
-        "p4.2.n": 1174,
-        "p4.3.k": 919,
-        "p4.3.r": 1273,
-        "p4.4.l": 880,
-        "p4.4.t": 1285,
-        "p5.2.h": 410,
-        "p5.3.x": 1555,
-        "p6.2.n": 1260,
-        "p7.2.m": 827,
-        "p7.3.o": 874,
-        "p7.4.t": 1077,
-    }
-)
+BEST_SCORES: Mapping[str, int] = {name: row["score"] for name, row in references()["orienteering"].items()}
 """By instance the greatest score known, by [archetti2007] and others."""
 
 

@@ -7,9 +7,7 @@ objective is max for the instances of He and Hao [he2022] [he2023], total for th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from importlib.resources import files
-from types import MappingProxyType
 
 import numpy as np
 
@@ -17,35 +15,15 @@ from muster.generation.clustered import closed_routes, pairs
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
+from muster_studies.instances.references import numbered
 
 _FOLDER = "routing_instances"
 _SIDE_M = 1000.0
 
-LONGEST_ROUTES: Mapping[tuple[str, int], float] = MappingProxyType(
-    {
-        ("mtsp100", 3): 8509.1625,
-        ("rand100", 5): 2409.6335,
-        ("mtsp150", 5): 8417.0232,
-        ("kroa200", 3): 10691.0260,
-        ("kroa200", 5): 7412.1231,
-        ("rat783", 5): 1941.8964,
-        ("rat783", 10): 1313.0089,
-        ("md2", 10): 124.0668,
-        ("md4", 5): 438.0390,
-        ("md12", 15): 72.9210,
-        ("md24", 8): 195.9919,
-    }
-)
+LONGEST_ROUTES = numbered("longest_routes")
 """By instance and number of robots: the least longest route published, recomputed from the routes [he2026]."""
 
-SHORTER_ROUTES: Mapping[tuple[str, int], float] = MappingProxyType(
-    {
-        ("rat783", 5): 1938.8850,
-        ("rat783", 10): 1298.3266,
-        ("md2", 10): 123.8598,
-        ("md24", 8): 194.9626,
-    }
-)
+SHORTER_ROUTES = numbered("shorter_routes")
 """By instance and number of robots: the longest route of `shorter_plan`, which is less than the least published."""
 
 

@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from importlib.resources import as_file, files
-from types import MappingProxyType
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.solomon import read_solomon
+from muster_studies.instances.references import numbered
 
 _FOLDER = "solomon_instances"
 
-REFERENCES: Mapping[tuple[str, int], float] = MappingProxyType(
-    {
-        ("C101", 10): 828.94,
-        ("R101", 19): 1650.80,
-        ("R101", 20): 1642.88,
-        ("RC101", 14): 1696.95,
-        ("RC101", 16): 1643.41,
-        ("C201", 3): 591.56,
-        ("R201", 4): 1252.37,
-    }
-)
+REFERENCES = numbered("solomon")
 """By instance and number of robots: the total distance of the best plan known, which keeps the loads too."""
 
 

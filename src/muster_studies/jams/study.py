@@ -14,6 +14,7 @@ from muster.mission.model import Mission
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster.state import ExecutionEvent
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.jams.scenes import KINEMATICS, SCENES
 from muster_studies.jams.space_time import space_time_s
@@ -195,9 +196,7 @@ def _figures(runs: list[Outcome]) -> dict[str, Cell]:
 _TABLES: tuple[Reproduction[Job, Outcome], ...] = (Jams(), RESERVED, SWAPPING)
 
 JAMS = Repetition(
-    name="jams",
-    summary="which method of avoidance jams least in narrow places, and planned traffic there",
-    document="no publication: the kinematic world",
+    **description("jams"),
     reproductions=_TABLES,
     perform=one_by_one(outcome_of),
     seeds=lambda effort: effort.seeds or (QUICK_SEEDS if effort.quick else SEEDS),

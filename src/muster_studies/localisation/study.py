@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median
 
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.localisation.drives import SCAN_S, SCANNER, SLIP, TURN_RAD
 from muster_studies.localisation.errors import (
@@ -149,10 +150,7 @@ _LEGEND = (
 )
 
 LOCALISATION = Repetition(
-    name="localisation",
-    summary="where a robot is on a map: tracking, global localisation, a kidnapped robot",
-    document="TCF thesis, sections 2.1.1 and 2.2.2; auction thesis, section 2.4",
-    legend=_LEGEND,
+    **description("localisation", _LEGEND),
     reproductions=_TABLES,
     perform=one_by_one(Job.perform),
     extras=("map",),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from statistics import fmean, stdev
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +10,8 @@ import numpy as np
 from muster.mission.plan import Plan, Route
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster.running.worlds import WORLDS
+from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
-from muster_studies.figures import StudyFigure
 from muster_studies.market_5.arena import BEACONS, SURVIVORS
 from muster_studies.market_5.searches import LANDMARKED, PLACES, Search, SearchResult, performed, searches
 from muster_studies.market_5.tracks import SHOWN, measured, team
@@ -59,12 +58,8 @@ def _metrics(effort: Effort) -> Figure:
 
 def _measure(found: Sequence[SearchResult], metric: Metric, place: str, robots: Sequence[str]) -> Measure:
     values = {robot: measured(found, metric, robot, place) for robot in robots}
-    return Measure(
-        label=f"{metric.label}\n{place}",
-        means={robot: fmean(each) for robot, each in values.items()},
-        spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
-        printed=printed_goal_error_m() if (metric.name, place) == ("goal_error", LANDMARKED) else None,
-    )
+    printed = printed_goal_error_m() if (metric.name, place) == ("goal_error", LANDMARKED) else None
+    return Measure.of(f"{metric.label}\n{place}", values, printed)
 
 
 def _world(effort: Effort) -> Figure:
@@ -74,29 +69,4 @@ def _world(effort: Effort) -> Figure:
     return world_figure(mission_of(ARENA), plan, "The arena in the physics world")
 
 
-FIGURES = (
-    StudyFigure(
-        number="4",
-        source="market-paper",
-        shows="the arena with its obstacles, survivors and three robots, in V-REP and as a photograph",
-        draw=_world,
-        tables=("Figure 7",),
-        differs="the simulated half alone, in the physics world; places are chosen here",
-    ),
-    StudyFigure(
-        number="7",
-        source="market-paper",
-        shows="rangeBot's reference and actual trajectory on the map, and the survivor that it localised",
-        draw=_tracking,
-        tables=("Figure 7",),
-        differs="its deviation over time beneath, with landmarks, as believed, and by odometry alone",
-    ),
-    StudyFigure(
-        number="8",
-        source="market-paper",
-        shows="mean and spread of each robot's errors, distances and times as bars",
-        draw=_metrics,
-        tables=("Figure 8",),
-        differs="searches in the physics world, with landmarks, as believed, and by odometry alone",
-    ),
-)
+FIGURES = captioned("market-5", {"4": _world, "7": _tracking, "8": _metrics})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from muster_studies.descriptions import description
 from muster_studies.market_5.pictures import FIGURES
 from muster_studies.market_5.searches import Search, SearchResult, performed
 from muster_studies.market_5.targets import Figure7, Targets
@@ -11,17 +12,8 @@ from muster_studies.rescue.flights import repetitions
 
 _TABLES: tuple[Reproduction[Search, SearchResult], ...] = (Figure7(), Figure8(), Goals(), Targets(), Localisation())
 
-_LEGEND = (
-    "The mission is market-rescue-arena, carried out in the kinematic and in the physics world, where the paper took "
-    "V-REP; robots steer by odometry and laser landmarks, or by odometry alone. Places, noise and landmarks are ours. "
-    "Allocation, times and failing robots: study rescue.",
-)
-
 MARKET_5 = Repetition(
-    name="market-5",
-    summary="search and tracking with lasers, market paper, section 5",
-    document="market paper, sections 4.2, 4.3 and 5",
-    legend=_LEGEND,
+    **description("market-5"),
     reproductions=_TABLES,
     perform=one_by_one(performed),
     seeds=repetitions,

@@ -80,17 +80,6 @@ class Targets:
     """Which survivors the team finds, when, and how far off."""
 
     number: str = "Targets"
-    columns: tuple[str, ...] = (
-        "world",
-        "survivor",
-        "found",
-        "first by",
-        "first s",
-        "sightings",
-        "each m",
-        "team m",
-        "team most m",
-    )
 
     def jobs(self, effort: Effort) -> Iterator[Search]:
         yield from searches(effort)
@@ -98,16 +87,16 @@ class Targets:
     def table(self, effort: Effort, results: Mapping[Any, Any]) -> Table:
         rows = []
         for world, found in found_by_world(effort, results):
-            rows += [row(self.columns, {"world": world, "survivor": name, **_cells(found, name)}) for name in SURVIVORS]
+            rows += [{"world": world, "survivor": name, **_cells(found, name)} for name in SURVIVORS]
             elsewhere = sum(len(one.found().extra) for one in found)
-            rows.append(row(self.columns, {"world": world, "survivor": NOBODY, "found": str(elsewhere)}))
+            rows.append({"world": world, "survivor": NOBODY, "found": str(elsewhere)})
         notes = (
             f"Survivors are cylinders of {2 * CYLINDER_RADIUS_M} m, unknown to the robots. Found is what was seen "
             f"{LEAST} times within centimetres, {FARTHEST_M} m from a survivor at most; {NOBODY}: found where nothing "
             "is. first s: mean of when it was first seen. Robots go to known places, as the paper's do, by odometry "
             "with landmarks; what they find does not change the plan.",
         )
-        return Table(self.number, "Survivors that the team finds", self.columns, tuple(rows), notes, decimals=4)
+        return Table.of_cells(self.number, "Survivors that the team finds", rows, notes, decimals=4)
 
 
 def _cells(found: Sequence[SearchResult], survivor: str) -> dict[str, Cell]:

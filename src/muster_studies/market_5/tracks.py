@@ -149,17 +149,6 @@ class Localisation:
     """How far robots were off where they took themselves to be, by odometry alone and with landmarks."""
 
     number: str = "Localisation"
-    columns: tuple[str, ...] = (
-        "world",
-        "robot",
-        "alone mean m",
-        "alone most m",
-        "landmarks mean m",
-        "landmarks most m",
-        "alone surprise",
-        "landmarks surprise",
-        "better",
-    )
 
     def jobs(self, effort: Effort) -> Iterator[Search]:
         yield from searches(effort)
@@ -167,9 +156,7 @@ class Localisation:
     def table(self, effort: Effort, results: Mapping[Any, Any]) -> Table:
         rows = []
         for world, found in found_by_world(effort, results):
-            rows += [
-                row(self.columns, {"world": world, "robot": robot, **_off(found, robot)}) for robot in team(effort)
-            ]
+            rows += [{"world": world, "robot": robot, **_off(found, robot)} for robot in team(effort)]
         notes = (
             "Metres from where the robot was, over all steps of all searches. surprise: squared error in units of the "
             "filter's own covariance, by coordinate: 1 of a filter that knows its errors, less of one that is too "
@@ -177,7 +164,7 @@ class Localisation:
             "The paper prints nothing of this. Landmarks are six cylinders at known places, ours.",
         )
         title = "How far robots are off where they take themselves to be"
-        return Table(self.number, title, self.columns, tuple(rows), notes, decimals=4)
+        return Table.of_cells(self.number, title, rows, notes, decimals=4)
 
 
 def _off(found: Sequence[SearchResult], robot: str) -> dict[str, Cell]:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.report import plot_gantt, plot_routes
+from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
-from muster_studies.figures import StudyFigure
 from muster_studies.market_rescue.scenario import market_case
 from muster_studies.runs import mission_named, perform
 
@@ -33,21 +33,4 @@ def _chart(effort: Effort) -> Axes:
     return plot_gantt(*_planned(effort))
 
 
-FIGURES = (
-    StudyFigure(
-        number="5",
-        source="market-paper",
-        shows="which robot does which of five survivors",
-        draw=_routes,
-        tables=("Figure 5",),
-        differs="drawn as routes; the paper prints no places",
-    ),
-    StudyFigure(
-        number="6",
-        source="market-paper",
-        shows="how long each robot travels and executes",
-        draw=_chart,
-        tables=("Figure 6",),
-        differs="by the judge's schedule; other places, so that only times of execution compare",
-    ),
-)
+FIGURES = captioned("market-rescue", {"5": _routes, "6": _chart})

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from types import MappingProxyType
+
+import msgspec
 
 from muster_studies.effort import Effort
 from muster_studies.peers.contest import Match, Result, Run, Standings, runs_of, standings_of
-from muster_studies.peers.gaps import Gap, above, gap_cells, gap_columns, mean_cells
+from muster_studies.peers.gaps import Gap, above, below, gap_cells, gap_columns, mean_cells
 from muster_studies.peers.timed_effort import QUICK_S, seeds_of
 from muster_studies.tables import Cell, Notes, Table
 
@@ -41,10 +46,10 @@ class Family:
     solvers: tuple[str, ...]
     remark: str
     known: Mapping[str, float]
-    gap: Gap = above
-    limits_s: tuple[float, ...] = (2.0, 10.0)
-    only: Mapping[float, tuple[str, ...]] = field(default_factory=dict)
-    complete: bool = False
+    gap: Gap
+    limits_s: tuple[float, ...]
+    only: Mapping[float, tuple[str, ...]]
+    complete: bool
 
     def jobs(self, effort: Effort) -> list[Run]:
         matches = {s: [self._match(name) for name in self._missions(effort, s)] for s in self._limits(effort)}
@@ -88,3 +93,41 @@ class Family:
     def _gaps(self, mission: str, reference: float, standings: Standings, notes: Notes) -> list[Cell]:
         match = self._match(mission)
         return gap_cells([standings[match, solver] for solver in self.solvers], reference, self.gap, notes)
+
+
+_GAPS: Mapping[str, Gap] = {"above": above, "below": below}
+
+
+def family_of(number: str, known: Mapping[str, float] = MappingProxyType({})) -> Family:
+    """Return the table of that number, as `families.yaml` describes it, beside the best values known.
+
+    Parameters
+    ----------
+    number : str
+        Number of the table.
+    known : Mapping[str, float]
+        By mission the best value known; where the file names no missions, these are all.
+    """
+    described = _described()[number]
+    fields = msgspec.structs.asdict(described)
+    fields |= {"missions": described.missions or tuple(known), "gap": _GAPS[described.gap]}
+    return Family(number=number, known=known, **fields)
+
+
+class _Described(msgspec.Struct, forbid_unknown_fields=True):
+    title: str
+    objective: str
+    quick: str
+    solvers: tuple[str, ...]
+    remark: str
+    missions: tuple[str, ...] = ()
+    gap: str = "above"
+    limits_s: tuple[float, ...] = (2.0, 10.0)
+    only: dict[float, tuple[str, ...]] = {}
+    complete: bool = False
+
+
+@cache
+def _described() -> dict[str, _Described]:
+    content = (files("muster_studies.peers") / "families.yaml").read_bytes()
+    return msgspec.yaml.decode(content, type=dict[str, _Described])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from muster_studies.descriptions import description
 from muster_studies.peers.contest import PEERS, Result, Run
 from muster_studies.peers.goods_tables import CHARGING, CUSTOMERS, LOADS, PEERS_WITH_GOODS, TRANSPORTS
 from muster_studies.peers.timed_contest import timed_contest
@@ -11,16 +12,9 @@ from muster_studies.repetition import Repetition
 def peers_goods_study() -> Repetition[Run, Result]:
     """`search` beside PyVRP, OR-Tools, VROOM and the best values known, one run at a time."""
     return timed_contest(
-        name="peers-goods",
-        summary="search beside PyVRP, OR-Tools and VROOM: loads and windows, transports, charging",
-        document="search beside solvers from elsewhere: loads and windows, transports, charging",
+        **description("peers-goods"),
         reproductions=(LOADS, CUSTOMERS, TRANSPORTS, CHARGING),
         peers=tuple(PEERS[name] for name in PEERS_WITH_GOODS),
         random="search and PyVRP are random; the others are not, and run once. search has its default settings. mean: "
         "over the missions on which all plans of all solvers do all tasks.",
-        notes=(
-            "That all tasks can be done is told to PyVRP as required clients and shipments, without which it leaves "
-            "more out; OR-Tools and VROOM may leave tasks out at a price above any way. Loads are pickups to PyVRP and "
-            "VROOM, a dimension to OR-Tools; transports are shipments to both, pickups and deliveries to OR-Tools.",
-        ),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from muster_studies.descriptions import description
 from muster_studies.peers.contest import PEERS, Result, Run
 from muster_studies.peers.routes_tables import FAMILIES
 from muster_studies.peers.timed_contest import timed_contest
@@ -11,9 +12,7 @@ from muster_studies.repetition import Repetition
 def peers_routes_study() -> Repetition[Run, Result]:
     """`search` beside PyVRP, OR-Tools and the best values known, one run at a time."""
     return timed_contest(
-        name="peers-routes",
-        summary="search beside PyVRP and OR-Tools: orienteering, longest routes, many depots, long tours",
-        document="search beside solvers from elsewhere: orienteering, longest routes, many depots, long tours",
+        **description("peers-routes"),
         reproductions=FAMILIES,
         peers=(PEERS["PyVRP"], PEERS["OR-Tools"]),
         conditions="Every solver has the same processor time for each plan",

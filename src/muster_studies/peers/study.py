@@ -6,8 +6,9 @@ from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass
 from statistics import fmean
 
-from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
+from muster.mission.ranges import require_positive
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
 from muster_studies.peers.contest import (
@@ -60,9 +61,7 @@ class Limits:
     peers_large: float
 
     def __post_init__(self) -> None:
-        for name, value in asdict(self).items():
-            if not value > 0:
-                raise ParameterError(f"{name}: {value}; expected a number above 0")
+        require_positive(**asdict(self))
 
 
 _USUAL, _SHORT = Limits(2.0, 1.0, 60.0), Limits(0.3, 0.1, 0.5)
@@ -100,9 +99,7 @@ def peers_study(limits: Limits | None = None) -> Repetition[Run, Result]:
     `limits` take the place of the usual ones.
     """
     return Repetition(
-        name="peers",
-        summary="search against OR-Tools, PyVRP and VROOM at equal time",
-        document="search against solvers from elsewhere",
+        **description("peers"),
         reproductions=tuple(Comparison(number=number, limits=limits) for number in (*OBJECTIVES, LARGE)),
         perform=one_by_one(undisturbed),
         seeds=_seeds,

@@ -29,7 +29,7 @@ def timed_contest(
     conditions: str = _CONDITIONS,
     rounded: str = _ROUNDED,
     random: str,
-    notes: tuple[str, ...] = (),
+    legend: tuple[str, ...] = (),
 ) -> Repetition[Run, Result]:
     """A study of `search` beside other solvers, one run at a time.
 
@@ -39,11 +39,11 @@ def timed_contest(
         how much time each solver has; how whole numbers are made for solvers.
     random
         which solvers are random, and what of the means.
-    notes
-        lines of the legend about the instances.
+    legend
+        lines about the instances, between the conditions and the settings.
     """
 
-    def legend(effort: Effort, found: Mapping[Run, Result]) -> tuple[str, ...]:
+    def remarks(effort: Effort, found: Mapping[Run, Result]) -> tuple[str, ...]:
         seeds = seeds_of(effort)
         quick = f" With --quick every limit is {QUICK_S:g} s." if effort.quick else ""
         return (
@@ -51,7 +51,7 @@ def timed_contest(
             f"{conditions} and one thread, and runs alone; handing over the model comes on top.{quick} All plans are "
             f"judged by muster.verify in double precision.{rounded}",
             f"mean and worst are of {'seed 0' if seeds == 1 else f'seeds 0 to {seeds - 1}'}. {random}",
-            *notes,
+            *legend,
             *(f"{peer.name}: {peer.settings}." for peer in peers),
             *([shares(found.values())] if any(peer.by_wall_clock for peer in peers) else []),
         )
@@ -65,5 +65,5 @@ def timed_contest(
         seeds=seeds_of,
         extras=("studies",),
         check=lambda effort: require_comparable(effort, peers),
-        remarks=legend,
+        remarks=remarks,
     )

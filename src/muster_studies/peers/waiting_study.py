@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from muster_studies.descriptions import description
 from muster_studies.peers.contest import WAITING_PEER, Result, Run, perform
 from muster_studies.peers.timed_contest import timed_contest
 from muster_studies.peers.waiting_table import Waiting
@@ -11,9 +12,7 @@ from muster_studies.repetition import Repetition
 def peers_waiting_study() -> Repetition[Run, Result]:
     """`search` beside CP-SAT on missions with prerequisites, one run at a time."""
     return timed_contest(
-        name="peers-waiting",
-        summary="search beside CP-SAT, which has more time: makespan of tasks that wait for each other",
-        document="search beside CP-SAT: makespan of tasks that wait for each other",
+        **description("peers-waiting"),
         reproductions=(Waiting(),),
         peers=(WAITING_PEER,),
         perform=perform,

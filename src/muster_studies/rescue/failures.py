@@ -11,7 +11,7 @@ from muster_studies.effort import Effort
 from muster_studies.rescue.flights import Flight, FlightResult, repetitions
 from muster_studies.rescue.scenario import undisturbed
 from muster_studies.rescue.teams import ARENA, PAIRS, POINTS, RICHER, mission_of, sent
-from muster_studies.tables import Cell, Notes, Table, row
+from muster_studies.tables import Cell, Notes, Table
 
 NONE_LOST = "none lost"
 TEAMS = (ARENA, PAIRS, POINTS, RICHER)
@@ -22,18 +22,6 @@ class Failures:
     """A row for each robot that fails, over several moments; and one for each team of which none does."""
 
     number: str = "Section 6"
-    columns: tuple[str, ...] = (
-        "team",
-        "fails",
-        "runs",
-        "done",
-        "lost",
-        "re-plans",
-        "moved",
-        "planning ms",
-        "mission s",
-        "mark",
-    )
 
     def jobs(self, effort: Effort) -> Iterator[Flight]:
         for team in TEAMS:
@@ -50,9 +38,9 @@ class Failures:
             flights += [(robot, failing(effort, team, robot)) for robot in sent(team, calm.iterations)]
             for robot, each in flights:
                 found = [results[flight] for flight in each]
-                rows.append(row(self.columns, {"team": team, "fails": robot, **_cells(team, robot, found, reasons)}))
+                rows.append({"team": team, "fails": robot, **_cells(team, robot, found, reasons)})
         notes = (*reasons.lines(), *_NOTES)
-        return Table(self.number, "A robot fails in mid mission", self.columns, tuple(rows), notes)
+        return Table.of_cells(self.number, "A robot fails in mid mission", rows, notes)
 
 
 def failing(effort: Effort, team: str, robot: str) -> list[Flight]:

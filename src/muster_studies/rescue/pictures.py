@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from statistics import fmean, stdev
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from muster.motion.grid import Floats
 from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
+from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
-from muster_studies.figures import StudyFigure
 from muster_studies.rescue.flights import FlightResult, repetitions
 from muster_studies.rescue.metrics import METRICS, SHOWN_ROBOT, Figure7, Metric, measured, noisy, printed_goal_error_m
 from muster_studies.rescue.teams import mission_of
@@ -46,29 +45,8 @@ def _metrics(effort: Effort) -> Figure:
 
 def _measure(metric: Metric, found: Mapping[str, Sequence[Tracking]]) -> Measure:
     values = {robot: [float(getattr(one, metric.name)) for one in each] for robot, each in found.items()}
-    return Measure(
-        label=metric.label,
-        means={robot: fmean(each) for robot, each in values.items()},
-        spreads={robot: stdev(each) if len(each) > 1 else 0.0 for robot, each in values.items()},
-        printed=printed_goal_error_m() if metric.name == "goal_error" else None,
-    )
+    printed = printed_goal_error_m() if metric.name == "goal_error" else None
+    return Measure.of(metric.label, values, printed)
 
 
-FIGURES = (
-    StudyFigure(
-        number="7",
-        source="market-paper",
-        shows="rangeBot's reference and actual trajectory on the map, and the survivor that it localised",
-        draw=_tracking,
-        tables=("Figure 7",),
-        differs="its deviation over time beneath; without sensors",
-    ),
-    StudyFigure(
-        number="8",
-        source="market-paper",
-        shows="mean and spread of each robot's errors, distances and times as bars",
-        draw=_metrics,
-        tables=("Figure 8",),
-        differs="flights with noise in the kinematic world",
-    ),
-)
+FIGURES = captioned("rescue", {"7": _tracking, "8": _metrics})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from muster_studies.descriptions import description
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.rescue.failures import Failures
 from muster_studies.rescue.flights import Flight, Planning, repetitions
@@ -13,16 +14,8 @@ from muster_studies.rescue.scenario import Figure5, Figure6
 
 _TABLES: tuple[Reproduction[Flight | Planning, Any], ...] = (Figure5(), Figure6(), Figure7(), Figure8(), Failures())
 
-_LEGEND = (
-    "The mission is market-rescue-arena: the paper's robots and survivors; places, obstacles, turning and acceleration "
-    "are chosen here. Plans are the market's, with seed 0 where no more is said.",
-)
-
 RESCUE = Repetition(
-    name="rescue",
-    summary="search and rescue carried out, market paper, sections 4.2 to 6",
-    document="market paper, sections 4.2 to 6",
-    legend=_LEGEND,
+    **description("rescue"),
     reproductions=_TABLES,
     perform=one_by_one(lambda job: job.perform()),
     seeds=repetitions,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.perception.optional_parts import require_physics
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.rotors import flown, published, reference
@@ -127,10 +128,7 @@ _TABLES: tuple[Reproduction[Job, Found], ...] = (
 )
 
 ROTORS = Repetition(
-    name="rotors",
-    summary="drones flown rotor by rotor, beside RotorS and Lee et al. 2010",
-    document="RotorS (Furrer et al. 2016), Lee et al. 2010",
-    legend=("Firefly: the AscTec hexacopter of RotorS with its parameters, motors and gains.",),
+    **description("rotors"),
     reproductions=_TABLES,
     perform=one_by_one(_perform),
     seeds=lambda effort: None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from muster_studies.descriptions import description
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.rvo.pictures import FIGURES
 from muster_studies.rvo.results import LEGEND, Circle, Found, Published
@@ -10,10 +11,7 @@ from muster_studies.rvo.runs import Job
 _TABLES: tuple[Reproduction[Job, Found], ...] = (Published("A.17"), Published("A.22"), Circle())
 
 RVO = Repetition(
-    name="rvo",
-    summary="collision avoidance, TCF thesis, appendices A3 and A6.2",
-    document="TCF thesis, appendices A3 and A6.2",
-    legend=LEGEND,
+    **description("rvo", LEGEND),
     reproductions=_TABLES,
     perform=one_by_one(lambda job: Found.of(job.perform())),
     figures=FIGURES,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.repetition import OnDone, Performed, Repetition, one_by_one, over_seeds
 from muster_studies.runs import Case
@@ -38,9 +39,7 @@ def _remarks(effort: Effort, found: Mapping[Any, Any]) -> tuple[str, ...]:
 
 
 THESIS_2 = Repetition(
-    name="thesis-2",
-    summary="the reviewed allocators and path planners ranked, TCF thesis, sections 2.2 and 2.3: Table 2.2",
-    document="TCF thesis, section 2",
+    **description("thesis-2"),
     reproductions=(Ranking(), Verdicts(), Diversity(), PathPlanners()),
     perform=_perform,
     seeds=samples.seed_count,

@@ -7,15 +7,15 @@ from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Stop
+from muster.mission.arrays import Floats
 from muster.mission.plan import Plan, Route
 from muster.report.canvas import new_figure
+from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
-from muster_studies.figures import StudyFigure
 from muster_studies.misprints import corrected
 from muster_studies.plan_pictures import PlanPanel, plan_figure
 from muster_studies.runs import mission_named
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Floats = NDArray[np.float64]
 _INSTANTS = 300
 _QUICK_SHARE = 10
 
@@ -163,67 +162,30 @@ def _least_cost(table: str, effort: Effort) -> Figure:
     return plan_figure(panels)
 
 
-_OWN = "own plans with seed 0, by the allocators as run"
-_PAIRS = {
-    "3.9": "by the genetic algorithm after 1500 and 7500 iterations",
-    "3.10": "by greedy and genetic after 1500 and 6000 iterations",
-    "3.11": "by hill climbing after 30000 and 150000 iterations",
-    "3.12": "by greedy and hill climbing after 30000 and 120000 iterations",
-}
-_RULES = {"3.5": "without rules", "3.8": "with prerequisites", "3.13": "with suitability"}
+_SALESMEN = {"3.8": ("3.8b",), **{number: (f"{number}a", f"{number}b") for number in ("3.9", "3.10", "3.11", "3.12")}}
+"""By figure its panels that are drawn, the rows of Table 3.3 that name them."""
 _ROUTES = {
-    number: (table, f"routes of three scenarios {rule} by the {kind}")
-    for (number, table), rule, kind in zip(
-        (("3.14", "3.5"), ("3.15", "3.6"), ("3.16", "3.8"), ("3.17", "3.9"), ("3.18", "3.13"), ("3.19", "3.14")),
-        [rule for rule in _RULES.values() for _ in range(2)],
-        ("greedy algorithm", "combined genetic algorithm") * 3,
-        strict=True,
-    )
-} | {
-    "3.20": ("3.17", "routes of three variants of 31T-6R under all rules by the greedy algorithm"),
-    "3.21": ("3.18", "routes of three variants of 31T-6R under all rules by the combined genetic algorithm"),
+    "3.14": "3.5",
+    "3.15": "3.6",
+    "3.16": "3.8",
+    "3.17": "3.9",
+    "3.18": "3.13",
+    "3.19": "3.14",
+    "3.20": "3.17",
+    "3.21": "3.18",
 }
-_COST = {"3.22": ("3.21", "greedy algorithm"), "3.23": ("3.22", "combined genetic algorithm")}
-_TIMES = (
-    ("3.6", "the mean objective of ten runs of four algorithms over computing time", _mean),
-    ("3.7", "the standard deviation of the objective of ten runs of four algorithms over computing time", _deviation),
+"""By figure the table of the routes that it shows."""
+
+FIGURES = captioned(
+    "thesis-3.3",
+    {
+        "3.6": _mean,
+        "3.7": _deviation,
+        **{number: partial(_salesmen, "3.3", panels) for number, panels in _SALESMEN.items()},
+        "3.13": partial(_salesmen, "3.4", ()),
+        **{number: partial(_published, table) for number, table in _ROUTES.items()},
+        "3.22": partial(_least_cost, "3.21"),
+        "3.23": partial(_least_cost, "3.22"),
+        "A.1": _each,
+    },
 )
-_TIME_DIFFERS = "own computing time, on a logarithmic axis, up to the published number of iterations"
-
-
-def _figures() -> list[StudyFigure]:
-    source = "tcf-thesis"
-    figures = [
-        StudyFigure(number=number, source=source, shows=shows, draw=draw, tables=("3.2",), differs=_TIME_DIFFERS)
-        for number, shows, draw in _TIMES
-    ]
-    salesmen = {
-        "3.8": (("3.8b",), "routes of five salesmen on eil51 by the benchmark and by the greedy algorithm"),
-        **{n: ((f"{n}a", f"{n}b"), f"routes of five salesmen on eil51 {text}") for n, text in _PAIRS.items()},
-    }
-    for number, (panels, shows) in salesmen.items():
-        differs = "the benchmark's routes are not printed as data" if number == "3.8" else _OWN
-        draw = partial(_salesmen, "3.3", panels)
-        figures.append(
-            StudyFigure(number=number, source=source, shows=shows, draw=draw, tables=("3.3",), differs=differs)
-        )
-    shows = "routes of other numbers of salesmen and of berlin52 and eil76 by greedy and genetic"
-    draw = partial(_salesmen, "3.4", ())
-    figures.append(StudyFigure(number="3.13", source=source, shows=shows, draw=draw, tables=("3.4",), differs=_OWN))
-    for number, (table, shows) in _ROUTES.items():
-        draw = partial(_published, table)
-        figures.append(StudyFigure(number=number, source=source, shows=shows, draw=draw, tables=(table,)))
-    for number, (table, kind) in _COST.items():
-        shows, draw = f"routes of three scenarios of least total cost by the {kind}", partial(_least_cost, table)
-        differs = "own plans, as their routes are not printed"
-        figures.append(
-            StudyFigure(number=number, source=source, shows=shows, draw=draw, tables=(table,), differs=differs)
-        )
-    shows = "the objective of each of ten runs of four algorithms over computing time"
-    figures.append(
-        StudyFigure(number="A.1", source=source, shows=shows, draw=_each, tables=("A.15",), differs=_TIME_DIFFERS)
-    )
-    return figures
-
-
-FIGURES = tuple(_figures())

@@ -11,7 +11,7 @@ from muster_studies.comparison_marks import EQUAL, ERRATUM, equal, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
 from muster_studies.runs import Case, Sample, judged, mission_named, rejection
-from muster_studies.tables import Cell, Notes, Table, row
+from muster_studies.tables import Cell, Notes, Table
 from muster_studies.thesis_3_3.plans import PublishedPlan, published_plans
 from muster_studies.thesis_3_3.published import as_run_notes, publication
 from muster_studies.thesis_3_3.routes import own_case
@@ -25,17 +25,6 @@ class Chains:
     """Table 3.11: a row for each step of each chain, and whether the published and the own plan hold to it."""
 
     number: str = "3.11"
-    columns: tuple[str, ...] = (
-        "scenario",
-        "allocator",
-        "step",
-        "robot",
-        "tasks",
-        "satisfied",
-        "thesis plan",
-        "own plan",
-        "mark",
-    )
 
     def jobs(self, effort: Effort) -> Iterator[Case]:
         for chain in publication(self.number).content["chains"]:
@@ -48,21 +37,22 @@ class Chains:
             plan = _plan_of(chain, _PLANS)
             own = samples[own_case(plan, _PLANS[chain["allocator"]], effort)].best.verdict
             for count, step in enumerate(chain["steps"], 1):
-                cells = _step_cells(plan, step, own, notes)
-                rows.append(row(self.columns, {**cells, "step": count}))
+                rows.append(_step_cells(plan, count, step, own, notes))
         legend = (
             f"{KEPT}: the robot does these tasks in this order, each after all its prerequisites; what is listed as "
             "satisfied then is.",
             f"{OTHER_ROBOTS}: all that, but by other robots or in another order. Only greedy has to come to the same.",
         )
-        return Table(self.number, published.title, self.columns, tuple(rows), (*notes.lines(), *legend))
+        return Table.of_cells(self.number, published.title, rows, (*notes.lines(), *legend))
 
 
 def _plan_of(record: Mapping[str, Any], numbers: Mapping[str, str]) -> PublishedPlan:
     return published_plans(numbers[record["allocator"]])[record["mission"]]
 
 
-def _step_cells(plan: PublishedPlan, step: Mapping[str, Any], own: Verdict, notes: Notes) -> dict[str, Cell]:
+def _step_cells(
+    plan: PublishedPlan, count: int, step: Mapping[str, Any], own: Verdict, notes: Notes
+) -> dict[str, Cell]:
     right = corrected(step)
     robot, tasks, satisfied = right["robot"], _names(right["tasks"]), _names(right["satisfied"])
     there = step_kept(plan.mission, plan.as_corrected, robot, tasks, satisfied)
@@ -71,6 +61,7 @@ def _step_cells(plan: PublishedPlan, step: Mapping[str, Any], own: Verdict, note
     return {
         "scenario": plan.scenario,
         "allocator": plan.allocator,
+        "step": count,
         "robot": robot,
         "tasks": _names(printed(step)["tasks"]),
         "satisfied": satisfied,
@@ -110,18 +101,6 @@ class Violations:
     """Table 3.12: prerequisites broken by plans made without them."""
 
     number: str = "3.12"
-    columns: tuple[str, ...] = (
-        "scenario",
-        "allocator",
-        "robot",
-        "task",
-        "before",
-        "thesis plan",
-        "own plan",
-        "thesis judged",
-        "own judged",
-        "mark",
-    )
 
     def jobs(self, effort: Effort) -> Iterator[Case]:
         for record in publication(self.number).content["violations"]:
@@ -133,14 +112,14 @@ class Violations:
         for record in published.content["violations"]:
             plan = published_plans(record["table"])[record["mission"]]
             own = samples[own_case(plan, record["table"], effort)].best.verdict
-            rows.append(row(self.columns, _violation_cells(plan, record, own, notes)))
+            rows.append(_violation_cells(plan, record, own, notes))
         legend = (
             "before: a prerequisite of the task. judged: with prerequisites in force.",
             "Only greedy has to come to the same plan, and so to the same violation.",
         )
         rule = f"{EQUAL}: the own plan breaks the same prerequisite as the published one."
         lines = (*notes.lines(), *legend)
-        return Table(self.number, published.content["title"], self.columns, tuple(rows), lines, mark_rule=rule)
+        return Table.of_cells(self.number, published.content["title"], rows, lines, mark_rule=rule)
 
 
 def _violation_cells(plan: PublishedPlan, record: Mapping[str, Any], own: Verdict, notes: Notes) -> dict[str, Cell]:

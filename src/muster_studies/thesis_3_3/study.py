@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from muster_studies.descriptions import description
 from muster_studies.repetition import Repetition, Reproduction, over_seeds
 from muster_studies.runs import Case, Sample
 from muster_studies.thesis_3_3.pictures import FIGURES
@@ -41,20 +42,8 @@ _TABLES: tuple[Reproduction[Case, Sample], ...] = (
     Readings(),
 )
 
-_LEGEND = (
-    "C is total cost, max u greatest usage, F = C + max u, E equality index; tasks: how many are completed.",
-    "All own numbers are recomputed by muster.verify. Those of a random algorithm are of the best run over all seeds; "
-    "mean, worst, spread (worst less best) and deviation (standard deviation) are of its objective, over all seeds.",
-    "s is the time that the thesis states, and the processor time of an own run (the mean over all seeds).",
-    "reached n/m: n of m runs do at least as well as published. erratum: misprinted; own numbers are compared with "
-    "what is right.",
-)
-
 THESIS_3_3 = Repetition(
-    name="thesis-3.3",
-    summary="task allocation algorithms, TCF thesis, section 3.3: Tables 3.2 to 3.22, A.15, A.16",
-    document="TCF thesis, section 3.3",
-    legend=_LEGEND,
+    **description("thesis-3.3"),
     reproductions=_TABLES,
     perform=over_seeds,
     figures=FIGURES,

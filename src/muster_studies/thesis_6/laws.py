@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 
 from muster.motion.laws import LAWS
 from muster_studies.effort import Effort
-from muster_studies.tables import Table, row
+from muster_studies.tables import Cell, Table
 from muster_studies.thesis_6.flights import Flight, FlightResult
 from muster_studies.thesis_6.physics import lacking_physics
 from muster_studies.thesis_6.published import excess, plans
 
-_COLUMNS = ("mission", "figure", "world", "law", "planned", "flown", "%", "tasks", "contacts", "apart", "s", "off")
 _TRACKING = "trajectories followed: "
 
 
@@ -33,7 +32,7 @@ class ByLaw:
             result = found[flight]
             planned, flown = sum(route.usage for route in result.planned.routes), sum(result.usages)
             report = result.report
-            cells = {
+            cells: dict[str, Cell] = {
                 "mission": flight.mission,
                 "figure": figure,
                 "world": flight.world,
@@ -47,16 +46,16 @@ class ByLaw:
                 "s": report.mission_time_s,
                 "off": _off(result),
             }
-            rows.append(row(_COLUMNS, cells))
-        notes = (
+            rows.append(cells)
+        notes: tuple[str, ...] = (
             "law: as `muster simulate --law` has it. planned, flown: usage of the team, metres; %: flown against "
             "planned. apart: the least distance of two centres, m. s: until all was over.",
             "off: by how many metres robots were off their trajectories at a moment, on average and at most, while "
             "they followed them; [market-paper], (7), per sample.",
         )
         missing = lacking_physics()
-        return Table(
-            self.number, "Carried out by law of motion", _COLUMNS, tuple(rows), (*notes, missing) if missing else notes
+        return Table.of_cells(
+            self.number, "Carried out by law of motion", rows, (*notes, missing) if missing else notes
         )
 
     def _flights(self) -> Iterator[tuple[str, Flight]]:

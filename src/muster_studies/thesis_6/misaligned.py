@@ -8,7 +8,7 @@ from statistics import fmean
 
 from muster_studies.comparison_marks import EQUAL
 from muster_studies.effort import Effort
-from muster_studies.tables import Cell, Table, row
+from muster_studies.tables import Cell, Table
 from muster_studies.thesis_6.flights import Flight, FlightResult, Marker
 from muster_studies.thesis_6.physics import lacking_physics
 from muster_studies.thesis_6.published import PublishedPlan, excess, plans
@@ -23,19 +23,6 @@ WITHIN = 5.0
 """Percentage points of the published excess."""
 MOST_SEEDS = 3
 """Of the chosen setting; the others have one."""
-_COLUMNS = (
-    "world",
-    "mission",
-    "robot",
-    "left m",
-    "turn deg",
-    "undisturbed",
-    "misaligned",
-    "%",
-    "thesis %",
-    "lost",
-    "mark",
-)
 
 
 @dataclass(frozen=True)
@@ -61,7 +48,7 @@ class MisalignedMarkers:
             for setting in SETTINGS:
                 runs = [found[flight] for flight in _misaligned(plan, world, setting, effort)]
                 cells = _cells(plan, setting, base, runs)
-                rows.append(row(_COLUMNS, {"world": world, "mission": plan.with_actions, **cells}))
+                rows.append({"world": world, "mission": plan.with_actions, **cells})
         lacking = lacking_physics()
         notes = (
             "Usage of both robots by odometry, metres, mean over seeds (one but for the chosen setting). The robot is "
@@ -75,7 +62,7 @@ class MisalignedMarkers:
         )
         title = "Usage of a team in which the markers of one robot are misaligned"
         rule = f"{EQUAL}: with the chosen setting, % is within {WITHIN:g} percentage points of the thesis'."
-        return Table(self.number, title, _COLUMNS, tuple(rows), notes, mark_rule=rule)
+        return Table.of_cells(self.number, title, rows, notes, mark_rule=rule)
 
     def _cases(self) -> Iterator[tuple[str, PublishedPlan]]:
         for world in ("kinematic",) if lacking_physics() else ("kinematic", "physics"):

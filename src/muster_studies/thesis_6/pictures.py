@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,11 +10,10 @@ from typing import TYPE_CHECKING
 from muster.mission.plan import Plan, Route
 from muster.report.record import RecordWriter, read_record
 from muster.report.recorded_tracks import plot_flown
+from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
-from muster_studies.figures import Draw, StudyFigure
 from muster_studies.plan_pictures import PlanPanel, plan_figure
 from muster_studies.runs import mission_named
-from muster_studies.thesis_6.action_paths import ActionPaths
 from muster_studies.thesis_6.flights import Flight, carried_out, mission_with
 from muster_studies.thesis_6.published import PublishedPlan, plans
 from muster_studies.world_pictures import world_figure
@@ -24,27 +22,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_FLOWN = {
-    "6.3": ("6.2", "the trajectories of three drones over the tasks of 16T-3R in Gazebo"),
-    "6.10": ("6.6", "the trajectories of six ground robots over the tasks of 31T-6R50 in Gazebo"),
-    "6.13": ("6.8", "the trajectories of two Wafflebots over the tasks of 6T-2R, in truth and in Gazebo"),
-    "6.14": ("6.9", "the trajectories of two Wafflebots over the tasks of 11T-2R, in truth and in Gazebo"),
-}
-"""By published figure the table of routes that was carried out, and what the print shows."""
-
-
-_PLANNED = {
-    "6.2": (("6.2",), "routes of three drones over 16T-3R by the greedy and by the combined genetic allocation"),
-    "6.9": (("6.6",), "routes of six ground robots over 31T-6R50 by the greedy and by the combined genetic allocation"),
-    "6.12": (("6.8", "6.9"), "routes of two Wafflebots over 6T-2R and 11T-2R by the greedy allocation"),
-}
-"""By published figure the tables of routes whose plans it has, and what the print shows."""
-
-_WORLDS = {
-    "6.8": ("6.6", "the places of the tasks of 31T-6R50 and six ground robots at their starts in Gazebo"),
-    "6.11": ("6.8", "two Wafflebots at their starts, a photograph and Gazebo"),
-}
-"""By published figure the table of routes of the mission that is seen, and what the print shows."""
+_PLANNED = {"6.2": ("6.2",), "6.9": ("6.6",), "6.12": ("6.8", "6.9")}
+"""By published figure the tables of routes whose plans it has."""
+_FLOWN = {"6.3": "6.2", "6.10": "6.6", "6.13": "6.8", "6.14": "6.9"}
+"""By published figure the table of routes that was carried out."""
+_WORLDS = {"6.8": "6.6", "6.11": "6.8"}
+"""By published figure the table of routes of the mission that is seen."""
 
 
 def _planned(tables: tuple[str, ...], effort: Effort) -> Figure:
@@ -83,18 +66,11 @@ def _recorded(flight: Flight) -> Axes:
         return plot_flown(read_record(record))
 
 
-def _figures() -> Iterator[StudyFigure]:
-    for number, (tables, shows) in _PLANNED.items():
-        yield _figure(number, shows, partial(_planned, tables), tables, "misprints corrected")
-    for number, (table, shows) in _FLOWN.items():
-        differs = "the kinematic world in place of Gazebo and of real robots"
-        yield _figure(number, shows, partial(_flown, table), (table, ActionPaths().number), differs)
-    for number, (table, shows) in _WORLDS.items():
-        yield _figure(number, shows, partial(_world, table), (table,), "the physics world; no photograph")
-
-
-def _figure(number: str, shows: str, draw: Draw, tables: tuple[str, ...], differs: str) -> StudyFigure:
-    return StudyFigure(number=number, source="tcf-thesis", shows=shows, draw=draw, tables=tables, differs=differs)
-
-
-FIGURES = tuple(sorted(_figures(), key=lambda figure: int(figure.number.partition(".")[2])))
+FIGURES = captioned(
+    "thesis-6",
+    {
+        **{number: partial(_planned, tables) for number, tables in _PLANNED.items()},
+        **{number: partial(_flown, table) for number, table in _FLOWN.items()},
+        **{number: partial(_world, table) for number, table in _WORLDS.items()},
+    },
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from muster.execution.report import Report
 from muster_studies.comparison_marks import EQUAL, ERRATUM, equal, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import errata, printed
@@ -33,7 +34,7 @@ class RobotUsages:
         for plan in plans(self.number):
             flown = found[plan.flight()]
             for own, usage in zip(flown.planned.routes, flown.usages, strict=True):
-                cells = _cells(plan, own.robot, own.usage, notes)
+                cells = published_cells(plan, own.robot, own.usage, notes)
                 cells |= {"flown": usage, "flown %": excess(usage, own.usage)}
                 rows.append(row(columns, cells))
         flights = [found[plan.flight()] for plan in plans(self.number)]
@@ -42,7 +43,8 @@ class RobotUsages:
         return Table(self.number, title, columns, tuple(rows), (*notes.lines(), *remarks), mark_rule=USAGE_RULE)
 
 
-def _cells(plan: PublishedPlan, robot: str, own: float, notes: Notes) -> dict[str, Cell]:
+def published_cells(plan: PublishedPlan, robot: str, own: float, notes: Notes) -> dict[str, Cell]:
+    """Return what the thesis calculated and measured for a robot, beside its own usage."""
     there = plan.usage(robot)
     assert there is not None  # every plan was calculated
     mark = EQUAL if equal(there, own) else f"{own - there:+.2f}"
@@ -62,13 +64,17 @@ def _cells(plan: PublishedPlan, robot: str, own: float, notes: Notes) -> dict[st
     return cells
 
 
+def contacts_of(report: Report) -> str:
+    """Return how often robots touched, and how near they came to each other, in words."""
+    apart = "" if report.min_distance_m is None else f", at least {report.min_distance_m:.2f} m between centres"
+    return f"{report.contacts or 'no'} contact{'' if report.contacts == 1 else 's'}{apart}"
+
+
 def _carried_out(plan: PublishedPlan, flown: FlightResult) -> str:
     report = flown.report
-    contacts = f"{report.contacts or 'no'} contact{'' if report.contacts == 1 else 's'}"
-    apart = "" if report.min_distance_m is None else f", at least {report.min_distance_m:.2f} m between centres"
     return (
         f"{plan.figure} ({plan.allocator}, run as {plan.mission}), carried out: {len(report.tasks_done)} of "
-        f"{flown.planned.tasks_total} tasks done, {flown.lost} of those planned lost; {contacts}{apart}; "
+        f"{flown.planned.tasks_total} tasks done, {flown.lost} of those planned lost; {contacts_of(report)}; "
         f"{report.mission_time_s:.0f} s, {report.waiting_s:.0f} s of waiting."
     )
 

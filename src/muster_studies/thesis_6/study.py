@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from muster_studies.descriptions import description
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.thesis_6.action_paths import ActionPaths
 from muster_studies.thesis_6.disturbed import CapacityReserve, UsageUnderNoise
@@ -30,20 +31,8 @@ _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
     CapacityReserve(),
 )
 
-_LEGEND = (
-    "Usages are metres; C is the total of a team, F = C + the greatest usage. thesis: as printed; own: the same plan, "
-    "misprints corrected, recomputed by muster.verify. Gazebo, real: measured by odometry, as printed.",
-    "flown: by odometry in Muster's kinematic world (physics: in both), with the radii, speeds and kinematics of Table "
-    "A.2, under ORCA, tasks being places with a cost, or (actions) ways that are driven. %: more than the calculation "
-    "of the same plan.",
-    "erratum: misprinted; own numbers are compared with what is right.",
-)
-
 THESIS_6 = Repetition(
-    name="thesis-6",
-    summary="plans carried out by moving robots, TCF thesis, chapter 6: Tables 6.2 to 6.11",
-    document="TCF thesis, chapter 6",
-    legend=_LEGEND,
+    **description("thesis-6"),
     reproductions=_TABLES,
     perform=one_by_one(fly),
     figures=FIGURES,

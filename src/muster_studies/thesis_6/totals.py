@@ -99,12 +99,12 @@ class SystemTotals:
         for record in (r for r in tables()[self.number]["rows"] if r["allocator"] == plan.allocator):
             yield {"plan": label, "tasks": count, **_thesis_cells(record, plan, own, notes)}
         calculation = [route.usage for route in flown.planned.routes]
-        yield {"plan": label, "values": CALCULATED, "tasks": count, **_cells(calculation)}
+        yield {"plan": label, "values": CALCULATED, "tasks": count, **total_cells(calculation)}
         yield {"plan": label, "values": FLOWN, **_flown_cells(flown, calculation)}
         if plan.with_actions is not None:
             there = found[plan.flight(plan.with_actions)]
             planned = [route.usage for route in there.planned.routes]
-            yield {"plan": label, "values": ACTIONS, "tasks": count, **_cells(planned, calculation)}
+            yield {"plan": label, "values": ACTIONS, "tasks": count, **total_cells(planned, calculation)}
             yield {"plan": label, "values": ACTIONS_FLOWN, **_flown_cells(there, calculation)}
 
 
@@ -133,15 +133,16 @@ def _figures(record: Mapping[str, Any]) -> dict[str, float]:
 def _own_plan(mission: str, flown: FlightResult) -> Iterator[dict[str, Cell]]:
     label, calculation = f"{ALLOCATOR}, {mission}", [route.usage for route in flown.planned.routes]
     count = flown.planned.tasks_completed
-    yield {"plan": label, "values": CALCULATED, "tasks": count, **_cells(calculation), "s": flown.planning_s}
+    yield {"plan": label, "values": CALCULATED, "tasks": count, **total_cells(calculation), "s": flown.planning_s}
     yield {"plan": label, "values": FLOWN, **_flown_cells(flown, calculation)}
 
 
 def _flown_cells(flown: FlightResult, calculation: Sequence[float]) -> dict[str, Cell]:
-    return {"tasks": len(flown.report.tasks_done), **_cells(flown.usages, calculation)}
+    return {"tasks": len(flown.report.tasks_done), **total_cells(flown.usages, calculation)}
 
 
-def _cells(usages: Sequence[float], calculation: Sequence[float] | None = None) -> dict[str, Cell]:
+def total_cells(usages: Sequence[float], calculation: Sequence[float] | None = None) -> dict[str, Cell]:
+    """Return C and F of usages, and by how much they are above those of a calculation, per cent."""
     values = dict(zip(("C", "F"), total_and_greatest(usages), strict=True))
     if calculation is None:
         return {**values}

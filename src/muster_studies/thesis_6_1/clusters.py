@@ -19,7 +19,7 @@ from muster.perception.estimates import RawEstimates
 from muster.perception.matching import ErrorTable, error_table
 from muster.perception.points_of_interest import PointOfInterest, points_of_interest
 from muster_studies.effort import Effort
-from muster_studies.tables import Cell, Table, row
+from muster_studies.tables import Cell, Table
 from muster_studies.thesis_6_1.flights import Flight, FlightResult
 from muster_studies.thesis_6_1.published import NOISE, STRONG_NOISE, Truth, points, tags, thirty, truth
 
@@ -119,20 +119,16 @@ class Clusterings:
     """A row for each method and each sample of raw estimates."""
 
     number: str = "clusters"
-    columns: tuple[str, ...] = (
-        "estimates", "of tag 1", "others", "method", "points", "missed",
-        "mean error", "worst tag", "its error", "tag 1",
-    )  # fmt: skip
 
     def jobs(self, effort: Effort) -> Iterator[Flight]:
         yield from (CALM, NOISY, SCATTERED)
 
     def table(self, effort: Effort, found: Mapping[Flight, FlightResult]) -> Table:
-        rows = [row(self.columns, cells) for sample in samples(found) for cells in self._cells(sample)]
+        rows = [cells for sample in samples(found) for cells in self._cells(sample)]
         printed = points()["6.4"]
-        rows.append(row(self.columns, {"estimates": "thesis", "method": "k-means", **_thesis(printed["mean_error"])}))
+        rows.append({"estimates": "thesis", "method": "k-means", **_thesis(printed["mean_error"])})
         title = "Raw estimates of all drones made into points of interest, three ways"
-        return Table(self.number, title, self.columns, tuple(rows), _NOTES, decimals=3)
+        return Table.of_cells(self.number, title, rows, _NOTES, decimals=3)
 
     def _cells(self, sample: Sample) -> Iterator[dict[str, Cell]]:
         counts = [int((sample.raw.tags == int(tag)).sum()) for tag in sample.truth if tag != RARE]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 from muster.perception.drift import SETPOINTS
 from muster.report.drifts import plot_drift_from_above, plot_drift_of_coordinate, plot_drift_over_way
 from muster_studies.effort import Effort
-from muster_studies.figures import Draw, StudyFigure
+from muster_studies.figures import Draw
 from muster_studies.thesis_6_1.drifts import SENSORS, drift
 from muster_studies.thesis_6_1.published import seed_count
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NAMES = tuple(SENSORS.values())
-_DIFFERS = "simulated odometry, inertial unit and fixes with errors chosen here, in place of visual inertial odometry"
 
 
 def _from_above(effort: Effort) -> Figure:
@@ -44,31 +44,9 @@ def _pass_ends_m() -> list[float]:
     return [float(flown.travelled[arrival]) for arrival in arrivals]
 
 
-def _figure(number: str, shows: str, draw: Draw, differs: str = _DIFFERS) -> StudyFigure:
-    return StudyFigure(
-        number=number,
-        source="tcf-thesis",
-        shows=shows,
-        draw=draw,
-        tables=("A6.1",),
-        differs=differs,
-    )
-
-
-FIGURES = (
-    _figure("A.10", "the RB5 drone's way around five setpoints, estimated and by motion capture", _from_above),
-    *(
-        _figure(
-            f"A.{11 + axis}",
-            f"setpoint, estimate and motion capture of coordinate {'xyz'[axis]} over time, and the estimate's error",
-            partial(_coordinate, axis),
-        )
-        for axis in range(3)
-    ),
-    _figure(
-        "A.14",
-        "the estimate's error in space over the distance travelled: it rises and falls with the passes",
-        _over_way,
-        f"{_DIFFERS}; without fixes it grows from pass to pass",
-    ),
-)
+DRAWINGS: Mapping[str, Draw] = {
+    "A.10": _from_above,
+    **{f"A.{11 + axis}": partial(_coordinate, axis) for axis in range(3)},
+    "A.14": _over_way,
+}
+"""By number of a figure."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from muster.report.canvas import frame_of_map, limits, new_figure
 from muster.report.found import plot_found
 from muster.report.styles import FRAME, TEXT
 from muster_studies.effort import Effort
-from muster_studies.figures import Draw, StudyFigure
+from muster_studies.figures import Draw
 from muster_studies.runs import mission_named
 from muster_studies.thesis_6_1.clusters import SCATTERED, decoded, errors, k_means, near, seen_rarely
 from muster_studies.thesis_6_1.flights import Flight, FlightResult, fly
@@ -81,50 +82,12 @@ def _camera(effort: Effort) -> Figure:
     return figure
 
 
-def _figure(number: str, shows: str, draw: Draw, table: str, differs: str = "") -> StudyFigure:
-    return StudyFigure(number=number, source="tcf-thesis", shows=shows, draw=draw, tables=(table,), differs=differs)
-
-
-FIGURES = (
-    _figure(
-        "4.11",
-        "a simulated camera's picture with the bounding boxes of the AprilTags that are detected in it",
-        _camera,
-        "6.4",
-    ),
-    _figure(
-        "6.1",
-        "the tasks of 16T-3R, thirty AprilTags and three drones at their starts in Gazebo",
-        partial(_world, "6.4", 0.5),
-        "6.4",
-        "the physics world, obliquely from above",
-    ),
-    _figure(
-        "6.4",
-        "raw and filtered estimates of thirty AprilTags seen by three drones, beside where they are",
-        partial(_maps, "6.4"),
-        "6.4",
-        "without noise, and with noise of 1 degree and 3 cm",
-    ),
-    _figure(
-        "6.5",
-        "the estimates of Figure 6.4 with those of Apriltag 1 pulled away by its neighbours 24 and 28, and a close-up",
-        _clusters,
-        "clusters",
-        "the close-up, for k-means and for clusters by tag; sightings of tag 1 are thinned out, by intent",
-    ),
-    _figure(
-        "6.6",
-        "a drone over six AprilTags, a photograph and Gazebo",
-        partial(_world, "6.5", 20.0),
-        "6.5",
-        "the simulated half alone, in the physics world",
-    ),
-    _figure(
-        "6.7",
-        "raw and filtered estimates of six AprilTags and the drone's trajectory, real and in Gazebo",
-        partial(_maps, "6.5"),
-        "6.5",
-        "the physics world, without noise, and with noise of 1 degree and 3 cm",
-    ),
-)
+DRAWINGS: Mapping[str, Draw] = {
+    "4.11": _camera,
+    "6.1": partial(_world, "6.4", 0.5),
+    "6.4": partial(_maps, "6.4"),
+    "6.5": _clusters,
+    "6.6": partial(_world, "6.5", 20.0),
+    "6.7": partial(_maps, "6.5"),
+}
+"""By number of a figure."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from muster.perception.optional_parts import require_physics
+from muster_studies.descriptions import captioned, description
 from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.thesis_6_1 import drift_pictures, pictures
@@ -36,14 +37,6 @@ _TABLES: tuple[Reproduction[Flight, FlightResult], ...] = (
     Drifts(),
 )
 
-_LEGEND = (
-    "Three drones carry the corrected plans of Table 6.2 out among the tags of Table 6.4 (16T-3R-tags), one flies to "
-    "the views of Table A.10 (six-tags). physics: bodies move in MuJoCo, pictures of 640 x 480 are drawn, and "
-    "AprilTags looked for in them. kinematic: bodies keep their velocities, and tags are seen by geometry.",
-    "Sightings are put together by tag and filtered by covariance; what was seen three times and is known to 0.15 m is "
-    "found.",
-)
-
 
 def _check(effort: Effort) -> None:
     """Check for the parts that cameras need, before the first flight."""
@@ -51,15 +44,12 @@ def _check(effort: Effort) -> None:
 
 
 THESIS_6_1 = Repetition(
-    name="thesis-6.1",
-    summary="tags that drones with cameras find, TCF thesis, section 6.1: Tables 6.2 to 6.5, A6.1",
-    document="TCF thesis, section 6.1",
-    legend=_LEGEND,
+    **description("thesis-6.1"),
     reproductions=_TABLES,
     perform=one_by_one(fly),
     check=_check,
     extras=("physics",),
     seeds=seed_count,
-    figures=(*pictures.FIGURES, *drift_pictures.FIGURES),
+    figures=captioned("thesis-6.1", {**pictures.DRAWINGS, **drift_pictures.DRAWINGS}),
 )
 """Collaborative aerial observation in a physics world."""

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from muster.running.worlds import WORLDS
-from muster_studies.comparison_marks import EQUAL, ERRATUM, differences, equal
+from muster_studies.comparison_marks import ERRATUM, differences
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected, errata, printed
 from muster_studies.runs import judged
 from muster_studies.tables import Cell, Notes, Table, row
 from muster_studies.thesis_6.published import PublishedPlan, excess, plans, tables
-from muster_studies.thesis_6.routes import USAGE_RULE
-from muster_studies.thesis_6.totals import TOTALS_RULE, total_and_greatest
+from muster_studies.thesis_6.routes import USAGE_RULE, contacts_of, published_cells
+from muster_studies.thesis_6.totals import TOTALS_RULE, total_and_greatest, total_cells
 from muster_studies.thesis_6_1.flights import Flight, FlightResult
 from muster_studies.thesis_6_1.published import flown_plan, thirty
 
@@ -65,19 +65,8 @@ _NOTES = (
 
 
 def _published(plan: PublishedPlan, robot: str, own: float, notes: Notes) -> dict[str, Cell]:
-    there, gazebo = plan.usage(robot), plan.usage(robot, "gazebo")
-    assert there is not None  # every plan was calculated
-    marks = [ERRATUM + " " + notes.number(f"{plan.figure}, {robot}: {text}.") for text in errata(plan.routes[robot])]
-    return {
-        "figure": plan.figure,
-        "robot": robot,
-        "tasks": plan.printed_tasks(robot),
-        "thesis": printed(plan.routes[robot])["usage"],
-        "own": own,
-        "mark": " ".join([EQUAL if equal(there, own) else f"{own - there:+.2f}", *marks]),
-        "Gazebo": gazebo,
-        "Gazebo %": None if gazebo is None else excess(gazebo, own),
-    }
+    cells, gazebo = published_cells(plan, robot, own, notes), plan.usage(robot, "gazebo")
+    return cells if gazebo is None else {**cells, "Gazebo %": excess(gazebo, own)}
 
 
 def _flown_cells(flown: Mapping[str, FlightResult], k: int) -> dict[str, Cell]:
@@ -91,11 +80,10 @@ def _flown_cells(flown: Mapping[str, FlightResult], k: int) -> dict[str, Cell]:
 
 def _remark(plan: PublishedPlan, world: str, flown: FlightResult) -> str:
     report = flown.report
-    apart = "" if report.min_distance_m is None else f", at least {report.min_distance_m:.2f} m between centres"
     return (
         f"{plan.figure} ({plan.allocator}) in the {world} world: {len(report.tasks_done)} of "
-        f"{flown.planned.tasks_total} tasks done, {report.contacts or 'no'} contact"
-        f"{'' if report.contacts == 1 else 's'}{apart}; {report.mission_time_s:.0f} s, {flown.looks} pictures."
+        f"{flown.planned.tasks_total} tasks done, {contacts_of(report)}; "
+        f"{report.mission_time_s:.0f} s, {flown.looks} pictures."
     )
 
 
@@ -135,19 +123,8 @@ class DroneTotals:
                 "mark": " ".join([differences(right, dict(zip("CF", sums, strict=True)), "CF"), *marks]),
             }
         yield {"values": "own", "C": base[0], "F": base[1]}
-        yield _totals("ways", [route.usage for route in flown["kinematic"].planned.routes], base)
+        yield {"values": "ways", **total_cells([route.usage for route in flown["kinematic"].planned.routes], own)}
         for world, one in flown.items():
-            yield _totals(world, one.usages, base)
+            yield {"values": world, **total_cells(one.usages, own)}
         if "physics" in flown:
-            yield _totals("in plane, physics", flown["physics"].in_plane_m, base)
-
-
-def _totals(values: str, usages: list[float] | tuple[float, ...], base: tuple[float, float]) -> dict[str, Cell]:
-    total, objective = total_and_greatest(usages)
-    return {
-        "values": values,
-        "C": total,
-        "C %": excess(total, base[0]),
-        "F": objective,
-        "F %": excess(objective, base[1]),
-    }
+            yield {"values": "in plane, physics", **total_cells(flown["physics"].in_plane_m, own)}

@@ -166,7 +166,7 @@ def test_robots_that_overlap_part():
 
 
 def test_refuses():
-    with pytest.raises(ParameterError, match="horizon_s: 0; expected a number above 0"):
+    with pytest.raises(ParameterError, match="horizon_s: 0; expected a finite number above 0"):
         Parameters(horizon_s=0)
     with pytest.raises(ParameterError, match="threads: 0"):
         Parameters(threads=0)

@@ -22,7 +22,8 @@ from muster.allocation.problem import Problem
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.witness_plans import Judge, bare_plan
 from muster.mission.clock import Clock, SystemClock
-from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.errors import ParameterError
+from muster.mission.extras import needs_extra
 from muster.mission.plan import Plan, Route
 
 if TYPE_CHECKING:
@@ -97,10 +98,8 @@ def solve_exactly(
 
 def require_ortools() -> None:
     """Raise MissingExtraError if OR-Tools is not installed."""
-    try:
+    with needs_extra("exact", "proving a plan optimal"):
         import ortools.sat.python.cp_model  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("exact", "proving a plan optimal") from None
 
 
 class _Solving:

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
+from muster.mission.errors import NetworkError, ParameterError
+from muster.mission.extras import needs_extra
 
 _BAUD = 57600
 _UNSENT_BYTES = 4096
@@ -80,10 +81,8 @@ class SerialLine:
     """A telemetry radio or a cable, by pyserial."""
 
     def __init__(self, device: str, baud: int) -> None:
-        try:
+        with needs_extra("mavlink", f"serial:{device}"):
             import serial
-        except ImportError:
-            raise MissingExtraError("mavlink", f"serial:{device}") from None
         try:
             self._port = serial.Serial(device, baud, timeout=0, write_timeout=0)
         except (OSError, ValueError) as error:

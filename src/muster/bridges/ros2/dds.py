@@ -16,7 +16,8 @@ from typing import Any, Generic, TypeVar
 
 from muster.bridges.ros2.description import ROS2, Field, Message, fields_of, from_foreign, to_foreign
 from muster.bridges.ros2.middleware import KEPT, LATCHED, Navigator, domain_or_own, line_of
-from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
+from muster.mission.errors import NetworkError, ParameterError
+from muster.mission.extras import needs_extra
 
 M = TypeVar("M", bound=Message)
 
@@ -114,10 +115,8 @@ class _Dds:
     """The parts of cyclonedds that are used, in the quality of service that nodes of ROS 2 match."""
 
     def __init__(self) -> None:
-        try:
+        with needs_extra("ros2", "ROS 2 by DDS"):
             from cyclonedds import builtin, core, domain, pub, qos, sub, topic
-        except ImportError:
-            raise MissingExtraError("ros2", "ROS 2 by DDS") from None
         policy: Any = qos.Policy
         old = policy.DataRepresentation(use_cdrv0_representation=True)  # XCDR1 is what ROS 2 speaks
         kept = policy.History.KeepLast(KEPT)

@@ -25,8 +25,8 @@ from muster.bridges.ros2.message_types import Header, Odometry, Point, Pose, Pos
 from muster.bridges.ros2.middleware import Middleware
 from muster.bridges.ros2.odometry_tracking import OdometryTracking
 from muster.bridges.tied_frames import TiedFrames
-from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
+from muster.mission.ranges import require_positive
 from muster.motion.frames import angles, flu_to_enu, pose_of, pose_transform, quaternion_rotation
 from muster.motion.port import Place, Telemetry, Waypoint
 
@@ -48,9 +48,7 @@ class Arrival:
     turned_rad: float = 0.35
 
     def __post_init__(self) -> None:
-        for name in ("near_m", "turned_rad"):
-            if not getattr(self, name) > 0:
-                raise ParameterError(f"{name}: {getattr(self, name)}; expected a number above 0")
+        require_positive(near_m=self.near_m, turned_rad=self.turned_rad)
 
 
 class Ros2Port:

@@ -13,7 +13,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from muster.bridges.ros2.description import ROS1, ROS2, Message, from_foreign, to_foreign
-from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.errors import ParameterError
+from muster.mission.extras import needs_extra
 
 CDR_HEADER = b"\x00\x01\x00\x00"
 _ARRAYS = {"uint8": np.uint8, "float32": np.float32, "float64": np.float64}
@@ -84,10 +85,8 @@ def _definition(name: str, ros: int) -> tuple[str, str]:
 @cache
 def _store(ros: int) -> Any:
     """The message types of ROS Noetic or ROS 2 Humble, with those of tf2_msgs, which rosbags does not have."""
-    try:
+    with needs_extra("record", "messages of ROS in files"):
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-    except ImportError:
-        raise MissingExtraError("record", "messages of ROS in files") from None
     store = get_typestore(Stores.ROS1_NOETIC if ros == ROS1 else Stores.ROS2_HUMBLE)
     store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", "tf2_msgs/msg/TFMessage"))
     return store

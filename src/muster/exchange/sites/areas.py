@@ -15,7 +15,8 @@ from muster.exchange.sites.frame import Frame
 from muster.exchange.sites.keys import COVERAGE
 from muster.exchange.sites.labels import quoted
 from muster.exchange.sites.shapes import mended, require_valid, without_holes
-from muster.mission.errors import Finding, MissingExtraError
+from muster.mission.errors import Finding
+from muster.mission.extras import needs_extra
 
 if TYPE_CHECKING:
     import shapely
@@ -44,10 +45,8 @@ def areas_of(
     MissingExtraError
         without shapely.
     """
-    try:
+    with needs_extra("map", f"{entry.feature.file}: areas"):
         import shapely
-    except ImportError:
-        raise MissingExtraError("map", f"{entry.feature.file}: areas") from None
     assert entry.geometry is not None
     pieces = [[_open(ring) for ring in piece] for piece in entry.geometry.pieces]
     if entry.geometry.shape == "line":

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 
 from muster.exchange.sites.features import Coordinate, refused
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 
 _WGS84 = re.compile(r"(urn:ogc:def:crs:)?(OGC:[\d.]*:?CRS84h?|EPSG:[\d.]*:?(4326|4979))", re.IGNORECASE)
 _EXPECTED = "a coordinate system that is known, as EPSG:4326"
@@ -25,11 +25,9 @@ def to_wgs84(system: str, file: str, field: str) -> Callable[[Coordinate], Coord
     """
     if _WGS84.fullmatch(system.strip()):
         return None
-    try:
+    with needs_extra("sites", f"{file}: coordinates in {system}"):
         from pyproj import Transformer
         from pyproj.exceptions import ProjError
-    except ImportError:
-        raise MissingExtraError("sites", f"{file}: coordinates in {system}") from None
     try:
         transformer = Transformer.from_crs(system, "EPSG:4326", always_xy=True)
     except (ProjError, UnicodeError) as error:

@@ -17,7 +17,7 @@ from muster.exchange.sites.coordinate_systems import to_wgs84
 from muster.exchange.sites.features import Coordinate, Feature, Geometry, Layer, refused, with_name
 from muster.exchange.sites.file_sizes import MOST_BYTES, MOST_CELLS, MOST_ROWS, read_bytes, require_few
 from muster.exchange.sites.shapes import geometries_of
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, Source, passed_over, read_as
 
 _WHAT = "a GeoPackage"
@@ -47,10 +47,8 @@ def read_geopackage_layers(path: Path) -> Sequence[Layer]:
     MissingExtraError
         without shapely; without pyproj, where it is not in WGS84.
     """
-    try:
+    with needs_extra("map", "reading a GeoPackage"):
         import shapely  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("map", "reading a GeoPackage") from None
     file = str(path)
     if not read_bytes(path).startswith(b"SQLite format 3\0"):
         raise refused(file, None, "", "no database of SQLite", _WHAT)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.sites.features import Coordinate, Geometry, Ring, Shape
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 
 if TYPE_CHECKING:
     import shapely
@@ -56,10 +56,8 @@ def _rings(part: Any, transform: Callable[[Coordinate], Coordinate] | None) -> I
 
 def from_text(told: str) -> list[Geometry]:
     """The geometries in well-known text; raises ValueError where it is none."""
-    try:
+    with needs_extra("map", "a geometry as text (WKT)"):
         import shapely
-    except ImportError:
-        raise MissingExtraError("map", "a geometry as text (WKT)") from None
     try:
         found = shapely.from_wkt(told)
     except shapely.errors.ShapelyError as error:

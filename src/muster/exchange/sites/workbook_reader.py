@@ -18,7 +18,7 @@ from muster.exchange.sites.features import Layer, refused
 from muster.exchange.sites.file_sizes import MOST_BYTES, MOST_CELLS, MOST_ROWS, open_archive, require_few, unpacked
 from muster.exchange.sites.tables import table_layer
 from muster.exchange.sites.workbook_cells import Marks, column_number, marks_in, sheet_names
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 
 _WHAT = "a workbook (XLSX)"
 _CELL = re.compile(rb'[<:]c\s[^>]*?\br\s*=\s*["\']([A-Za-z]{1,9})(\d{1,9})')
@@ -39,10 +39,8 @@ def read_workbook_layers(path: Path) -> Sequence[Layer]:
     MissingExtraError
         without python-calamine.
     """
-    try:
+    with needs_extra("sites", "reading a workbook"):
         import python_calamine
-    except ImportError:
-        raise MissingExtraError("sites", "reading a workbook") from None
     file = str(path)
     with open_archive(path, _WHAT) as archive:
         marks = _marks(archive, path)

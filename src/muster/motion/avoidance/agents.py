@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -151,25 +150,3 @@ def _not_negative(name: str, array: Floats) -> Floats:
     if (array < 0).any():
         raise ParameterError(f"{name}: {array[array < 0][:_SOME].tolist()}; expected at least 0")
     return array
-
-
-def require_positive(**numbers: float) -> None:
-    """Raise ParameterError unless all numbers are above 0; infinity is."""
-    for name, number in numbers.items():
-        if math.isnan(number) or number <= 0:
-            raise ParameterError(f"{name}: {number}; expected a number above 0")
-
-
-def require_finite_positive(**numbers: float) -> None:
-    """Raise ParameterError unless all numbers are above 0 and finite."""
-    require_positive(**numbers)
-    for name, number in numbers.items():
-        if math.isinf(number):
-            raise ParameterError(f"{name}: {number}; expected a finite number")
-
-
-def require_counts(**numbers: int) -> None:
-    """Raise ParameterError unless all numbers are whole and at least 1."""
-    for name, number in numbers.items():
-        if number != int(number) or number < 1:
-            raise ParameterError(f"{name}: {number}; expected a whole number of at least 1")

@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
-from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles, require_finite_positive
+from muster.mission.ranges import require_finite_positive
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles
 from muster.motion.avoidance.method import Method
 
 Preference = Callable[[Floats, int], Floats]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from muster.motion.avoidance.agents import require_counts, require_finite_positive, require_positive
+from muster.mission.ranges import require_counts, require_finite_positive, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +35,7 @@ class CommonParameters:
     def __post_init__(self) -> None:
         require_finite_positive(wall_horizon_s=self.wall_horizon_s)
         require_positive(neighbour_distance_m=self.neighbour_distance_m)
-        require_counts(most_neighbours=self.most_neighbours, threads=self.threads)
+        require_counts(1, most_neighbours=self.most_neighbours, threads=self.threads)
 
     def for_core(self) -> dict[str, Any]:
         """The same as keyword arguments of the core's methods."""

@@ -27,13 +27,12 @@ from typing import ClassVar
 
 from muster import core
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_counts, require_finite_positive
 from muster.motion.avoidance.agents import (
     NO_OBSTACLES,
     Agents,
     Floats,
     Obstacles,
-    require_counts,
-    require_finite_positive,
 )
 from muster.motion.avoidance.parameters import CommonParameters
 
@@ -76,7 +75,7 @@ class Parameters(CommonParameters):
         if not 1e-3 <= self.n_rad <= math.pi:
             raise ParameterError(f"n_rad: {self.n_rad}; expected 0.001 to pi")
         require_finite_positive(w_m=self.w_m)
-        require_counts(magnitudes=self.magnitudes)
+        require_counts(1, magnitudes=self.magnitudes)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_positive
 from muster.motion.free_space import PolygonSpace
 from muster.motion.grid import Bools, Grid, Indices
 
@@ -29,8 +30,7 @@ def grid_of(space: PolygonSpace, resolution_m: float) -> Grid:
     """
     import shapely
 
-    if not resolution_m > 0:
-        raise ParameterError(f"resolution_m: {resolution_m:g}; expected a number above 0")
+    require_positive(resolution_m=resolution_m)
     if space.region.is_empty:
         return Grid(np.ones((1, 1), dtype=np.bool_), resolution_m)
     west, south, east, north = space.region.bounds

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
@@ -24,7 +24,6 @@ from muster.motion.paths.planner import Planner, blocked, disconnected, in_plane
 if TYPE_CHECKING:
     import shapely
 
-Floats = npt.NDArray[np.float64]
 SIDES = ("left", "right")
 
 

@@ -12,9 +12,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.dubins_words import Pose, words
@@ -22,7 +23,6 @@ from muster.motion.paths.on_grid import without_repetitions
 from muster.motion.paths.path_finder import PathFinder
 from muster.motion.paths.planner import Planner, in_plane
 
-Floats = npt.NDArray[np.float64]
 _OFFSETS = math.pi / 8 * np.array([0.0, 1.0, -1.0, 2.0, -2.0])
 """Of headings at a corner from the one that halves the turn."""
 _CHORD = 0.05
@@ -42,8 +42,7 @@ class Parameters:
     goal_heading_rad: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0 < self.turning_radius_m < math.inf:
-            raise ParameterError(f"turning_radius_m: {self.turning_radius_m}; expected a finite number above 0")
+        require_finite_positive(turning_radius_m=self.turning_radius_m)
         for name in ("start_heading_rad", "goal_heading_rad"):
             value = getattr(self, name)
             if value is not None and not math.isfinite(value):

@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from muster.mission.arrays import Floats
+
 Pose = tuple[float, float, float]
 """x, y in metres and heading in radians from east."""
 _Angles = tuple[float, float, float]

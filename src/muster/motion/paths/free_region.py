@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 
 if TYPE_CHECKING:
     import shapely
 
-Floats = npt.NDArray[np.float64]
 _GAP = 1e-6
 """By which share of a cell a grid's region is smaller, so that two blocked cells at a corner let nothing through."""
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.ranges import require_positive
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.raster import grid_of
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import blocked, disconnected, not_free
 
-Floats = npt.NDArray[np.float64]
 _CELLS_ALONG_A_REGION = 500
 
 
@@ -26,8 +26,7 @@ class Parameters:
     resolution_m: float | None = None
 
     def __post_init__(self) -> None:
-        if self.resolution_m is not None and not self.resolution_m > 0:
-            raise ParameterError(f"resolution_m: {self.resolution_m:g}; expected a number above 0")
+        require_positive(resolution_m=self.resolution_m)
 
 
 @dataclass(frozen=True)

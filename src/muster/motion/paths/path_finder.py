@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.grid import Grid, Indices
@@ -18,7 +19,6 @@ from muster.motion.paths.on_grid import core_grid, without_repetitions
 from muster.motion.paths.planner import blocked, disconnected, pair, point_of, points_of
 from muster.motion.paths.rings import rings_of
 
-Floats = npt.NDArray[np.float64]
 _ROWS_AT_A_TIME = 32  # so that Ctrl-C is heard
 _CORNERS_AT_A_TIME = 1000  # for the same
 

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from muster.mission.errors import ParameterError
+from muster.mission.arrays import Floats
+from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.free_region import part_around
@@ -25,7 +25,6 @@ from muster.motion.paths.planner import Planner, blocked, in_plane, shown
 if TYPE_CHECKING:
     import shapely
 
-Floats = npt.NDArray[np.float64]
 _LEAST_STEP = 2.0**-12
 _SLOPE = 1e-6
 """Half the distance over which a slope is measured, as a share of the influence."""
@@ -44,10 +43,8 @@ class Parameters:
     steps: int = 20_000
 
     def __post_init__(self) -> None:
-        for name in ("attraction", "repulsion", "influence_m", "steps"):
-            value = getattr(self, name)
-            if value is not None and not 0 < value < math.inf:
-                raise ParameterError(f"{name}: {value}; expected a finite number above 0")
+        require_finite_positive(attraction=self.attraction, repulsion=self.repulsion)
+        require_finite_positive(influence_m=self.influence_m, steps=self.steps)
 
 
 @dataclass(frozen=True)

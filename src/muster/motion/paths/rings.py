@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
+
+from muster.mission.arrays import Floats
 
 if TYPE_CHECKING:
     import shapely
-
-Floats = npt.NDArray[np.float64]
 
 
 def rings_of(region: shapely.Polygon | shapely.MultiPolygon) -> list[Floats]:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.arrays import Floats
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import Planner, blocked
 from muster.motion.paths.random_tree import TreeParameters, field_of, path_of
 
-Floats = npt.NDArray[np.float64]
 _WITHOUT_REWIRING = 0.0
 
 

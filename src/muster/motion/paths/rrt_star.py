@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from muster.mission.errors import ParameterError
+from muster.mission.arrays import Floats
+from muster.mission.ranges import require_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import Planner, blocked
 from muster.motion.paths.random_tree import TreeParameters, field_of, path_of
 
-Floats = npt.NDArray[np.float64]
 _SAMPLES_AT_A_TIME = 500  # so that Ctrl-C is heard
 
 
@@ -25,8 +24,7 @@ class Parameters(TreeParameters):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not self.reach > 0:
-            raise ParameterError(f"reach: {self.reach}; expected a number above 0")
+        require_positive(reach=self.reach)
 
 
 def find_path(space: Space, start: Floats, goal: Floats, seed: int, params: Parameters) -> Path | NoPath:

@@ -10,7 +10,8 @@ from typing import Any, ClassVar, Protocol
 import cv2
 import numpy as np
 
-from muster.mission.errors import Finding, InputError, MissingExtraError
+from muster.mission.errors import Finding, InputError
+from muster.mission.extras import needs_extra
 from muster.report.film.captions import Picture, rgb
 from muster.report.styles import ALARM, LEFT_OUT, PALETTE
 
@@ -152,10 +153,8 @@ def write_png(path: str | Path, picture: Picture) -> None:
 
 def require_pillow() -> None:
     """Raise MissingExtraError where Pillow is not installed."""
-    try:
+    with needs_extra("map", "a GIF"):
         import PIL  # noqa: F401
-    except ImportError:
-        raise MissingExtraError("map", "a GIF") from None
 
 
 def _swatches(width: int) -> Picture:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from muster.mission.arrays import Floats
 
 _MOST_NUMBERS = 1_000_000  # in memory at once
 

@@ -13,12 +13,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.mission.yaml_writer import plain
 from muster.motion.grid import Grid
-
-Floats = npt.NDArray[np.float64]
 
 MAP_FRAME = "map"
 INFO, WARNING = 2, 3

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.bridges.ros2.description import Message
 from muster.bridges.ros2.message_types import (
@@ -26,11 +25,11 @@ from muster.bridges.ros2.message_types import (
     Vector3,
 )
 from muster.bridges.ros2.serialization import from_cdr, from_ros1
-from muster.mission.errors import Finding, InputError, MissingExtraError, ParameterError
+from muster.mission.arrays import Floats
+from muster.mission.errors import Finding, InputError, ParameterError
+from muster.mission.extras import needs_extra
 from muster.report.record.reader import whole_records
 from muster.report.record.writer import require_mcap
-
-Floats = npt.NDArray[np.float64]
 
 _EXPECTED = "a recording of ROS with poses: MCAP, a folder of rosbag2, or a bag of ROS 1"
 _MCAP, _BAG = b"\x89MCAP0\r\n", b"#ROSBAG V2.0"
@@ -193,10 +192,8 @@ def _from_mcap(stream: Any, ended: list[bool]) -> Iterator[_Raw]:
 
 def _from_bag(path: Path, module: str, decode: Callable[..., Any]) -> Iterator[_Raw]:
     """Messages of a bag, found by rosbags and decoded here."""
-    try:
+    with needs_extra("bags", "a bag"):
         from rosbags import rosbag1, rosbag2
-    except ImportError:
-        raise MissingExtraError("bags", "a bag") from None
     room: Any = rosbag1 if module == "rosbag1" else rosbag2
     try:
         with room.Reader(path) as reader:

@@ -6,16 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.bridges.ros2.names import ros_name
+from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.motion.metrics import TrajectoryError, path_length, risk_factor, trajectory_error
 from muster.report.record import Recording
 from muster.report.recordings.poses import PoseTrack
-
-Floats = npt.NDArray[np.float64]
 
 _CLOCK_S = 1e-6
 """To so much seconds since 1970 are exact."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from muster.bridges.ros2.description import ROS1, ROS2, Message
 from muster.bridges.ros2.serialization import definition, md5_sum, to_cdr, to_ros1, type_name
-from muster.mission.errors import MissingExtraError
+from muster.mission.extras import needs_extra
 from muster.report.record import Recording
 from muster.report.record.json_messages import nanoseconds
 from muster.report.record.writer import require_mcap
@@ -91,10 +91,8 @@ def _connection(writer: Any, one: TimedMessage) -> Any:
 
 
 def _bag_writer() -> Any:
-    try:
+    with needs_extra("bags", "a bag of ROS 1"):
         from rosbags.rosbag1 import Writer
-    except ImportError:
-        raise MissingExtraError("bags", "a bag of ROS 1") from None
     return Writer
 
 

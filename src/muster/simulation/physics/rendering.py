@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError, RenderingError
+from muster.mission.ranges import require_finite_positive
 from muster.motion.grid import Floats
 from muster.simulation.physics.model import SHOW_HEIGHT, SHOW_WIDTH
 from muster.simulation.physics.optional_parts import BACKENDS
@@ -73,8 +74,7 @@ class Lens:
             raise ParameterError(
                 f"picture: {self.width} x {self.height} pixels; expected up to {SHOW_WIDTH} x {SHOW_HEIGHT}"
             )
-        if not 0 < self.focal_px < math.inf:
-            raise ParameterError(f"focal_px: {self.focal_px}; expected a finite number above 0")
+        require_finite_positive(focal_px=self.focal_px)
 
     @classmethod
     def of_view(cls, width: int, height: int, upright_rad: float) -> Lens:
