@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
@@ -28,6 +29,7 @@ def recorded_world(
     batteries: Charges = NO_CHARGES,
     drain: Drains = NO_DRAINS,
     rotor_level: bool = False,
+    snapshot: Mapping[str, Any] | None = None,
     **how: Any,
 ) -> SimulatedWorld:
     """The world of that name for a mission, which tells a recorder where bodies are.
@@ -52,6 +54,9 @@ def recorded_world(
     if rotor_level:
         why = f"expected the world physics: {name} has no rotors"
         how["rotor_level"] = _taken(make, "rotor_level", rotor_level, why)
+    if snapshot is not None:
+        how["snapshot"] = _taken(make, "snapshot", "of bodies", f"expected none: the world {name} cannot be resumed")
+        how["snapshot"] = snapshot
     return make(mission, **how)
 
 

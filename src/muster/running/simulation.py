@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Collection, Sequence
 from contextlib import closing
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from muster.execution import (
     Executor,
@@ -27,6 +27,7 @@ from muster.mission.plan import Plan
 from muster.motion.avoidance_names import AUTO
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.options import PlanningOptions
+from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.localisation import Localise
 from muster.running.recorded_world import recorded_world, with_tracking
@@ -97,6 +98,8 @@ class Simulation:
         receives each look of a camera; cameras are used where the mission has tags.
     on_world
         receives the world when it is made, to read the states of bodies.
+    begun
+        where the run was interrupted, if it was; then robots go on from where they stood.
 
     Raises
     ------
@@ -130,8 +133,12 @@ class Simulation:
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
+        begun: Begun | None = None,
     ) -> None:
-        require_open_ways(mission, plan)
+        if begun is None:
+            require_open_ways(mission, plan)
+        else:  # each robot stands anywhere, and a leg is checked when it is sent
+            mission = begun.standing(mission)
         require_geometry(mission, "a simulated run")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         travel = travel_of(mission, robot_paths)
@@ -157,6 +164,7 @@ class Simulation:
             dt_s=dt_s,
             avoidance=avoidance,
             noise=noise,
+            snapshot=None if begun is None else begun.bodies,
         )
         if on_world is not None:
             on_world(self._world)
@@ -173,7 +181,8 @@ class Simulation:
             travel=travel,
             replan=replan,
             observer=recorder,
-            now=self._world.time_s,
+            now=self.time_s,
+            past=None if begun is None else begun.past,
             standing=self._standing,
             on_doors=self._close,
             leader=manager,
@@ -185,12 +194,21 @@ class Simulation:
         )
         self._recorder = recorder
         self._ahead = sorted(mission.events, key=lambda event: event.at_s)
+        if begun is not None:
+            begun.resume(self._executor)
+            if self._camera_search is not None:
+                self._camera_search.resume(begun.bodies["found"])
         self._executor.tick(self.time_s)
 
     @property
     def world(self) -> SimulatedWorld:
         """To look at; who moves it otherwise than by `advance` breaks the mission's clock."""
         return self._world
+
+    @property
+    def executor(self) -> Executor:
+        """What carries the plan out; to look at."""
+        return self._executor
 
     @property
     def robots(self) -> RobotsInWorld:
@@ -266,6 +284,14 @@ class Simulation:
     def replan(self) -> None:
         """Plan the rest again at once if events that were reported ask for that, and send robots on."""
         self._tick()
+
+    def snapshot(self) -> dict[str, Any] | None:
+        """Return where bodies are and what cameras have found, as `Begun.bodies`; None if the world does not tell."""
+        if not hasattr(self._world, "snapshot"):
+            return None
+        found = [] if self._camera_search is None else self._camera_search.snapshot()
+        used = {name: state.used for name, state in self._executor.crew.items()}
+        return {**self._world.snapshot(), "found": found, "used": used}
 
     def result(self) -> Report:
         """What it took, so far or in all."""

@@ -14,10 +14,10 @@ from muster.execution.record import ExecutionEvent
 from muster.mission.errors import Finding, InputError
 from muster.mission.from_data import mission_from
 from muster.mission.model import Mission
-from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_reader import parse_data
 from muster.report.record.json_messages import grid_from
 from muster.report.record.mission_state import MissionState
+from muster.report.record.plan_changes import ReadPlan
 from muster.report.record.recording import PlanVersion, Recording, Tracks
 from muster.report.record.schemas import MISSION_FILE
 from muster.report.record.writer import require_mcap
@@ -100,14 +100,15 @@ def _recording(file: Path, text: str, messages: Messages, complete: bool) -> Rec
     mission = _mission(file, text)
     events = tuple(ExecutionEvent(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
     mission_state = MissionState.after(mission, ((event.kind, event.data) for event in events))
-    plans = messages.get("/muster/plan", [])
+    read = ReadPlan(str(file))
+    plans = [PlanVersion(m["time_s"], read.take(m), read.lines) for m in messages.get("/muster/plan", [])]
     maps, reports = messages.get("/map", []), messages.get("/muster/report", [])
     return Recording(
         file=str(file),
         mission=mission,
         mission_text=text,
         image=grid_from(maps[-1]) if maps else None,
-        plans=tuple(PlanVersion(m["time_s"], plan_from(m["plan"], str(file)), m["lines"]) for m in plans),
+        plans=tuple(plans),
         events=events,
         bids=tuple(messages.get("/muster/bid", [])),
         tracks=_tracks(tuple(mission_state.robots), messages.get("/muster/state", [])),

@@ -18,9 +18,8 @@ from muster.execution.record import ExecutionEvent
 from muster.execution.task_ledger import MissedTask
 from muster.mission.doors import Doors
 from muster.mission.model import Event, Mission
-from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_from
-from muster.report.record.mission_state import MissionState
+from muster.mission.plan import Plan, Route
+from muster.report.record.mission_state import KEPT_OVER, UNDER_WAY, MissionState
 
 BARRED = "it was begun before a crash, and may be begun at most once; its end is not known"
 _OF_THE_RUN = ("plan", "report", "command", "resumed")
@@ -36,6 +35,7 @@ class Recovered:
     mission: Mission
     plan: Plan
     past: CompletedWork
+    again: tuple[str, ...] = ()
 
 
 def recovered_from(
@@ -67,10 +67,12 @@ def recovered_from(
     robots = tuple(robot for name, robot in fold.state.robots.items() if name in own or name in ports)
     names = tuple(robot.id for robot in robots)
     tasks = tuple(replace(task, only_robots=names) if task.id in barred else task for task in fold.state.tasks.values())
-    current = plan if fold.routes is None else _of_those(fold.routes, names)
+    current = plan if fold.routes is None else _of_those(plan, fold.routes, names)
+    again = [task for task, state in fold.state.states.items() if state == UNDER_WAY and task not in barred]
     left = tuple(event for event in mission.events if event.at_s > fold.until_s and fold.fits(event, names))
+    robots = tuple(replace(robot, end_position=robot.place_at_end(mission.rules)) for robot in robots)
     found = replace(mission.at_once(robots=robots, tasks=tasks), events=left)
-    return _with_locks_of_barred(Recovered(found, replace(current, ignored=plan.ignored), fold.past(barred)))
+    return _with_locks_of_barred(Recovered(found, current, fold.past(barred), tuple(again)))
 
 
 @dataclass
@@ -79,7 +81,7 @@ class _Fold:
 
     state: MissionState
     doors: Doors
-    routes: Mapping[str, Any] | None = None
+    routes: dict[str, list[str]] | None = None
     arrives: dict[str, float] = field(default_factory=dict)
     starts: dict[str, float] = field(default_factory=dict)
     done: dict[str, CompletedTask] = field(default_factory=dict)
@@ -165,7 +167,10 @@ class _Fold:
         )
 
     def take_plan(self, _: float, data: Mapping[str, Any]) -> None:
-        self.routes = data["plan"]
+        if "plan" in data:
+            self.routes = {route["robot"]: route["tasks"] for route in data["plan"]["routes"]}
+        else:
+            self.routes = (self.routes or {}) | dict(data["routes"])
 
     def take_replanned(self, _: float, data: Mapping[str, Any]) -> None:
         self.replanned += 1
@@ -309,7 +314,50 @@ def _with_locks_of_barred(found: Recovered) -> Recovered:
     return replace(found, mission=replace(found.mission, tasks=tasks), plan=replace(found.plan, ignored=others))
 
 
-def _of_those(plan: Mapping[str, Any], robots: Sequence[str]) -> Plan:
+def _of_those(plan: Plan, routes: Mapping[str, Sequence[str]], robots: Sequence[str]) -> Plan:
     """The plan without routes of robots that joined during the run and cannot be reached: they join again."""
-    routes = [route for route in plan["routes"] if route["robot"] in robots]
-    return plan_from({**plan, "routes": routes}, "the log")
+    found = tuple(Route(robot, tuple(routes[robot])) for robot in robots if robot in routes)
+    return Plan(
+        mission=plan.mission,
+        allocator=plan.allocator,
+        ignored=plan.ignored,
+        objective=plan.objective,
+        routes=found,
+        unassigned=(),
+    )
+
+
+class History:
+    """What has happened in a run so far, entry by entry.
+
+    Parameters
+    ----------
+    mission, plan
+        at the beginning.
+    checkpoint
+        of a history that this one continues.
+    """
+
+    def __init__(self, mission: Mission, plan: Plan, checkpoint: Mapping[str, Any] | None = None) -> None:
+        self._mission, self.plan = mission, plan
+        self._entries: list[Mapping[str, Any]] = []
+        self.state = MissionState(mission, KEPT_OVER)
+        self.now_s, self.zero_s = 0.0, None
+        for entry in () if checkpoint is None else checkpoint["entries"]:
+            self.take(**entry)
+
+    def take(self, time_s: float, kind: str, data: Mapping[str, Any]) -> None:
+        """Apply an entry of the log."""
+        self._entries.append({"time_s": time_s, "kind": kind, "data": data})
+        self.now_s = max(self.now_s, time_s)
+        self.zero_s = data.get("zero_s", self.zero_s)
+        if kind not in _OF_THE_RUN:
+            self.state.take(kind, data)
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return the state as plain data."""
+        return {"entries": self._entries}
+
+    def recovered(self, ports: Collection[str]) -> Recovered:
+        """Return what a run that continues needs; see `recovered_from`."""
+        return recovered_from(self._mission, self.plan, self._entries, ports)

@@ -174,7 +174,9 @@ def _charge(data: Mapping[str, Any]) -> str:
 
 
 def _plan(data: Mapping[str, Any]) -> str:
-    """`plan: 31 tasks, 6 robots`: its stations are not counted."""
+    """`plan: 31 tasks, 6 robots`: its stations are not counted; of a later plan `plan: other ways for 2 robots`."""
+    if "plan" not in data:
+        return f"plan: other ways for {counted(len(data['routes']), 'robot')}"
     routes = [route for route in data["plan"].get("routes", ()) if route.get("tasks")]
     stops = (stop.get("station") for route in routes for stop in route.get("stops", ()))
     stations = {*data.get("stations", ()), *stops}

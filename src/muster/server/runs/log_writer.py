@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -60,6 +60,8 @@ class LogWriter:
         self._on_entries, self._on_trouble, self._on_lost = on_entries, on_trouble, on_lost
         self._entries: list[Entry] = []
         self._stretches: list[Stretch] = []
+        self.bodies: Mapping[str, Any] | None = None
+        """Where bodies are, after an entry `seq`: written once that entry is, and with it."""
         self._fields: dict[str, Any] = {}
         self._late: list[Callable[[], object]] = []
         self._given = 0
@@ -238,7 +240,9 @@ class LogWriter:
             self._last_stretch = self._store.log.last_stretch(self._run)
         numbered = [replace(one, seq=self._last_stretch + k) for k, one in enumerate(stretches, start=1)]
         time_s = max([*(one.time_s for one in entries), *(one.until_s for one in stretches)])
-        self._store.log.append(self._run, time_s, entries, numbered)
+        bodies, last = self.bodies, entries[-1].seq if entries else self._given
+        bodies = None if bodies is None or bodies["seq"] > last else bodies
+        self._store.log.append(self._run, time_s, entries, numbered, bodies)
         self._last_stretch += len(numbered)
 
     def _give(self, entries: Sequence[Entry]) -> None:

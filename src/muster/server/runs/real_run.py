@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Collection
 
 from muster.bridges.final_state import final_states_of
 from muster.bridges.fleet import Fleet
@@ -11,14 +10,12 @@ from muster.execution import Recorder, Report, Standing, Status, broken_off
 from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.grid import Floats
-from muster.motion.port import Telemetry
 from muster.planning.options import PlanningOptions
+from muster.running.begun import Begun
 from muster.running.live import Live, elsewhere, with_reported_starts
-from muster.server.runs.crash_recovery import recovered_from
+from muster.server.runs.gauged import Gauged
 from muster.traffic.names import DEFAULT
 
-_OF_WORK = ("sets_out", "arrives", "starts", "ends", "goes_to_station", "service_begins", "service_ends")
 LOOK_S = 0.1
 """Seconds between two looks at the robots, where nothing is heard before."""
 
@@ -28,8 +25,8 @@ class RealRun:
 
     Parameters
     ----------
-    log
-        the log before a crash; empty for a new run.
+    begun, zero_s
+        where the run was interrupted, if it was; and when its clock was 0, seconds since 1970.
     standing
         of a fleet that stays on duty.
     traffic
@@ -53,34 +50,34 @@ class RealRun:
         planning: PlanningOptions | None = None,
         standing: Standing | None = None,
         traffic: str = DEFAULT,
-        log: Sequence[Mapping[str, Any]] = (),
+        begun: Begun | None = None,
+        zero_s: float | None = None,
         starts: str = "given",
         wall: Clock | None = None,
         at_end: Callable[[], None] = lambda: None,
     ) -> None:
         self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
         self._paused = False
-        found = recovered_from(mission, plan, log, fleet.ports)
-        there = with_reported_starts(found.mission, fleet)
-        gauged = _Gauged(recorder)
+        there = with_reported_starts(mission, fleet)
+        gauged = Gauged(recorder)
         self._live = Live(
             there,
-            found.plan,
+            plan,
             fleet,
             seed=seed,
             planning=planning,
             standing=standing,
             traffic=traffic,
-            ignore=found.plan.ignored,
+            ignore=plan.ignored,
             recorder=gauged,
-            past=found.past if log else None,
-            zero_s=zero_in(log) if log else None,
+            past=None if begun is None else begun.past,
+            zero_s=zero_s,
             starts=starts,
             wall=wall,
         )
-        gauged.live = self._live
-        if log:
-            self._live.executor.plan_again("resumed", {"how": "from where robots stand"})
+        gauged.executor = self._live.executor
+        if begun is not None:
+            begun.resume(self._live.executor)
         else:
             for line in elsewhere(mission, there):
                 self._live.executor.emit("elsewhere", {"what": line})
@@ -152,42 +149,12 @@ class RealRun:
         self._live.resume()
         self._paused = False
 
+    def bodies(self) -> None:
+        """Nothing: robots say themselves where they are."""
+
     def close(self) -> None:
         """Stop the robots, whatever ended the run."""
         try:
             self._fleet.stop()
         finally:
             self._fleet.close()
-
-
-def zero_in(log: Sequence[Mapping[str, Any]]) -> float | None:
-    """Return when the clock of a run was 0, seconds since 1970; None if its log does not say so."""
-    return next((float(entry["data"]["zero_s"]) for entry in log if "zero_s" in entry["data"]), None)
-
-
-class _Gauged:
-    """A recorder that adds the robots' usage to events, so that the log alone is enough for recovery."""
-
-    def __init__(self, recorder: Recorder) -> None:
-        self._recorder = recorder
-        self.live: Live | None = None
-
-    def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        if kind in _OF_WORK and self.live is not None:
-            data = {**data, "used": self.live.executor.crew[data["robot"]].used}
-            if kind == "ends":
-                ledger, task = self.live.executor.ledger, data["task"]
-                data |= {"usage": list(ledger.usage[task]), "arrival_usage": ledger.arrival_usage[task]}
-        self._recorder.on_event(now, kind, data)
-
-    def on_telemetry(self, now: float, robot: str, telemetry: Telemetry) -> None:
-        self._recorder.on_telemetry(now, robot, telemetry)
-
-    def on_plan(self, now: float, plan: Plan) -> None:
-        self._recorder.on_plan(now, plan)
-
-    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
-        self._recorder.on_step(now, positions, headings, velocities)
-
-    def on_report(self, report: dict[str, Any]) -> None:
-        self._recorder.on_report(report)

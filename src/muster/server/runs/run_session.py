@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import OVER, Action, Entry, Run, RunState, StoreError
+from muster.exchange.mission_control import OVER, Action, Checkpoint, Entry, Run, RunState, StoreError
 from muster.running.worlds import WORLDS
 from muster.server.runs.crash_history import CrashHistory
 from muster.server.runs.log_lines import line_of
@@ -58,7 +58,9 @@ class RunSession:
         self._mission: Mapping[str, Any] | None = None
         self._noted_at = -NOTED_S
         self._closing = self._cancelled = self._reported = False
-        self._failed = self._trouble = self._resuming = ""
+        self._failed = self._trouble = ""
+        self._share: float | None = None  # of going on after a crash, while that lasts
+        self._checkpoint: tuple[int, bytes] | None = None  # of an entry that is not written yet
         self._ended_at: datetime | None = None
         self._texts: dict[int, str] = {}
         self.log_writer = LogWriter(
@@ -70,6 +72,13 @@ class RunSession:
     def over(self) -> bool:
         """Whether the run is over."""
         return self.run.state in OVER
+
+    @property
+    def shown(self) -> Run:
+        """The run as users see it: also whether it is resuming."""
+        if self._share is None or self.over:
+            return self.run
+        return replace(self.run, state="resuming", share=self._share)
 
     @property
     def pid(self) -> int | None:
@@ -126,8 +135,7 @@ class RunSession:
             if self._reported or self._failed or self._closing:
                 return
             await self.log_writer.given()
-            reached = (self.run.time_s, self.subscribers.seq - self.run.resumed)  # a resume is no progress
-            if crashes.too_often(reached, killed=self._runner.killed):
+            if crashes.too_often(self.run.time_s, killed=self._runner.killed):
                 words, at_s = self._runner.last_words or "without a word", f"{self.run.time_s:.1f} s"
                 self._failed = f"its process ended {crashes.count} times in a row, at {at_s} of the mission: {words}"
                 return
@@ -156,15 +164,26 @@ class RunSession:
         if not self._runner_input.known:
             unsettled = await asyncio.to_thread(self._store.actions.unsettled, self.run.id)
             await self._runner_input.read()
-            self._restore(await asyncio.to_thread(self._runner_input.log), unsettled)
+            self._restore(unsettled)
         self._texts.clear()
-        return None if self._reported else await asyncio.to_thread(self._runner_input.line, self.run)
+        if self._reported:
+            return None
+        if self._runner_input.goes_on:
+            self._resume(0.0)
+        return await asyncio.to_thread(partial(self._runner_input.line, self.run, cancelled=self._cancelled))
 
-    def _restore(self, log: Sequence[Entry], unsettled: Sequence[Action]) -> None:
-        """Restore the state from the log after a restart of the server; open actions are settled or pending."""
-        self.run = replace(self.run, resumed=0)
+    def _resume(self, share: float | None) -> None:
+        """Publish how far the run is with going on; None: it goes on."""
+        self._share = share
+        self._publish_run()
+
+    def _restore(self, unsettled: Sequence[Action]) -> None:
+        """Restore the state from checkpoint and log after a restart of the server; actions are settled or pending."""
+        log, checkpoint = self._runner_input.log, self._runner_input.checkpoint
+        self.run = replace(self.run, **({"resumed": 0} if checkpoint is None else checkpoint.facts))
         for entry in log:
             self._apply(entry)
+        self.subscribers.seq = 0 if checkpoint is None else checkpoint.seq
         if log:
             self.subscribers.publish([(entry.seq, _entry_text(entry)) for entry in log[-100:]])
         applied = {entry.data["action"]: entry for entry in log if entry.kind == "command"}
@@ -194,11 +213,16 @@ class RunSession:
         elif said["type"] == "mission":
             self._mission = said["mission"]
             self.subscribers.ready()
+        elif said["type"] == "bodies":
+            self._runner_input.bodies = self.log_writer.bodies = said["data"]
+        elif said["type"] == "checkpoint":
+            self._checkpoint = said["seq"], base64.b64decode(said["data"])
+            self._keep_checkpoint()
         elif said["type"] == "resuming":
-            self._resuming = f"resuming ({said['share']:.0%})"
-            self._publish_run()
+            if self._share is not None:
+                self._resume(said["share"])
         elif said["type"] == "going":
-            self._resuming = ""
+            self._share = None
             self._change(state="running" if self.run.state == "starting" else self.run.state)
         elif said["type"] == "failed":
             self._failed = said["reason"]
@@ -233,6 +257,24 @@ class RunSession:
         for entry in entries:
             if entry.kind == "command":
                 self._settle(entry)
+        self._keep_checkpoint()
+
+    def _keep_checkpoint(self) -> None:
+        """Keep a checkpoint once all entries before it are published, and their actions are settled.
+
+        While the database is away the newest takes the place of those that wait.
+        """
+        if self._checkpoint is None or self._checkpoint[0] > self.subscribers.seq:
+            return
+        (seq, data), self._checkpoint = self._checkpoint, None
+        facts = {key: getattr(self.run, key) for key in ("state", "speed", "resumed")}
+        checkpoint = Checkpoint(run=self.run.id, seq=seq, data=data, facts=facts)
+        self._runner_input.replace_log(checkpoint)
+        self.log_writer.later(partial(self._write_checkpoint, checkpoint))
+
+    def _write_checkpoint(self, checkpoint: Checkpoint) -> None:
+        if self._runner_input.checkpoint is checkpoint:
+            self._store.log.add_checkpoint(checkpoint)
 
     def _apply(self, entry: Entry) -> None:
         """Apply an entry to the state of the run."""
@@ -279,7 +321,7 @@ class RunSession:
         for action in self._pending.values():
             self._write_outcome(action.id, action, TOO_LATE)
         self._pending.clear()
-        self._resuming = ""
+        self._share = None
         self._change(state=state, ended_at=self._ended_at or datetime.now(UTC))
 
     def _on_trouble(self, why: str) -> None:
@@ -309,13 +351,12 @@ class RunSession:
         self._publish_run()
 
     def _publish_run(self) -> None:
-        run = self.run
-        said = {"state": run.state, "speed": run.speed, "time_s": run.time_s, "remark": self._resuming or run.remark}
+        run = self.shown
+        said = {key: getattr(run, key) for key in ("state", "speed", "time_s", "remark", "share")}
         self.subscribers.tell("run", json.dumps({"type": "run", **said}, ensure_ascii=False, separators=(",", ":")))
 
     def _hello(self) -> Mapping[str, Any]:
-        run = replace(self.run, remark=self._resuming or self.run.remark)
-        return {"run": plain_run(run), "mission": self._mission}
+        return {"run": plain_run(self.shown), "mission": self._mission}
 
     async def _read_texts(self, after: int) -> list[tuple[int, str]]:
         return [(entry.seq, _entry_text(entry)) for entry in await self.log_writer.entries(after, 500)]

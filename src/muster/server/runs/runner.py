@@ -1,13 +1,15 @@
 """The runner process of a run, `python -m muster.server.runs.runner MEMORY_MB`, connected to the server by pipes.
 
 The first line is the run: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`, `settings`, `speed`,
-`lock`, and of a resumed run `log`, `until_s`, `tracked_s`. The other lines are users' actions: `id`, `verb`, `data`,
+`lock`, and of a run that goes on `checkpoint`, the entries of the `log` after it up to `seq`, `bodies`, `until_s`,
+`tracked_s`, `paused`, `cancelled`. The other lines are users' actions: `id`, `verb`, `data`,
 `who`. When the pipe ends the server is gone: the runner stops real robots and ends. The memory limit is for simulated
 worlds only.
 """
 
 from __future__ import annotations
 
+import base64
 import os
 import shutil
 import signal
@@ -20,14 +22,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from muster.mission.errors import MusterError
+from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
-from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
+from muster.running.begun import Begun, bodies_at_start
 from muster.running.claim_locks import robots_claimed
 from muster.running.robot_claims import claims_as_far_as_known
 from muster.running.worlds import WORLDS
+from muster.server.runs.checkpoints import unpacked_state
+from muster.server.runs.crash_recovery import History
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.run_loop import RunLoop, WorldRun
@@ -77,7 +81,7 @@ def _obey(folder: str, memory_mb: int) -> int:
 
 
 def _end(ended: threading.Event, real: threading.Event, folder: str) -> None:
-    """End, as the server is gone: a simulated run is simulated again later; real robots are stopped first."""
+    """End, as the server is gone: a simulated run goes on later; real robots are stopped first."""
     ended.set()
     if not real.is_set():
         shutil.rmtree(folder, ignore_errors=True)
@@ -85,7 +89,7 @@ def _end(ended: threading.Event, real: threading.Event, folder: str) -> None:
 
 
 def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outbox, ended: threading.Event) -> None:
-    real, log = begin["world"] not in WORLDS, begin["log"]
+    real = begin["world"] not in WORLDS
     with ExitStack() as stack:
         if real:
             stack.enter_context(alone(Path(begin["lock"]), begin["run"]))
@@ -93,25 +97,42 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
         os.chdir(folder)
         mission = mission_of(begin["mission"])
         outbox.send({"type": "mission", "mission": _shown(mission)})
+        outbox.send({"type": "resuming", "share": 0.4})
+        history, checkpoint = _history(begin, mission)
         recorder = LogRecorder(
             mission,
             outbox,
-            log=log,
+            history,
+            seq=begin["seq"],
             tracked_s=begin["tracked_s"],
             stretch_s=REAL_STRETCH_S if real else STRETCH_S,
-            again=not real,
         )
-        plan = plan_from(begin["plan"], "the plan")
-        with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
-            how = {"speed": begin["speed"], "starts_at": world_run.starts_at, "ended": ended.is_set}
-            run_loop = RunLoop(world_run, recorder, inbox, outbox, **how)
+        outbox.send({"type": "resuming", "share": 0.6})
+        make = _real_run if real else _simulated_run
+        with closing(make(begin, mission, recorder, ended)) as world_run:
             if real:
                 outbox.send({"type": "mission", "mission": _shown(replace(mission, starts_at=world_run.starts_at))})
-                run_loop.recall(log)
-            else:
-                run_loop.catch_up(log, begin["until_s"])
+            how = {key: begin[key] for key in ("speed", "paused", "cancelled")}
             outbox.send({"type": "going"})
-            run_loop.run()
+            RunLoop(
+                world_run,
+                recorder,
+                inbox,
+                outbox,
+                starts_at=world_run.starts_at,
+                ended=ended.is_set,
+                checkpoint=checkpoint,
+                **how,
+            ).run()
+
+
+def _history(begin: Mapping[str, Any], mission: Mission) -> tuple[History, int]:
+    """What has happened in the run so far; and the entry of its last checkpoint, 0 for none."""
+    state = None if begin["checkpoint"] is None else unpacked_state(base64.b64decode(begin["checkpoint"]))
+    history = History(mission, plan_from(begin["plan"], "the plan"), state)
+    for entry in begin["log"]:
+        history.take(entry["time_s"], entry["kind"], entry["data"])
+    return history, begin["seq"] - len(begin["log"])
 
 
 def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
@@ -119,21 +140,38 @@ def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
     return frozenset() if world == "ros1" else claims_as_far_as_known(world, settings)
 
 
-def _world_run(
-    begin: Mapping[str, Any], mission: Mission, plan: Plan, recorder: LogRecorder, ended: threading.Event
+def _simulated_run(
+    begin: Mapping[str, Any], mission: Mission, recorder: LogRecorder, ended: threading.Event
 ) -> WorldRun:
-    settings, log = begin["settings"], begin["log"]
-    if begin["world"] in WORLDS:
-        from muster.server.runs.simulated_run import SimulatedRun
+    from muster.server.runs.simulated_run import SimulatedRun
 
-        return SimulatedRun(mission, plan, begin["world"], settings, recorder)
+    history, bodies = recorder.history, begin["bodies"]
+    if not begin["seq"]:
+        return SimulatedRun(mission, history.plan, begin["world"], begin["settings"], recorder)
+    found = history.recovered(history.state.robots)
+    if bodies is None and begin["until_s"] > STRETCH_S:
+        expected = "expected a world with snapshots, in a run that this version of Muster has begun"
+        raise ParameterError(f"world {begin['world']}: it is not known where bodies were; {expected}")
+    bodies = bodies or bodies_at_start(found.mission)
+    time_s = max(begin["until_s"], history.now_s, bodies["time_s"])
+    past = replace(found.past, used={**found.past.used, **bodies["used"]})
+    begun = Begun(past=past, again=found.again, bodies={**bodies, "time_s": time_s})
+    return SimulatedRun(found.mission, found.plan, begin["world"], begin["settings"], recorder, begun)
+
+
+def _real_run(begin: Mapping[str, Any], mission: Mission, recorder: LogRecorder, ended: threading.Event) -> WorldRun:
     from muster.running.fleets import fleet_ready
     from muster.server.runs.real_run import RealRun
     from muster.server.runs.run_settings import standing_of
     from muster.server.work.tasks.check_request import checked_options
 
-    fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=bool(log))
+    history, settings, plan = recorder.history, begin["settings"], recorder.history.plan
+    fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=begin["seq"] > 0)
     try:
+        begun = None
+        if begin["seq"]:
+            found = history.recovered(fleet.ports)
+            mission, plan, begun = found.mission, found.plan, Begun(past=found.past, again=found.again)
         run = RealRun(
             mission,
             plan,
@@ -143,7 +181,8 @@ def _world_run(
             planning=checked_options(settings.get("planning", {})),
             standing=standing_of(settings),
             traffic=settings.get("traffic", DEFAULT),
-            log=log,
+            begun=begun,
+            zero_s=history.zero_s,
             starts=settings.get("starts", "given"),
             at_end=at_end,
         )

@@ -1,7 +1,6 @@
-"""A plan carried out in a simulated world, by steps of fixed length, so that the same happens each time.
+"""A plan carried out in a simulated world, by steps of fixed length; after a crash, the rest of it.
 
-What happens is a function of mission, plan, settings, and of what users did and when on the mission's clock: after a
-crash it is simulated again up to where the log reaches, and goes on.
+While no process simulates it the mission's clock stands still.
 """
 
 from __future__ import annotations
@@ -13,7 +12,9 @@ from typing import Any
 from muster.execution import Recorder, Report, Status
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.running.begun import Begun
 from muster.running.simulation import Simulation
+from muster.server.runs.gauged import Gauged
 from muster.server.runs.run_settings import standing_of
 from muster.server.work.tasks.check_request import checked_options
 from muster.simulation import Noise
@@ -28,7 +29,13 @@ class SimulatedRun:
     real = False
 
     def __init__(
-        self, mission: Mission, plan: Plan, world: str, settings: Mapping[str, Any], recorder: Recorder
+        self,
+        mission: Mission,
+        plan: Plan,
+        world: str,
+        settings: Mapping[str, Any],
+        recorder: Recorder,
+        begun: Begun | None = None,
     ) -> None:
         how = dict(settings)
         noise = Noise(**how.pop("noise", {}))
@@ -36,8 +43,10 @@ class SimulatedRun:
         how["ignore"] = plan.ignored
         how.pop("accept_partial", None)  # the plan was accepted
         how["planning"] = checked_options(how.get("planning", {}))
-        self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, **how)
-        self._quanta = 0
+        gauged = Gauged(recorder)
+        self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=gauged, begun=begun, **how)
+        gauged.executor = self._simulation.executor
+        self._quanta = math.ceil(self.time_s / QUANTUM_S - 1e-9)
         self.starts_at = mission.starts_at
 
     @property
@@ -79,6 +88,10 @@ class SimulatedRun:
 
     def resume(self) -> None:
         """Time goes on."""
+
+    def bodies(self) -> Mapping[str, Any] | None:
+        """Return where bodies are, from which a run after a crash goes on; None if the world does not tell."""
+        return self._simulation.snapshot()
 
     def close(self) -> None:
         self._simulation.close()

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from muster.exchange.mission_control import Entry, Stretch
 from muster.server.store.database import Database
@@ -17,9 +18,16 @@ class TimedLog(LogTable):
         super().__init__(database)
         self._observe = observe
 
-    def append(self, run: int, time_s: float, entries: Sequence[Entry], stretches: Sequence[Stretch] = ()) -> int:
+    def append(
+        self,
+        run: int,
+        time_s: float,
+        entries: Sequence[Entry],
+        stretches: Sequence[Stretch] = (),
+        bodies: Mapping[str, Any] | None = None,
+    ) -> int:
         began = time.perf_counter()
         try:
-            return super().append(run, time_s, entries, stretches)
+            return super().append(run, time_s, entries, stretches, bodies)
         finally:
             self._observe(time.perf_counter() - began)

@@ -115,10 +115,18 @@ export class Team {
     if (kind === "replanned" && seq > this.past) this.mark(data);
   }
 
-  follow({ plan = {}, lines = {} }) {
-    this.routes = new Map(Object.entries(lines).map(([robot, line]) => [robot, line.map(three)]));
-    const why = (reasons = []) => reasons.map(({ robot, detail }) => [robot, detail].filter(Boolean).join(": ")).join("; ");
-    this.leftOut = new Map((plan.unassigned ?? []).map(({ task, reasons }) => [task, why(reasons)]));
+  // The first plan is whole, and so are those in logs of format 1; others say what they change.
+  follow({ plan = null, lines = {}, left_out: leftOut = {} }) {
+    if (plan) {
+      const why = (reasons = []) => reasons.map(({ robot, detail }) => [robot, detail].filter(Boolean).join(": ")).join("; ");
+      this.routes = new Map();
+      this.leftOut = new Map((plan.unassigned ?? []).map(({ task, reasons }) => [task, why(reasons)]));
+    }
+    for (const [robot, line] of Object.entries(lines)) this.routes.set(robot, line.map(three));
+    for (const [task, why] of Object.entries(leftOut)) {
+      if (why === null) this.leftOut.delete(task);
+      else this.leftOut.set(task, why);
+    }
   }
 
   obey({ who, data }) {
@@ -146,8 +154,8 @@ export class Team {
     }
   }
 
-  turn({ state, speed, time_s: time, remark }) {
-    Object.assign(this.run, { state, speed, remark });
+  turn({ state, speed, time_s: time, remark, share = null }) {
+    Object.assign(this.run, { state, speed, remark, share });
     this.time = Math.max(this.time, time ?? 0);
   }
 
