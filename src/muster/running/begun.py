@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -37,11 +36,3 @@ class Begun:
     def resume(self, executor: Executor) -> None:
         """Let an executor plan the rest again from where robots stand."""
         executor.plan_again("resumed", {"how": "from where robots stand", "again": list(self.again)})
-
-
-def bodies_at_start(mission: Mission) -> dict[str, Any]:
-    """Return bodies as `Simulation.snapshot` gives them before anything has moved."""
-    places = {robot.id: (*robot.position, 0.0)[:3] for robot in mission.robots}
-    rows = {robot.id: [*places[robot.id], math.radians(robot.heading_deg), *[0.0] * 6] for robot in mission.robots}
-    nothing: dict[str, Any] = {"charges": {}, "used": {}, "failed": [], "muted": [], "contacts": [], "found": []}
-    return {"time_s": 0.0, "robots": rows, "least_m": None, "bodies": [], **nothing}

@@ -198,7 +198,7 @@ class Simulation:
             begun.resume(self._executor)
             if self._camera_search is not None:
                 self._camera_search.resume(begun.bodies["found"])
-        self._executor.tick(self.time_s)
+        self._tick()
 
     @property
     def world(self) -> SimulatedWorld:

@@ -30,20 +30,24 @@ class Kept:
     most: int | None = None
     bodies: dict | None = None
     checkpoint: dict | None = None
+    tick: list = field(default_factory=list)
     full = False
 
     def entry(self, message):
-        if len(self.log) == self.most:
+        if len(self.log) + len(self.tick) == self.most:
             raise Killed
-        self.log.append({key: message[key] for key in ("seq", "time_s", "kind", "data")})
+        self.tick.append({key: message[key] for key in ("seq", "time_s", "kind", "data")})
 
     def stretch(self, from_s, until_s, data):
         self.tracks.append((from_s, until_s, unpacked(data)))
 
     def send(self, message):
-        kind = message["type"]
-        if kind in ("bodies", "checkpoint"):
-            setattr(self, kind, message)
+        if message["type"] == "tick":  # entries of one that is not ended never were
+            self.log += self.tick
+            self.tick = []
+            self.bodies = message["bodies"]
+        elif message["type"] == "checkpoint":
+            self.checkpoint = message
         else:
             self.others.append(message)
 
@@ -89,7 +93,7 @@ def performed(
         "seq": len(before.log),
         "checkpoint": before.checkpoint and before.checkpoint["data"],
         "log": before.log[before.checkpoint["seq"] if before.checkpoint else 0 :],
-        "bodies": before.bodies and before.bodies["data"],
+        "bodies": before.bodies,
         "until_s": max((one["time_s"] for one in (*before.log, *before.others) if "time_s" in one), default=0.0),
     }
     history, checkpoint = _history(begin, mission)

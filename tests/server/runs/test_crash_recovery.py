@@ -1,7 +1,6 @@
 """A run of real robots whose process is killed knows afterwards all that it knew before: its log is folded."""
 
 import random
-from types import SimpleNamespace
 
 import pytest
 from tests.execution.world import World
@@ -14,7 +13,7 @@ from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.records import specified
 from muster.mission.yaml_writer import plain
 from muster.server.runs.crash_recovery import recovered_from
-from muster.server.runs.real_run import _Gauged
+from muster.server.runs.gauged import Gauged
 
 NEWCOMER = Robot(id="r_9", position=(9.0, 9.0), load_capacity=5.0)
 
@@ -52,10 +51,10 @@ class Played:
 
     def __init__(self, mission, plan):
         self.world, self.log = World(mission), Log()
-        gauged = _Gauged(self.log)
+        gauged = Gauged(self.log)
         self.mission, self.plan = mission, plan
         self.executor = Executor(mission, plan, self.world.ports, observer=gauged)
-        gauged.live = SimpleNamespace(executor=self.executor)
+        gauged.executor = self.executor
         self.executor.tick(0.0)
 
     def go_to(self, time_s):

@@ -82,9 +82,7 @@ class PlanChanges:
         """
         ahead = {route.robot: names_ahead(route.tasks, mission_state) for route in plan.routes}
         changed = [robot for robot in lines if self._is_new(robot, ahead[robot], lines[robot], mission_state)]
-        left_out = {
-            one.task: words_of(one.reasons) for one in plan.unassigned if not is_over(one.task, mission_state)
-        }
+        left_out = {one.task: words_of(one.reasons) for one in plan.unassigned if not is_over(one.task, mission_state)}
         back = {task: None for task in self._left_out if task not in left_out and not is_over(task, mission_state)}
         news = {task: why for task, why in left_out.items() if self._left_out.get(task) != why}
         self._left_out = left_out

@@ -65,7 +65,7 @@ class RouteLines:
 
 
 def names_ahead(names: Sequence[str], mission_state: MissionState) -> list[str]:
-    """Return the stops of a route that are still ahead: tasks that are not over, and stations after the last that is."""
+    """Return the stops of a route that are ahead: tasks that are not over, and stations after the last that is."""
     stations = {station.id for station in mission_state.mission.stations}
     over = {k for k, name in enumerate(names) if name not in stations and is_over(name, mission_state)}
     last = max(over, default=-1)

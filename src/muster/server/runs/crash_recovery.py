@@ -322,6 +322,7 @@ def _of_those(plan: Plan, routes: Mapping[str, Sequence[str]], robots: Sequence[
         allocator=plan.allocator,
         ignored=plan.ignored,
         objective=plan.objective,
+        objective_value=plan.objective_value,
         routes=found,
         unassigned=(),
     )

@@ -163,7 +163,7 @@ class LogWriter:
         if self._lost:
             self._forget()
             return True
-        entries, stretches = self._entries[:_AT_ONCE], self._stretches[:_AT_ONCE]
+        entries, stretches = self._batch(), self._stretches[:_AT_ONCE]
         fields, late = dict(self._fields), list(self._late)
         whole = len(entries) == len(self._entries)
         trouble = ""
@@ -191,6 +191,13 @@ class LogWriter:
         if self._entries or self._stretches:
             self._wake.set()
         return not trouble
+
+    def _batch(self) -> list[Entry]:
+        """The first entries that wait, cut where the mission's time changes: what happens at once is kept as one."""
+        count = _AT_ONCE
+        while count < len(self._entries) and self._entries[count].time_s == self._entries[count - 1].time_s:
+            count += 1
+        return self._entries[:count]
 
     async def _append_patiently(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
         """Write the first entries and stretches, which are not dropped meanwhile."""

@@ -115,6 +115,7 @@ class RunLoop:
                 self._world_run.go_on()
                 self._keep()
                 self._tell()
+        self._keep()
         self._tell(at_once=True)
 
     @property
@@ -167,16 +168,15 @@ class RunLoop:
         self._recorder.write_first(self._world_run.time_s, "command", said | {"outcome": outcome})
 
     def _keep(self) -> None:
-        """Send where bodies are after new entries and tracks, and a checkpoint if one is due.
+        """End a tick: say where bodies are after its entries and tracks, and send a checkpoint if one is due.
 
-        What is sent here is consistent with the log up to its last entry, as nothing is under way between two steps.
+        The server takes the entries of a tick all or none: a command with what follows from it.
         """
-        seq, bodies = self._recorder.seq, None
+        seq = self._recorder.seq
         if self._kept != (seq, self._recorder.tracked_s):
             self._kept = seq, self._recorder.tracked_s
             bodies = self._world_run.bodies()
-        if bodies is not None:
-            self._outbox.send({"type": "bodies", "data": {**bodies, "seq": seq}})
+            self._outbox.send({"type": "tick", "bodies": None if bodies is None else {**bodies, "seq": seq}})
         if self._schedule.take(seq):
             data = base64.b64encode(packed_state(self._recorder.history.checkpoint())).decode()
             self._outbox.send({"type": "checkpoint", "seq": seq, "data": data})

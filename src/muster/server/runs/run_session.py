@@ -63,6 +63,7 @@ class RunSession:
         self._checkpoint: tuple[int, bytes] | None = None  # of an entry that is not written yet
         self._ended_at: datetime | None = None
         self._texts: dict[int, str] = {}
+        self._tick: list[tuple[Mapping[str, Any], str]] = []  # entries of the tick that has not ended yet
         self.log_writer = LogWriter(
             store, run.id, on_entries=self._on_written, on_trouble=self._on_trouble, on_lost=self._give_up
         )
@@ -166,6 +167,7 @@ class RunSession:
             await self._runner_input.read()
             self._restore(unsettled)
         self._texts.clear()
+        self._tick.clear()
         if self._reported:
             return None
         if self._runner_input.goes_on:
@@ -204,28 +206,40 @@ class RunSession:
                 return
         said = json.loads(text)
         if said["type"] == "entry":
-            self._add_entry(said, text)
+            self._tick.append((said, text))
+        elif said["type"] == "tick":
+            self._end_tick(said["bodies"])
             while self.log_writer.behind:
                 await asyncio.sleep(0.05)
-        elif said["type"] == "stretch":
-            self._runner_input.tracked(said["until_s"])
-            self.log_writer.add_stretch(said["from_s"], said["until_s"], base64.b64decode(said["data"]))
+        elif said["type"] in ("checkpoint", "stretch"):
+            self._take_state(said["type"], said)
         elif said["type"] == "mission":
             self._mission = said["mission"]
             self.subscribers.ready()
-        elif said["type"] == "bodies":
-            self._runner_input.bodies = self.log_writer.bodies = said["data"]
-        elif said["type"] == "checkpoint":
-            self._checkpoint = said["seq"], base64.b64decode(said["data"])
-            self._keep_checkpoint()
-        elif said["type"] == "resuming":
-            if self._share is not None:
-                self._resume(said["share"])
+        elif said["type"] == "resuming" and self._share is not None:
+            self._resume(said["share"])
         elif said["type"] == "going":
             self._share = None
             self._change(state="running" if self.run.state == "starting" else self.run.state)
         elif said["type"] == "failed":
+            self._end_tick(self._runner_input.bodies)
             self._failed = said["reason"]
+
+    def _end_tick(self, bodies: Mapping[str, Any] | None) -> None:
+        """Add the entries of a tick, all at once; those of a tick that a crash cuts short never were."""
+        for said, text in self._tick:
+            self._add_entry(said, text)
+        self._tick.clear()
+        self._runner_input.bodies = self.log_writer.bodies = bodies
+
+    def _take_state(self, kind: str, said: Mapping[str, Any]) -> None:
+        """Take a checkpoint, or tracks."""
+        if kind == "checkpoint":
+            self._checkpoint = said["seq"], base64.b64decode(said["data"])
+            self._keep_checkpoint()
+        else:
+            self._runner_input.tracked(said["until_s"])
+            self.log_writer.add_stretch(said["from_s"], said["until_s"], base64.b64decode(said["data"]))
 
     def _note_time(self, text: str) -> None:
         """Store the mission time that subscribers have seen now and then: a resumed run continues from there."""

@@ -26,7 +26,7 @@ from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
-from muster.running.begun import Begun, bodies_at_start
+from muster.running.begun import Begun
 from muster.running.claim_locks import robots_claimed
 from muster.running.robot_claims import claims_as_far_as_known
 from muster.running.worlds import WORLDS
@@ -148,11 +148,10 @@ def _simulated_run(
     history, bodies = recorder.history, begin["bodies"]
     if not begin["seq"]:
         return SimulatedRun(mission, history.plan, begin["world"], begin["settings"], recorder)
-    found = history.recovered(history.state.robots)
-    if bodies is None and begin["until_s"] > STRETCH_S:
+    if bodies is None:
         expected = "expected a world with snapshots, in a run that this version of Muster has begun"
         raise ParameterError(f"world {begin['world']}: it is not known where bodies were; {expected}")
-    bodies = bodies or bodies_at_start(found.mission)
+    found = history.recovered(history.state.robots)
     time_s = max(begin["until_s"], history.now_s, bodies["time_s"])
     past = replace(found.past, used={**found.past.used, **bodies["used"]})
     begun = Begun(past=past, again=found.again, bodies={**bodies, "time_s": time_s})

@@ -123,7 +123,9 @@ class Runs:
 
     def present(self) -> Sequence[Run]:
         """Runs under way, newest first, without asking the database."""
-        return [self._sessions[run].shown for run in sorted(self._sessions, reverse=True) if not self._sessions[run].over]
+        return [
+            self._sessions[run].shown for run in sorted(self._sessions, reverse=True) if not self._sessions[run].over
+        ]
 
     async def over(self, limit: int = 200) -> Sequence[Run]:
         """Runs that are over, newest first, including those whose end is not written yet."""

@@ -17,9 +17,8 @@ from muster.mission.errors import ParameterError
 from muster.server.store.columns import as_json
 from muster.server.store.database import Database
 from muster.server.store.schema import bodies as body_table
-from muster.server.store.schema import checkpoints
+from muster.server.store.schema import checkpoints, runs
 from muster.server.store.schema import entries as entry_table
-from muster.server.store.schema import runs
 from muster.server.store.schema import stretches as stretch_table
 
 _AT_ONCE = 64
