@@ -3,6 +3,9 @@
 import json
 
 from muster.mission.yaml_writer import plain
+from muster.running.begun import Begun
+from muster.server.runs.crash_recovery import History
+from muster.server.runs.real_run import RealRun
 
 
 class Log:
@@ -23,3 +26,13 @@ class Log:
     def on_telemetry(self, *_): ...
 
     on_step = on_telemetry
+
+
+def resumed_run(mission, plan, fleet, recorder, entries, **how):
+    """A run of real robots that goes on after a crash, by the entries of its log."""
+    history = History(mission, plan)
+    for entry in entries:
+        history.take(**entry)
+    found = history.recovered(fleet.ports)
+    begun = Begun(past=found.past, again=found.again)
+    return RealRun(found.mission, found.plan, fleet, recorder, begun=begun, zero_s=history.zero_s, **how)

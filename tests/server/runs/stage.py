@@ -111,8 +111,10 @@ def performed_with_crashes(mission, plan, asked, crashes, **how):
     """All that is kept of a run that is killed each time when so many more entries are kept, and resumed."""
     whole = Kept()
     for crash in [*crashes, None]:
-        settled = sum(entry["kind"] == "command" for entry in whole.log)
-        kept = performed(mission, plan, asked[settled:], before=whole, killed_after=crash, **how)
+        commands = [entry["data"] for entry in whole.log if entry["kind"] == "command"]
+        done = [one["verb"] for one in commands if one["outcome"] == "done" and one["verb"] in ("pause", "resume")]
+        how["paused"] = done[-1:] == ["pause"]
+        kept = performed(mission, plan, asked[len(commands) :], before=whole, killed_after=crash, **how)
         bodies, checkpoint = kept.bodies or whole.bodies, kept.checkpoint or whole.checkpoint
         parts = [getattr(whole, name) + getattr(kept, name) for name in ("log", "tracks", "others")]
         whole = Kept(*parts, bodies=bodies, checkpoint=checkpoint)

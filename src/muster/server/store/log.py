@@ -21,7 +21,7 @@ from muster.server.store.schema import checkpoints, runs
 from muster.server.store.schema import entries as entry_table
 from muster.server.store.schema import stretches as stretch_table
 
-_AT_ONCE = 64
+_AT_ONCE, _ENTRIES_AT_ONCE = 64, 1000
 _KEPT = 2
 """Checkpoints of a run that are kept: the one before the last is used where the last is damaged."""
 
@@ -116,6 +116,13 @@ class LogTable:
         query = select(entry_table).where(entry_table.c.run == run, entry_table.c.seq > after)
         with self._database.reading() as connection:
             return [Entry(**row._mapping) for row in connection.execute(query.order_by(entry_table.c.seq).limit(limit))]
+
+    def all_entries(self, run: int) -> Iterator[Entry]:
+        """All entries in order, read in portions, so that few are in memory at once."""
+        portion = self.entries(run, limit=_ENTRIES_AT_ONCE)
+        while portion:
+            yield from portion
+            portion = self.entries(run, portion[-1].seq, _ENTRIES_AT_ONCE)
 
     def stretches(self, run: int) -> Iterator[Stretch]:
         """The tracks in order, read in portions, so that no transaction stays open while they are processed."""
