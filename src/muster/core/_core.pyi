@@ -864,9 +864,7 @@ class CrowdWorld:
     def headings(self) -> NDArray[numpy.float64]: ...
 
     def motions(self) -> NDArray[numpy.float64]:
-        """
-        Of each robot its velocity, its speed ahead, its yaw rate, and the metres that it has travelled.
-        """
+        """Of each robot its velocity, its speed ahead and its yaw rate."""
 
     def travelled(self) -> NDArray[numpy.float64]: ...
 

@@ -93,7 +93,6 @@ void CrowdWorld::resume(long steps, const std::vector<Motion>& motions) {
     robot.heading_before = robot.heading;
     robot.ahead = motions[i].ahead;
     robot.yaw_rate = motions[i].yaw_rate;
-    robot.travelled = motions[i].travelled;
     robot.stopping = robot.under_way();
   }
 }

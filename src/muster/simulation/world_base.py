@@ -186,7 +186,7 @@ class WorldBase(SimulatedWorld, ABC):
         self._robots: list[Robot] = []
         self._ports: dict[str, SimulatedPort] = {}
         self._failed: set[str] = set()
-        self._before: Mapping[str, Any] = snapshot or {"least_m": None, "contacts": ()}
+        self._before: Mapping[str, Any] = snapshot or {"least_m": None, "contacts": (), "distances_m": {}}
         for robot in mission.robots:
             self.join(robot if snapshot is None else standing(robot, snapshot))
         if snapshot is not None:
@@ -277,6 +277,7 @@ class WorldBase(SimulatedWorld, ABC):
         return {
             "time_s": self.time_s,
             "robots": dict(zip(self._numbers, np.hstack([poses, motions]).tolist(), strict=True)),
+            "distances_m": dict(self.distances_m),
             "charges": {name: battery.charge for name, battery in batteries.items() if battery is not None},
             "failed": sorted(self._failed),
             "muted": [name for name, port in self._ports.items() if port.muted],
@@ -390,7 +391,8 @@ class WorldBase(SimulatedWorld, ABC):
 
     @property
     def distances_m(self) -> Mapping[str, float]:
-        return dict(zip(self._numbers, self._crowd.travelled().tolist(), strict=True))
+        before = self._before["distances_m"]
+        return {name: before.get(name, 0.0) + float(self._crowd.travelled()[k]) for name, k in self._numbers.items()}
 
     @property
     def min_distance_m(self) -> float | None:

@@ -111,6 +111,8 @@ def performed_with_crashes(mission, plan, asked, crashes, **how):
     """All that is kept of a run that is killed each time when so many more entries are kept, and resumed."""
     whole = Kept()
     for crash in [*crashes, None]:
+        if whole.log and whole.log[-1]["kind"] == "report":
+            break  # it was over before it could be killed
         commands = [entry["data"] for entry in whole.log if entry["kind"] == "command"]
         done = [one["verb"] for one in commands if one["outcome"] == "done" and one["verb"] in ("pause", "resume")]
         how["paused"] = done[-1:] == ["pause"]

@@ -148,5 +148,5 @@ async def _past(runs: Runs, run: int, after: int) -> AsyncIterator[str]:
     for entry in await runs.entries(run, after):
         told = {"seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": entry.data}
         yield message("entry", {**told, "line": line_of(entry.kind, entry.data)})
-    ended = {"state": found.state, "speed": found.speed, "time_s": found.time_s, "remark": found.remark}
+    ended = {key: getattr(found, key) for key in ("state", "speed", "time_s", "remark", "share")}
     yield message("run", ended)
