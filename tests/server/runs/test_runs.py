@@ -78,7 +78,14 @@ def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
         kept = store.log.entries(run)
         assert [(e["seq"], e["kind"], e["data"]) for e in entries] == [(e.seq, e.kind, e.data) for e in kept]
         assert {message["type"] for message in messages} == {"hello", "entry", "states", "status", "run"}
-    assert messages[-1] == {"type": "run", "state": "ended", "speed": None, "time_s": kept[-1].time_s, "remark": "", "share": None}
+    assert messages[-1] == {
+        "type": "run",
+        "state": "ended",
+        "speed": None,
+        "time_s": kept[-1].time_s,
+        "remark": "",
+        "share": None,
+    }
     found = store.runs.get(run)
     assert (found.state, found.report) == ("ended", kept[-1].data)
     assert {row["task"] for row in flown["tasks"]} == {task.id for task in mission.tasks}
