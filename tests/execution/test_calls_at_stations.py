@@ -232,7 +232,7 @@ def test_goods_and_levels_are_known_after_a_crash():
         {
             "time_s": 3,
             "kind": "service_ends",
-            "data": {"robot": "r", "unloaded": {"": 1.0}, "used": 3.0, "charge": 0.5},
+            "data": {"robot": "r", "station": "depot", "unloaded": {"": 1.0}, "used": 3.0, "charge": 0.5},
         },
         did(5, "b"),
         did(6, "c", "s"),
@@ -240,9 +240,10 @@ def test_goods_and_levels_are_known_after_a_crash():
         {"time_s": 7, "kind": "load_lies", "data": {"task": "c", "robot": "s", "position": [11, 0], "load": {"": 1.0}}},
         did(9, "d"),
     ]
-    found = recovered_from(given, plan(r="a depot b d e c"), log)
-    assert next(one for one in found.mission.tasks if one.id == "c").position == (11, 0)
-    live = Live(found.mission, found.plan, WorldAsFleet(found.mission), past=found.past)
+    planned = plan(r="a depot b d e c")
+    state = recovered_from(given, planned, log)
+    assert state.tasks["c"].position == (11, 0)
+    live = Live(given, planned, WorldAsFleet(given), state=state)
     executor = live.executor
     assert executor.goods.load("r") == {"": 2}  # of b and d
     assert (executor.goods.unloaded, executor.goods.lying, executor.goods.load("s")) == ({"": 1}, {"c": {"": 1}}, {})

@@ -7,7 +7,6 @@ from tests.execution.world import World, carry_out
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.execution.changes import FAILED, SILENT, STUCK
 from muster.execution.executor import Executor
 from muster.execution.monitor import Limits
 from muster.execution.report import report_of
@@ -20,6 +19,7 @@ from muster.mission.plan import Plan, Route
 from muster.motion import actions
 from muster.motion.actions import Impossible
 from muster.motion.robot_paths import RobotPaths
+from muster.state.robot_events import RobotFails, RobotSilent, RobotStuck
 
 SHIPPED = [name for name in mission_names() if name not in ("berlin52", "eil51", "eil76")]
 
@@ -113,14 +113,14 @@ def test_it_goes_where_its_route_ends():
     mission = line(5.0, rules=Rules(return_to_start=True))
     executor = carried_out(mission, plan_of(r_0=["0"]))
     assert executor.crew["r_0"].position == (0, 0, 0)
-    assert executor.ended_s == pytest.approx(10, abs=0.31)
+    assert executor.state.ended_s == pytest.approx(10, abs=0.31)
     assert executor.crew["r_0"].used == pytest.approx(10)
 
 
 def test_a_failed_robots_tasks_are_done_by_another():
     mission = line(5.0, 9.0, robots=2, events=[Event(at_s=6, robot_fails="r_0")], duration_s=3.0)
     executor = carried_out(mission, plan_of(r_0=["0", "1"]))
-    assert executor.crew["r_0"].out == FAILED
+    assert executor.crew["r_0"].out == RobotFails.kind
     assert executor.crew["r_1"].done == ["0", "1"]  # also the work under way
     assert executor.ledger.starts_s["0"] > 6
     assert executor.revisions[0].moved == {"0": ("r_0", "r_1"), "1": ("r_0", "r_1")}
@@ -172,7 +172,7 @@ def test_a_silent_robot_is_noticed_and_is_back_when_it_is_heard():
     events = [Event(at_s=2, robot_silent="r_0"), Event(at_s=20, robot_returns="r_0")]
     mission = line(40.0, 60.0, robots=2, events=events)
     executor = carried_out(mission, plan_of(r_0=["0", "1"]), limits=Limits(silent_after_s=5))
-    noticed = next(h.time_s for h in executor.events if h.kind == SILENT)
+    noticed = next(h.time_s for h in executor.events if h.kind == RobotSilent.kind)
     assert noticed == pytest.approx(7, abs=0.21)
     assert "robot_returns" in kinds(executor)
     assert sorted(executor.ledger.ends_s) == ["0", "1"]
@@ -185,7 +185,7 @@ def test_a_robot_that_does_not_get_on_is_sent_again_and_then_out():
     world.ports["r_0"].broken = True  # it talks, and does not move
     executor = Executor(mission, plan_of(r_0=["0"]), world.ports, limits=Limits(stuck_after_s=10))
     carry_out(executor, world)
-    assert executor.crew["r_0"].out == STUCK
+    assert executor.crew["r_0"].out == RobotStuck.kind
     assert [h.time_s for h in executor.events if h.kind == "robot_sent_again"] == [pytest.approx(10.5, abs=0.6)]
     assert executor.crew["r_1"].done == ["0"]
 
@@ -228,7 +228,7 @@ def test_work_that_takes_far_too_long_is_stuck_too():
     executor = carry_out(
         Executor(mission, plan_of(r_0=["0"]), world.ports, limits=Limits(stuck_after_s=4)), world, each=breaks
     )
-    assert executor.crew["r_0"].out == STUCK
+    assert executor.crew["r_0"].out == RobotStuck.kind
     assert executor.crew["r_1"].done == ["0"]
 
 

@@ -9,12 +9,13 @@ from muster.execution.robot_state import Activity, RobotState
 from muster.mission.errors import ParameterError
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Waypoint
+from muster.state.robots import KnownRobot
 
 
 def driving(speed=1.0, way=100.0):
     robot = Robot(id="r", position=(0, 0), speed_mps=speed)
     point = Point(robot)
-    state = RobotState(robot, point, None, LegTimes(speed), in_time=False, last_heard_s=0.0)
+    state = RobotState(robot, KnownRobot(robot), point, None, LegTimes(speed), in_time=False, last_heard_s=0.0)
     point.step(0.0)
     state.hear(0.0)
     state.send(0.0, Activity.DRIVING, [Waypoint((way, 0.0, 0.0))])

@@ -9,8 +9,6 @@ from tests.execution.world import World, carry_out
 
 from muster.execution import Executor, Standing, report_of, travel_of
 from muster.execution.insertion import Insertion
-from muster.execution.orders import Orders
-from muster.execution.quantiles import Quantiles
 from muster.execution.reallocation import Reallocation
 from muster.execution.script import Script
 from muster.execution.standing import EventLog
@@ -18,6 +16,8 @@ from muster.mission.errors import ParameterError
 from muster.mission.events import DelayedTask, MovedTask
 from muster.mission.model import Event, Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route
+from muster.state.orders import Orders
+from muster.state.quantiles import Quantiles
 
 
 class AtOnce:
@@ -79,7 +79,7 @@ def test_every_order_is_in_a_route_when_its_batch_is_over_and_done_once(searches
 
 def test_a_search_makes_it_shorter_and_moves_no_work_under_way():
     plain, searched = (on_duty(fleet(), stream(every_s=0.2), searches=searches) for searches in (False, True))
-    assert searched.ended_s < plain.ended_s
+    assert searched.state.ended_s < plain.state.ended_s
     begun = {}
     for event in searched.events:
         if event.kind == "starts":
@@ -99,7 +99,7 @@ def test_no_more_orders_than_stability_allows_change_robot(stability):
 
 def test_it_stays_on_duty_until_the_time_and_ends_when_all_is_done_after_it():
     executor = on_duty(fleet(), [order(1, "a", 1, 1), order(39, "b", 9, 9)], until_s=40.0)
-    assert executor.ended_s > 40.0
+    assert executor.state.ended_s > 40.0
     assert executor.now_s < 60
     waits = on_duty(fleet(), [], until_s=40.0)
     assert waits.now_s == pytest.approx(40.0, abs=0.2)
@@ -117,7 +117,7 @@ def test_orders_are_done_to_the_last_whatever_comes_before_it(first):
     executor = on_duty(fleet(), [first, order(2, "a", 1, 1), replace(first, at_s=20), order(30, "b", 2, 2)])
     seen = executor.orders.report(executor.now_s)
     assert (seen.taken, seen.done, seen.refused, seen.not_taken_from_s) == (2, 2, 2, None)
-    assert executor.ended_s > 30
+    assert executor.state.ended_s > 30
 
 
 def test_endless_orders_are_taken_until_the_time_and_one_after_it_is_read():
@@ -131,7 +131,7 @@ def test_endless_orders_are_taken_until_the_time_and_one_after_it_is_read():
     executor = on_duty(fleet(), endless(), until_s=60.0)
     assert [one["task"]["id"] for one in data(executor, "new_task")] == [f"o{k}" for k in range(13)]
     assert executor.orders.done == 13
-    assert executor.ended_s > 60
+    assert executor.state.ended_s > 60
     assert report_of(executor.account).orders.not_taken_from_s == read[-1] == 65.0
 
 

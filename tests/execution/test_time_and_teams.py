@@ -7,7 +7,6 @@ from tests.execution.test_executor import carried_out, plan_of
 from tests.execution.world import World, carry_out
 
 from muster import Mission, Robot, Rules, Task
-from muster.execution.completed_work import CompletedTask, CompletedWork
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Revision
 from muster.execution.report import report_of
@@ -16,6 +15,9 @@ from muster.execution.teams import lacking
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, Lag, TeamPart
 from muster.mission.plan import Reason, Unassigned
+from muster.state import MissionState
+from muster.state.run_events import PlanAdopted
+from muster.state.task_events import Ends
 
 NEAR = 0.25
 
@@ -158,9 +160,9 @@ def test_an_order_that_comes_too_late_to_begin_with_another_task_is_lost_and_not
 
 def test_what_was_too_late_to_begin_with_another_task_is_so_when_the_mission_goes_on():
     mission = mission_of(task("c"), task("order", x=3.0, starts_with=("c",)), task("lift", x=9.0, robots_needed=2))
-    done = CompletedTask(robot="r_0", arrives_s=1, starts_s=1, ends_s=11, arrival_usage=1.0, usage=(1.0, 1.0))
-    past = CompletedWork(done={"c": done})
-    executor = carried_out(mission, plan_of(r_0=["c", "order", "lift"], r_1=["lift"]), past=past)
+    plan = PlanAdopted(time_s=0.0, routes={"r_0": ("c", "order", "lift"), "r_1": ("lift",)})
+    state = MissionState.after(mission, [plan, Ends(time_s=11.0, task="c", robot="r_0", usage=(1.0, 1.0))])
+    executor = carried_out(mission, plan_of(r_0=["c", "order", "lift"], r_1=["lift"]), state=state)
     assert executor.lost() == {"order": "relation: begins with c, which is done"}
 
 

@@ -7,17 +7,19 @@ from tests.execution.test_executor import kinds, line, plan_of
 from tests.execution.world import Point, World, carry_out
 
 from muster import Robot
-from muster.execution.changes import STUCK
 from muster.execution.executor import Executor
 from muster.execution.monitor import Limits
 from muster.execution.report import report_of
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.status import status_of
 from muster.execution.supervision import NoLeader
-from muster.execution.traffic_waits import HeldUp, TrafficWaits
+from muster.execution.traffic_waits import TrafficWaits
 from muster.mission.model import Event
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Waypoint
+from muster.state.robot_events import RobotStuck
+from muster.state.robots import KnownRobot
+from muster.state.traffic_account import HeldUp, TrafficAccount
 
 
 def standing(name, place, *points, activity=Activity.DRIVING, radius_m=0.3):
@@ -25,7 +27,7 @@ def standing(name, place, *points, activity=Activity.DRIVING, radius_m=0.3):
     robot = Robot(id=name, position=place, radius_m=radius_m)
     port = Point(robot)
     port.step(0.0)
-    state = RobotState(robot, port, None, LegTimes(1.0), in_time=False, last_heard_s=0.0)
+    state = RobotState(robot, KnownRobot(robot), port, None, LegTimes(1.0), in_time=False, last_heard_s=0.0)
     state.hear(0.0)
     if points:
         state.send(0.0, activity, [Waypoint((*point, 0.0), hold_s=100.0) for point in points])
@@ -84,7 +86,7 @@ def test_who_is_sent_another_way_that_is_longer_has_its_time_anew():
 def test_a_short_halt_is_no_wait():
     found, waits = waiting_among(standing("a", (0, 0), (5, 0)), standing("b", (0.65, 0), (0.65, 5)), looks=2)
     assert found == {"a": ""}
-    assert waits.account.pairs == {}
+    assert waits.with_waits(TrafficAccount()).pairs == {}
 
 
 def test_robots_face_to_face_are_a_jam_and_so_is_one_before_an_idle_one():
@@ -124,7 +126,7 @@ def test_who_waits_is_not_stuck_however_long_and_it_is_counted_and_shown():
     carry_out(executor, world, each=each, until=1000)
     report = report_of(executor.account)
     assert executor.crew["r_0"].done == ["0"]
-    assert not {"robot_sent_again", STUCK, "traffic_jam"} & set(kinds(executor))
+    assert not {"robot_sent_again", RobotStuck.kind, "traffic_jam"} & set(kinds(executor))
     assert [(row.robot, row.waits_for, row.times) for row in report.traffic] == [("r_0", "r_1", 1)]
     assert report.traffic[0].waiting_s == pytest.approx(150, abs=1.1)
     assert report.traffic[0].position == pytest.approx((5, 0, 0), abs=0.6)
@@ -192,18 +194,18 @@ def test_one_that_has_nothing_to_do_and_makes_no_room_is_out_until_it_moves():
     world = World(mission)
     executor = Executor(mission, plan_of(r_0=["0"]), world.ports, leader=Leader())
     carry_out(executor, world, until=10)
-    assert executor.crew["r_1"].out == STUCK
-    assert next(e.data for e in executor.events if e.kind == STUCK)["reason"] == "makes no room for others"
+    assert executor.crew["r_1"].out == RobotStuck.kind
+    assert next(e.data for e in executor.events if e.kind == RobotStuck.kind)["reason"] == "makes no room for others"
     assert not executor.crew["r_0"].out
 
 
 def test_all_wait_anew_where_one_that_was_out_takes_part_again():
     """Else one would give up for r_2 what r_1 kept from it."""
     waits_on, out, moves = standing("r_0", (4.3, 0), (6, 0)), standing("r_1", (9, 9)), standing("r_2", (5, 0))
-    out.out = moves.out = STUCK
+    out.known.out = moves.known.out = RobotStuck.kind
     _, waits = waiting_among(waits_on, out, moves, looks=8)
     assert waits.progress["r_0"].behind_s["r_2"] > 2.0
-    out.out = ""
+    out.known.out = ""
     list(waits.look(4.0))
     assert waits.progress["r_0"].behind_s["r_2"] == 0.5
 
@@ -222,7 +224,7 @@ def test_a_robot_that_was_stuck_is_back_when_it_moves():
             port.position = (port.position[0] + 0.05, *port.position[1:])  # somebody has freed it
 
     carry_out(executor, world, each=each, until=1000)
-    stuck, back = (next(e for e in executor.events if e.kind == kind) for kind in (STUCK, "robot_returns"))
+    stuck, back = (next(e for e in executor.events if e.kind == kind) for kind in (RobotStuck.kind, "robot_returns"))
     assert stuck.data["reason"] == "no progress with nobody in its way"
     assert back.data == {"robot": "r_0", "reason": "it moves again"}
     assert executor.crew["r_0"].done == ["0", "1", "2"]

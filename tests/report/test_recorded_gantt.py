@@ -10,8 +10,9 @@ from tests.report.voyages import carry_out
 from muster import verify
 from muster.report import plot_gantt
 from muster.report.activity_spans import spans
-from muster.report.record import ExecutionEvent, RecordWriter, read_record
+from muster.report.record import RecordWriter, read_record
 from muster.report.recorded_gantt import plot_flown_gantt
+from muster.state import event_of
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("mcap")
@@ -48,10 +49,10 @@ def test_tasks_that_were_added_have_marks(recorded, drawn):
     recording = recorded(until=10.0)
     task = {"id": "new", "position": [0, 0], "window_s": [[4, 8]], "deadline_s": 9, "due_s": 5, "prerequisites": ["a"]}
     added = (
-        ExecutionEvent(2.0, "new_task", {"task": task}),
-        ExecutionEvent(3.0, "sets_out", {"robot": "idle", "task": "new"}),
-        ExecutionEvent(7.5, "starts", {"robot": "idle", "task": "new"}),
-        ExecutionEvent(9.0, "ends", {"robot": "idle", "task": "new"}),
+        event_of(2.0, "new_task", {"task": task}),
+        event_of(3.0, "sets_out", {"robot": "idle", "task": "new"}),
+        event_of(7.5, "starts", {"robot": "idle", "task": "new"}),
+        event_of(9.0, "ends", {"robot": "idle", "task": "new"}),
     )
     events = sorted([*recording.events, *added], key=lambda event: event.time_s)
     ax = plot_flown_gantt(replace(recording, events=tuple(events)))
@@ -66,9 +67,9 @@ def test_tasks_that_were_added_have_marks(recorded, drawn):
 def test_robots_that_joined_have_rows(recorded, drawn):
     recording = recorded(until=10.0)
     joins = (
-        ExecutionEvent(2.0, "robot_joins", {"robot": {"id": "eve", "position": [0, 0]}}),
-        ExecutionEvent(2.0, "sets_out", {"robot": "eve", "task": "e"}),
-        ExecutionEvent(2.2, "robot_fails", {"robot": "eve"}),
+        event_of(2.0, "robot_joins", {"robot": {"id": "eve", "position": [0, 0]}}),
+        event_of(2.0, "sets_out", {"robot": "eve", "task": "e"}),
+        event_of(2.2, "robot_fails", {"robot": "eve"}),
     )
     ax = plot_flown_gantt(replace(recording, events=(*joins, *recording.events)))
     assert [label.get_text() for label in ax.get_yticklabels()] == ["ada", "bob", "idle", "eve"]
@@ -86,7 +87,7 @@ def test_waiting_in_traffic_interrupts_travel_also_where_it_is_told_after_its_en
         (13.0, "waits_in_traffic", {"robot": "a", "waits_for": "c", "position": [0, 0], "since_s": 12.5}),
         (20.0, "ends", {"robot": "a", "task": "x"}),
     ]
-    found = spans([ExecutionEvent(*event) for event in told], 30.0)
+    found = spans([event_of(*event) for event in told], 30.0)
     assert sorted((span.from_s, span.until_s, span.kind) for span in found if span.task == "x") == [
         (0.0, 5.0, "travel"),
         (5.0, 10.0, "traffic"),
@@ -100,8 +101,8 @@ def test_waiting_in_traffic_interrupts_travel_also_where_it_is_told_after_its_en
 def test_waiting_in_traffic_has_bars_and_an_entry_of_its_own(recorded, drawn):
     recording = recorded()
     waits = {"robot": "ada", "waits_for": "bob", "position": [0, 0], "since_s": 0.5}
-    events = (*recording.events, ExecutionEvent(1.5, "waits_in_traffic", waits))
-    goes_on = ExecutionEvent(2.5, "goes_on", {"robot": "ada", "until_s": 2.0, "waited_s": {"bob": 1.5}})
+    events = (*recording.events, event_of(1.5, "waits_in_traffic", waits))
+    goes_on = event_of(2.5, "goes_on", {"robot": "ada", "until_s": 2.0, "waited_s": {"bob": 1.5}})
     ax = plot_flown_gantt(replace(recording, events=tuple(sorted((*events, goes_on), key=lambda e: e.time_s))))
     assert bars(drawn(ax, "traffic-ada"))[0][:2] == pytest.approx((0.5, 1.5))
     assert "in traffic" in [text.get_text() for text in ax.get_legend().get_texts()]

@@ -10,16 +10,15 @@ from muster.mission.model import Action, Task
 from muster.report.activity_spans import spans
 from muster.report.level_lines import recorded_level
 from muster.report.page.data import page_data
-from muster.report.record import ExecutionEvent
-from muster.report.record.mission_state import MissionState
 from muster.report.record.routes import RouteLines
 from muster.report.record.scene import station_entity
 from muster.report.recorded_gantt import plot_flown_gantt
 from muster.report.recorded_tracks import plot_flown
+from muster.state import MissionState, event_of
 
 AT_DOCK = {"robot": "r", "station": "dock"}
 EVENTS = tuple(
-    ExecutionEvent(*event)
+    event_of(*event)
     for event in [
         (0.0, "goes_to_station", {**AT_DOCK, "charge": 1.0}),
         (6.0, "arrives_at_station", {**AT_DOCK, "charge": 0.4}),
@@ -64,7 +63,7 @@ def waited(usage, **keys):
         usage=usage,
     )
     events = [(20, "sets_out", {}), (30, "arrives", {}), (30, "starts", {}), (40, "ends", {})]
-    told = tuple(ExecutionEvent(at_s, kind, {"robot": "r", "task": "a", **more}) for at_s, kind, more in events)
+    told = tuple(event_of(at_s, kind, {"robot": "r", "task": "a", **more}) for at_s, kind, more in events)
     report = {"robots": [{"robot": "r", "charge": 0.2}], "mission_time_s": 60.0}
     return recording(mission, np.zeros((2, 1, 3)), np.array([0.0, 60.0]), events=told, report=report)
 
@@ -109,7 +108,7 @@ def test_the_line_of_a_plan_passes_the_stations_that_are_ahead(charged):
     places = {"r": (1.0, 0.0)}
     state = MissionState(mission)
     assert RouteLines(mission).of(plan, state, places)["r"] == [(1, 0), (6, 0), (8, 0), (6, 0)]
-    state.take("ends", {"robot": "r", "task": "a"})
+    state.apply(event_of(1.0, "ends", {"robot": "r", "task": "a"}))
     assert RouteLines(mission).of(plan, state, places)["r"] == [(1, 0), (6, 0)]
 
 
@@ -120,7 +119,7 @@ def test_the_line_of_a_plan_follows_the_lanes_of_an_area_from_where_the_robot_is
     start, *lanes = RouteLines(mission).of(plan, state, {})["r"]
     assert (start, len(lanes)) == ((-5, 0), 8)
     assert {y for _, y in lanes} == {1, 3, 5, 7}
-    state.take("starts", {"robot": "r", "task": "lawn"})
+    state.apply(event_of(1.0, "starts", {"robot": "r", "task": "lawn"}))
     y = lanes[3][1]
     assert RouteLines(mission).of(plan, state, {"r": (10.0, y)})["r"] == [(10, y), *lanes[3:]]
 

@@ -3,8 +3,7 @@
 import json
 
 from muster.mission.yaml_writer import plain
-from muster.running.begun import Begun
-from muster.server.runs.crash_recovery import History
+from muster.server.runs.crash_recovery import recovered_from
 from muster.server.runs.real_run import RealRun
 
 
@@ -30,9 +29,4 @@ class Log:
 
 def resumed_run(mission, plan, fleet, recorder, entries, **how):
     """A run of real robots that goes on after a crash, by the entries of its log."""
-    history = History(mission, plan)
-    for entry in entries:
-        history.take(**entry)
-    found = history.recovered(fleet.ports)
-    begun = Begun(past=found.past, again=found.again)
-    return RealRun(found.mission, found.plan, fleet, recorder, begun=begun, zero_s=history.zero_s, **how)
+    return RealRun(mission, plan, fleet, recorder, state=recovered_from(mission, plan, entries), **how)

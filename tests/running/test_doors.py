@@ -191,10 +191,10 @@ def test_a_run_that_goes_on_after_a_crash_knows_which_doors_are_closed(tmp_path)
         {"time_s": 2.0, "kind": "door_closes", "data": {"door": "north"}},
         {"time_s": 3.0, "kind": "door_opens", "data": {"door": "north"}},
     ]
-    past = recovered_from(mission, solve(mission, "greedy"), log).past
-    assert past.closed == {"south"}
+    state = recovered_from(mission, solve(mission, "greedy"), log)
+    assert state.doors.closed == {"south"}
     fleet, poses = WorldAsFleet(mission), Poses()
-    live = Live(mission, solve(mission, "greedy"), fleet, past=past, recorder=poses)
+    live = Live(mission, solve(mission, "greedy"), fleet, state=state, recorder=poses)
     while not live.done:
         live.look()
         live.hear(live.time_s + 0.2)

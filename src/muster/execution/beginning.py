@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.teams import lacking
 from muster.mission.model import Task
+from muster.state.task_ledger import TIME_ROUNDING_S, Ledger
 
 
 @dataclass(frozen=True)

@@ -2,61 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 
 from muster.execution.goods_beside import fetching_place
-from muster.execution.goods_ledger import GoodsLedger, as_amount
+from muster.execution.record import Tell
 from muster.execution.robot_energy import RobotEnergy
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.stations import AT_STATION, Stations
-from muster.execution.task_ledger import Ledger, moved, robot_as_it_holds
 from muster.execution.task_motion import Way, place, straight
-from muster.execution.team_work import break_off
+from muster.execution.team_work import stop_work
 from muster.execution.travel import Travel
-from muster.mission.doors import Doors
 from muster.mission.errors import MissionError, ParameterError
-from muster.mission.model import Event, Mission, Point, Robot, Task
+from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import RobotPort
-
-FAILED, SILENT, STUCK = "robot_fails", "robot_silent", "robot_stuck"
-"""Why a robot is out."""
-OUT = {FAILED: "failed", SILENT: "fell silent", STUCK: "did not get on"}
-"""The same in words."""
-
-
-@dataclass(frozen=True)
-class Change:
-    """A change that requires a new plan.
-
-    Parameters
-    ----------
-    kind
-        what: as in a mission file's `events`, or what else it is.
-    data
-        of which robot or task, as in a mission file, and plain.
-    """
-
-    kind: str
-    data: Mapping[str, Any]
+from muster.state import MissionState
+from muster.state.robot_events import RobotFails, RobotJoins, RobotOut, RobotReturns
+from muster.state.robots import KnownRobot
+from muster.state.station_events import DoorCloses, DoorOpens, StationFails, StationReturns
+from muster.state.task_events import CancelTask, DelayTask, LoadLies, MoveTask, NewTask, WorkBrokenOff
+from muster.state.task_ledger import Ledger
 
 
 @dataclass
 class Changes:
-    """Applies events to the task ledger and the robots.
+    """Lets events happen: what they do to robots, beside what the state of the mission learns from them.
 
     Parameters
     ----------
     mission
         the question, for its rules.
+    state, crew
+        of the executor.
     ports
         how robots are reached; a robot that joins has its port here by then.
-    stations, goods
+    stations
         of the executor.
+    ask
+        receives every event, each of which asks for a new plan.
     way
         the ways that robots go.
     on_doors
@@ -64,23 +50,25 @@ class Changes:
     """
 
     mission: Mission
-    ledger: Ledger
+    state: MissionState
     crew: dict[str, RobotState]
     ports: Mapping[str, RobotPort]
     travel: Travel
     stations: Stations
-    goods: GoodsLedger
+    ask: Tell
     way: Way = straight
     on_doors: Callable[[Collection[str]], None] = lambda closed: None
-    doors: Doors = field(init=False)
 
-    def __post_init__(self) -> None:
-        self.doors = Doors.of(self.mission)
+    @property
+    def ledger(self) -> Ledger:
+        """Of the tasks."""
+        return self.state.ledger
 
-    def apply(self, event: Event, now: float, reason: str = "") -> Iterator[Change]:
-        """Let an event happen; yields what asks for a new plan.
+    def apply(self, event: Event, now: float, reason: str = "", came_s: float | None = None) -> None:
+        """Let an event happen, and ask for a new plan if it changes anything.
 
-        That a robot falls silent is for the monitor to notice: nothing is done here. `reason` is why a robot fails.
+        That a robot falls silent is for the monitor to notice: nothing is done here. `reason` is why a robot fails,
+        `came_s` when a task was ordered, if that was before now.
 
         Raises
         ------
@@ -89,82 +77,74 @@ class Changes:
             port.
         """
         if event.robot_fails is not None:
-            yield from self.exclude(self._robot_state(event.robot_fails), FAILED, now, reason)
+            self.exclude(self._robot_state(event.robot_fails), RobotFails, now, reason)
         elif event.robot_returns is not None:
-            yield from self.readmit(self._robot_state(event.robot_returns), now)
+            self.readmit(self._robot_state(event.robot_returns), now)
         elif event.robot_joins is not None:
-            yield self._join(event.robot_joins, now)
+            self._join(event.robot_joins, now)
         elif event.new_task is not None:
-            yield self._add(event.new_task)
+            self._add(event.new_task, came_s)
         elif event.cancel_task is not None:
-            yield from self._cancel(self._task(event.cancel_task), now)
+            self._cancel(self._task(event.cancel_task), now)
         elif event.move_task is not None:
-            yield from self._move(self._task(event.move_task.task), event.move_task.position, now)
+            self._move(self._task(event.move_task.task), event.move_task.position, now)
         elif event.delay_task is not None:
-            yield from self._delay(self._task(event.delay_task.task), event.delay_task.by_s)
+            self._delay(self._task(event.delay_task.task), event.delay_task.by_s)
         elif event.door is not None:
-            yield from self._turn_door(event, event.door, now)
+            self._turn_door(event.door, now, opens=event.door_opens is not None)
         elif event.station_fails is not None:
-            yield from self._fail_station(self._station(event.station_fails), now)
+            self._fail_station(self._station(event.station_fails), now)
         elif event.station_returns is not None:
-            yield from self._return_station(self._station(event.station_returns))
+            self._return_station(self._station(event.station_returns))
 
-    def _fail_station(self, station: str, now: float) -> Iterator[Change]:
+    def _fail_station(self, station: str, now: float) -> None:
         """Robots that are served there, wait there, or are on the way to it stop; all are planned again."""
         if station in self.stations.failed:
             return
-        self.stations.failed.add(station)
-        for state in self.stations.at(station):
-            state.note_energy()
-            state.stop(now)
-        for state in self.crew.values():
-            state.calls = [call for call in state.calls if call.station != station]
-        yield Change("station_fails", {"station": station})
+        for robot in self.stations.at(station):
+            robot.note_energy()
+            robot.stop(now)
+        for robot in self.crew.values():
+            robot.calls = [call for call in robot.calls if call.station != station]
+        self.ask(StationFails(station=station))
 
-    def _return_station(self, station: str) -> Iterator[Change]:
+    def _return_station(self, station: str) -> None:
         if station in self.stations.failed:
-            self.stations.failed.discard(station)
-            yield Change("station_returns", {"station": station})
+            self.ask(StationReturns(station=station))
 
-    def exclude(self, state: RobotState, why: str, now: float, detail: str = "") -> Iterator[Change]:
+    def exclude(self, robot: RobotState, why: type[RobotOut], now: float, detail: str = "") -> None:
         """Exclude a robot: its tasks are free, the current one too."""
-        if state.out == FAILED or (state.out and why != FAILED):
+        failed = robot.out == RobotFails.kind
+        if failed or (robot.out and why is not RobotFails):
             return
-        state.out, state.out_s, state.out_at = why, now, state.position
-        broken: tuple[str, ...] = ()
-        if state.activity is Activity.WORKING:
-            broken = break_off(self.crew, self.ledger, state.route[0], now)
-        elif state.route and state.route[0] not in self.ledger.starts_s:
-            self.ledger.give_up(state.route[0])
-        state.stop(now)
-        state.calls = []
-        yield Change(why, {"robot": state.robot.id} | ({"reason": detail} if detail else {}))
-        if why == FAILED:
-            yield from self._let_lie(state)
+        name, at_work = robot.robot.id, robot.activity is Activity.WORKING
+        robot.out_at = robot.position
+        broken = stop_work(self.crew, self.ledger, robot.route[0], now) if at_work else ()
+        robot.stop(now)
+        robot.calls = []
+        aboard = [item for item in self.state.goods.on_board.get(name, ()) if item.task is not None]
+        self.ask(why(robot=name, reason=detail))
+        if why is RobotFails:
+            for item in aboard:
+                self._let_lie(robot, str(item.task), item.amounts)
         for task in broken:
             if len(self.ledger.unit(task)) > 1 or self.ledger.tasks[task].is_for_team:
-                yield Change("work_broken_off", {"task": task, "robot": state.robot.id})
+                self.ask(WorkBrokenOff(task=task, robot=name))
 
-    def _let_lie(self, state: RobotState) -> Iterator[Change]:
-        """What a robot that fails has on board lies where it is: tasks that took it on are done again beside it."""
-        for item in self.goods.fall(state.robot.id):
-            if item.task is None or item.task not in self.ledger.ends_s:
-                continue
-            beside = fetching_place(state, self.ledger.tasks[item.task], self.crew.values(), self.way)
+    def _let_lie(self, robot: RobotState, task: str, amounts: Mapping[str, float]) -> None:
+        """What a robot that fails has on board lies where it is: the task that took it on is done again beside it."""
+        if task in self.ledger.ends_s:
+            beside = fetching_place(robot, self.ledger.tasks[task], self.crew.values(), self.way)
             at = beside[: self.mission.dimensions]
-            self.ledger.reopen(lying(self.ledger.tasks[item.task], at, item.amounts))
-            state.done = [name for name in state.done if name != item.task]
-            state.stops = [name for name in state.stops if name != item.task]
-            data = {"task": item.task, "robot": state.robot.id, "position": list(at), "load": dict(item.amounts)}
-            yield Change("load_lies", data)
+            self.ask(LoadLies(task=task, robot=robot.robot.id, position=at, load=dict(amounts)))
 
-    def readmit(self, state: RobotState, now: float, reason: str = "") -> Iterator[Change]:
+    def readmit(self, robot: RobotState, now: float, reason: str = "") -> None:
         """Let a robot take part again, from where it is."""
-        if state.out:
-            state.out, state.last_heard_s, state.sent_again = "", now, 0
+        if robot.out:
+            robot.last_heard_s, robot.sent_again = now, 0
             self._open_ways()
-            state.stop(now)
-            yield Change("robot_returns", {"robot": state.robot.id} | ({"reason": reason} if reason else {}))
+            robot.stop(now)
+            self.ask(RobotReturns(robot=robot.robot.id, reason=reason))
 
     def require_newcomer(self, robot: Robot) -> None:
         """Raise ParameterError where a robot cannot join: its id is taken, or it does not fit the mission."""
@@ -174,22 +154,22 @@ class Changes:
             raise ParameterError(f"robot_joins: {shown(robot.id)}; expected a robot with rows in the travel tables")
         self._require_fit("robot_joins", robots=(robot,))
 
-    def _join(self, robot: Robot, now: float) -> Change:
+    def _join(self, robot: Robot, now: float) -> None:
         self.require_newcomer(robot)
-        self.crew[robot.id] = new_robot_state(self.mission, robot, self.ports, now, self.ledger.ignored)
-        self.goods.join(self.crew[robot.id].robot)
-        return Change("robot_joins", {"robot": plain(robot)})
+        require_port(robot, self.ports)
+        self.ask(RobotJoins(robot=plain(robot)))
+        self.crew[robot.id] = new_robot_state(self.mission, self.state.robots[robot.id], self.ports, now, self.ledger)
+        self.crew[robot.id].recall_known()
 
-    def _add(self, task: Task) -> Change:
+    def _add(self, task: Task, came_s: float | None) -> None:
         if task.id in self.ledger.tasks:
             raise ParameterError(f"new_task: {shown(task.id)}; expected an id that no task has")
         self._require_fit("new_task", tasks=(task,))
-        self.ledger.add(task)
-        return Change("new_task", {"task": plain(task)})
+        self.ask(NewTask(task=plain(task), came_s=came_s))
 
     def _require_fit(self, what: str, *, robots: tuple[Robot, ...] = (), tasks: tuple[Task, ...] = ()) -> None:
         """A mission with these robots and tasks, and those that there are, must be one."""
-        there = {robot.id: robot for robot in (*self.mission.robots, *(state.robot for state in self.crew.values()))}
+        there = {robot.id: robot for robot in (*self.mission.robots, *(one.robot for one in self.crew.values()))}
         try:
             self.mission.at_once(robots=(*there.values(), *robots), tasks=(*self.ledger.tasks.values(), *tasks))
         except MissionError as error:
@@ -197,87 +177,68 @@ class Changes:
             name = [*(robot.id for robot in robots), *(task.id for task in tasks)][0]
             raise ParameterError(f"{what}: {name}: {found.value}; expected {found.expected}") from None
 
-    def _cancel(self, task: str, now: float) -> Iterator[Change]:
-        if task in self.ledger.ends_s or task in self.ledger.cancelled:
+    def _cancel(self, task: str, now: float) -> None:
+        if not self.ledger.is_open(task):
             return
         self._leave(task, now)
-        self.ledger.withdraw(task, now)
-        for state in self.crew.values():
-            state.leave_out({task})
-        self.ledger.expire(task, "cancelled")
-        self._cancel_delivery_of(task)
-        yield Change("cancel_task", {"task": task})
+        for robot in self.crew.values():
+            robot.leave_out({task})
+        self.ask(CancelTask(task=task))
 
-    def _cancel_delivery_of(self, task: str) -> None:
-        """What is not taken on board cannot be delivered."""
-        for other in self.ledger.open:
-            if other.delivers == task and self.goods.carrier(task) is None:
-                self.ledger.expire(other.id, f"load: {task}, which takes on what it delivers, is cancelled")
-
-    def _move(self, task: str, to: tuple[float, ...], now: float) -> Iterator[Change]:
+    def _move(self, task: str, to: tuple[float, ...], now: float) -> None:
         """Work under way goes on where it is."""
         if len(to) != self.mission.dimensions:
             expected = f"{self.mission.dimensions} coordinates"
             raise ParameterError(f"move_task: {task}: position {list(to)}; expected {expected}")
-        at = self._at(task)
-        if task in self.ledger.ends_s or task in self.ledger.cancelled:
-            return
-        if any(state.activity is Activity.WORKING for state in at):
-            return
-        self._leave(task, now)
-        self.ledger.move(task, to)
-        self.ledger.give_up(task)
-        self.ledger.refusals.pop(task, None)
-        yield Change("move_task", {"task": task, "position": list(to)})
+        at_work = any(robot.activity is Activity.WORKING for robot in self._at(task))
+        if self.ledger.is_open(task) and not at_work:
+            self._leave(task, now)
+            self.ask(MoveTask(task=task, position=to))
 
-    def _delay(self, task: str, by_s: float) -> Iterator[Change]:
-        if task not in self.ledger.ends_s and task not in self.ledger.cancelled:
-            self.ledger.delay(task, by_s)
-            yield Change("delay_task", {"task": task, "by_s": by_s})
+    def _delay(self, task: str, by_s: float) -> None:
+        if self.ledger.is_open(task):
+            self.ask(DelayTask(task=task, by_s=by_s))
 
-    def _turn_door(self, event: Event, door: str, now: float) -> Iterator[Change]:
+    def _turn_door(self, door: str, now: float, *, opens: bool) -> None:
         """Robots under way are sent again, by other ways; where one opens they try what they had no way to."""
-        opens = event.door_opens is not None
-        kind = "door_opens" if opens else "door_closes"
-        if door not in self.doors.known:
-            expected = " or ".join(sorted(self.doors.known)) or "a zone or lane with an id"
-            raise ParameterError(f"{kind}: {shown(door)}; expected {expected}")
-        if self.doors.take(event):
-            self.set_doors(self.doors.closed)
-            for state in self.crew.values():
-                goal = state.points_left[-1] if state.points_left else None
-                state.left = self.travel.way_out(state.robot, state.position, goal) or state.left
-                if not state.out and state.activity in (Activity.DRIVING, Activity.RETURNING, Activity.TO_STATION):
-                    state.stop(now)
-            if opens:
-                self._open_ways()
-            yield Change(kind, {"door": door})
+        doors = self.state.doors
+        if door not in doors.known:
+            expected = " or ".join(sorted(doors.known)) or "a zone or lane with an id"
+            raise ParameterError(f"{'door_opens' if opens else 'door_closes'}: {shown(door)}; expected {expected}")
+        if opens != (door in doors.closed):
+            return
+        if opens:
+            self._open_ways()
+        self.ask(DoorOpens(door=door) if opens else DoorCloses(door=door))
+        self.close_doors()
+        for robot in self.crew.values():
+            goal = robot.points_left[-1] if robot.points_left else None
+            robot.left = self.travel.way_out(robot.robot, robot.position, goal) or robot.left
+            if not robot.out and robot.activity in (Activity.DRIVING, Activity.RETURNING, Activity.TO_STATION):
+                robot.stop(now)
 
     def _open_ways(self) -> None:
-        """What stood in the way may do so no more: robots try what they had no way to."""
-        self.ledger.try_again()
-        self.stations.cut_off.clear()
-        for state in self.crew.values():
-            if state.cut_off:
-                state.cut_off = state.at_home = False
+        """Robots that were cut off from their ends may be so no more."""
+        for robot in self.crew.values():
+            if robot.cut_off:
+                robot.cut_off = robot.at_home = False
 
-    def set_doors(self, closed: frozenset[str]) -> None:
-        """From now on these doors are closed, and the others open, for all that ask for ways."""
-        self.doors.closed = closed
-        self.travel.close(closed)
-        self.on_doors(closed)
+    def close_doors(self) -> None:
+        """From now on the doors that are closed are so for all that ask for ways."""
+        self.travel.close(self.state.doors.closed)
+        self.on_doors(self.state.doors.closed)
 
     def _leave(self, task: str, now: float) -> None:
         """Stop the robots that are at a task or on the way to it; those at a station before it go on there."""
         at = self._at(task)
-        if any(state.activity is Activity.WORKING for state in at):
-            break_off(self.crew, self.ledger, task, now)
-        for state in at:
-            if state.activity not in (Activity.IDLE, Activity.RETURNING, *AT_STATION):
-                state.stop(now)
+        if any(robot.activity is Activity.WORKING for robot in at):
+            stop_work(self.crew, self.ledger, task, now)
+        for robot in at:
+            if robot.activity not in (Activity.IDLE, Activity.RETURNING, *AT_STATION):
+                robot.stop(now)
 
     def _at(self, task: str) -> list[RobotState]:
-        return [state for state in self.crew.values() if state.route[:1] == [task]]
+        return [robot for robot in self.crew.values() if robot.route[:1] == [task]]
 
     def _robot_state(self, robot: str) -> RobotState:
         if robot not in self.crew:
@@ -296,8 +257,14 @@ class Changes:
         return task
 
 
+def require_port(robot: Robot, ports: Mapping[str, RobotPort]) -> None:
+    """Raise ParameterError unless a robot can be reached."""
+    if robot.id not in ports:
+        raise ParameterError(f"ports: no port for robot {shown(robot.id)}; expected one for each robot")
+
+
 def new_robot_state(
-    mission: Mission, robot: Robot, ports: Mapping[str, RobotPort], now: float, ignored: Collection[str] = ()
+    mission: Mission, known: KnownRobot, ports: Mapping[str, RobotPort], now: float, ledger: Ledger
 ) -> RobotState:
     """A robot that begins to take part.
 
@@ -306,33 +273,21 @@ def new_robot_state(
     ParameterError
         if it has no port.
     """
-    if robot.id not in ports:
-        raise ParameterError(f"ports: no port for robot {shown(robot.id)}; expected one for each robot")
+    robot = known.robot
+    require_port(robot, ports)
     home = robot.place_at_end(mission.rules)
-    in_time = mission.rules.usage == "time"
-    as_it_holds = robot_as_it_holds(robot, ignored)
+    as_it_holds = ledger.as_it_holds(robot)
     return RobotState(
         as_it_holds,
+        known,
         ports[robot.id],
         None if home is None else place(home),
         LegTimes.in_mission(robot, mission),
-        in_time,
+        mission.rules.usage == "time",
         last_heard_s=now,
         since_s=now,
         energy=None if as_it_holds.battery is None else RobotEnergy(as_it_holds.battery),
     )
-
-
-def lying(task: Task, at: Point, amounts: Mapping[str, float]) -> Task:
-    """A task that took goods on board which now lie elsewhere: they are to be taken on there.
-
-    What its work had to wait for, by when it was to be done, and who was to do it together with whom, was kept when it
-    was done first. Its time windows hold for the work that is to be done now.
-    """
-    has_geometry = task.action is not None and task.action.has_geometry
-    there = moved(replace(task, entry=None, exit=None, action=None if has_geometry else task.action), at)
-    without: dict[str, Any] = {"prerequisites": (), "lags": {}, "deadline_s": None, "starts_with": ()}
-    return replace(there, load=as_amount(amounts), same_robot_as=(), other_robot_than=(), **without)
 
 
 def may_bring_work(event: Event, *, open_tasks: bool, cut_off: bool = False) -> bool:

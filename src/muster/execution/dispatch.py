@@ -3,31 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from types import MappingProxyType
-from typing import Any
 
 from muster.execution.beginning import Beginning, next_begin
-from muster.execution.changes import Change
 from muster.execution.energy_watch import EnergyWatch
-from muster.execution.goods_ledger import GoodsLedger
 from muster.execution.monitor import exceeds
 from muster.execution.peers import Gathering, Peers
+from muster.execution.record import Tell
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.station_calls import Call, as_one, next_call
 from muster.execution.station_service import StationService
 from muster.execution.stations import AT_STATION
-from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger
 from muster.execution.task_motion import MotionPlanner, Way, Work, along, work_of
-from muster.execution.team_work import break_off
+from muster.execution.team_work import stop_work
 from muster.execution.way_round import way_aside, way_round
 from muster.execution.work_orders import delayed, least_s, least_usage, usage_home, work_for
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
-
-Emit = Callable[[str, Mapping[str, Any]], None]
+from muster.state import MissionState
+from muster.state.robot_events import NoWayToEnd, Returns, RobotAtEnd, RobotGoesRound, RobotMakesRoom
+from muster.state.station_events import StationUnreachable
+from muster.state.task_events import Arrives, Ends, SetsOut, Starts, TaskRefused, Waits
+from muster.state.task_ledger import TIME_ROUNDING_S
 
 
 class Dispatch:
@@ -35,18 +34,16 @@ class Dispatch:
 
     Parameters
     ----------
-    ledger, crew
-        of the tasks; of the robots.
+    known, crew
+        the state of the mission; the robots.
     beginning
         says whether work may begin.
     capacity
         how much a robot can use; None: any amount.
     plan_motion, way
         what a task makes a robot do, and how it gets there.
-    emit
-        receives every event.
-    goods
-        what robots have on board.
+    emit, ask
+        receive every event; those that ask for a new plan.
     peers
         the other robots, where they have a say: then a robot stops at its task and asks; None: the ledger alone says
         whether it may begin.
@@ -54,27 +51,25 @@ class Dispatch:
 
     def __init__(
         self,
-        ledger: Ledger,
+        known: MissionState,
         crew: Mapping[str, RobotState],
         beginning: Beginning,
         capacity: Callable[[RobotState], float | None],
         plan_motion: MotionPlanner,
         way: Way,
-        emit: Emit,
+        emit: Tell,
+        ask: Tell,
         peers: Peers | None = None,
-        goods: GoodsLedger | None = None,
     ) -> None:
-        self._ledger = ledger
-        self._goods = GoodsLedger() if goods is None else goods
+        self._known, self._ledger, self._goods = known, known.ledger, known.goods
         self.service: StationService | None = None  # of missions with stations
         self.energy: EnergyWatch | None = None
-        self.misfits: set[tuple[str, str]] = set()  # robots and tasks that did not fit what they had on board
         self._crew = crew
         self._beginning = beginning
         self._capacity = capacity
         self._plan_motion = plan_motion
         self._way = way
-        self._emit = emit
+        self._emit, self._ask = emit, ask
         self._peers = peers
         self.ahead: Mapping[str, Mapping[str, float]] = {}  # by the plan in force: see `Revision`
 
@@ -91,20 +86,20 @@ class Dispatch:
             state.begin_activity(now, Activity.IDLE)
             if not state.makes_room:
                 state.at_home = True
-                self._emit("robot_at_end", {"robot": state.robot.id})
+                self._emit(RobotAtEnd(robot=state.robot.id))
 
-    def send_on(self, state: RobotState, now: float) -> Iterator[Change]:
-        """Send a robot on that is available, or may begin; yields a change that requires a new plan if it cannot."""
+    def send_on(self, state: RobotState, now: float) -> None:
+        """Send a robot on that is available, or may begin; ask for a new plan if it cannot."""
         if now < state.aside_until_s:
             return
         if state.activity is Activity.WAITING:
-            yield from self._begin_or_wait(state, state.route[0], now)
+            self._begin_or_wait(state, state.route[0], now)
         elif state.activity is Activity.QUEUEING and self.service is not None:
-            yield from self.service.serve_or_wait(state, now)
+            self.service.serve_or_wait(state, now)
         elif (call := self._call_to_make(state, now)) is not None and self.service is not None:
-            yield from self.service.set_out(state, call, now)
+            self.service.set_out(state, call, now)
         elif state.available and state.route and now >= state.robot.available_from_s:
-            yield from self._to_task(state, state.route[0], now)
+            self._to_task(state, state.route[0], now)
         elif self.goes_home(state) and state.home is not None:
             self._send_home(state, state.home, now)
 
@@ -123,7 +118,7 @@ class Dispatch:
             self.end_here(state, now)
         else:
             state.send(now, Activity.RETURNING, along(way))
-            self._emit("returns", {"robot": state.robot.id})
+            self._emit(Returns(robot=state.robot.id))
 
     def goes_home(self, state: RobotState) -> bool:
         """Whether a robot without tasks has yet to go where its route ends."""
@@ -135,15 +130,12 @@ class Dispatch:
         if state.activity is Activity.RETURNING:
             state.stop(now)
         state.at_home = state.cut_off = True
-        self._emit("no_way_to_end", {"robot": state.robot.id})
+        self._emit(NoWayToEnd(robot=state.robot.id))
 
-    def leave_station(self, state: RobotState, reason: str, now: float) -> Change:
+    def leave_station(self, state: RobotState, reason: str, now: float) -> None:
         """A robot cannot get to a station: nobody is sent there before ways open."""
-        station = state.station
-        if self.service is not None:
-            self.service.stations.cut_off.add(station)
         state.stop(now)
-        return Change("station_unreachable", {"station": station, "robot": state.robot.id, "reason": reason})
+        self._ask(StationUnreachable(station=state.station, robot=state.robot.id, reason=reason))
 
     def again(self, state: RobotState, now: float) -> None:
         """Send a robot without progress once more, by a new path if it drives."""
@@ -172,7 +164,7 @@ class Dispatch:
         first = next_call(tasks, calls)
         kept = state.route[:1] == list(tasks[:1]) and first is None and not self._begins_unasked(state)
         if state.activity in (Activity.DRIVING, Activity.WAITING) and not kept:
-            self._leave_task(state, state.route[0], now)
+            state.stop(now)
         state.route, state.calls = list(tasks), list(calls)
         state.warned_of = state.warned_of if kept else ""
 
@@ -197,32 +189,23 @@ class Dispatch:
         """Whether a robot on the way would begin its task at once, and the task must wait for more than it did."""
         return state.activity is Activity.DRIVING and state.works and self._beginning.must_ask(state.route[0])
 
-    def refuse(
-        self, state: RobotState, task: str, reason: str, now: float, more: Mapping[str, Any] = MappingProxyType({})
-    ) -> Iterator[Change]:
-        """Record that a robot cannot do a task of its route; `more` are further data of the event."""
-        self._ledger.refuse(task, state.robot.id, reason)
+    def refuse(self, state: RobotState, task: str, reason: str, now: float) -> None:
+        """A robot cannot do a task of its route."""
+        self.leave(state, TaskRefused(task=task, robot=state.robot.id, reason=reason), now)
+
+    def leave(self, state: RobotState, refused: TaskRefused, now: float) -> None:
+        """Let a robot leave the task that it refuses; robots of its team that wait there stay."""
         if state.activity is Activity.WORKING:
-            break_off(self._crew, self._ledger, task, now)
-        else:
-            self._leave_task(state, task, now)
-        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason, **more})
-
-    def _leave_misfit(self, state: RobotState, task: str, reason: str, now: float) -> Iterator[Change]:
-        """A task does not fit what a robot has on board now: it may have it later, but not twice in vain."""
-        if (state.robot.id, task) in self.misfits:
-            yield from self.refuse(state, task, reason, now)
-            return
-        self.misfits.add((state.robot.id, task))
-        self._leave_task(state, task, now)
-        yield Change("task_refused", {"task": task, "robot": state.robot.id, "reason": reason, "for_now": True})
-
-    def _leave_task(self, state: RobotState, task: str, now: float) -> None:
-        """A robot that is not at work leaves a task; robots of its team that wait there stay."""
-        if task not in self._ledger.starts_s:
-            self._ledger.give_up(task)
-        if state.activity is not Activity.IDLE:
+            stop_work(self._crew, self._ledger, refused.task, now)
+        elif state.activity is not Activity.IDLE:
             state.stop(now)
+        self._ask(refused)
+
+    def _leave_misfit(self, state: RobotState, task: str, reason: str, now: float) -> None:
+        """A task does not fit what a robot has on board now: it may have it later, but not twice in vain."""
+        robot = state.robot.id
+        for_now = (robot, task) not in self._known.misfits
+        self.leave(state, TaskRefused(task=task, robot=robot, reason=reason, for_now=for_now), now)
 
     def go_round(self, state: RobotState, standing: RobotState, now: float) -> bool:
         """Send a robot round one that stands; returns whether it has not tried that yet, and there is a way."""
@@ -237,7 +220,7 @@ class Dispatch:
         if begin != state.position:
             way = [begin, *way]
         state.turn_off(now, way, standing.robot.id)
-        self._emit("robot_goes_round", {"robot": state.robot.id, "round": standing.robot.id})
+        self._emit(RobotGoesRound(robot=state.robot.id, round=standing.robot.id))
         return True
 
     def make_room(self, state: RobotState, asker: RobotState, now: float) -> None:
@@ -249,7 +232,7 @@ class Dispatch:
             return
         state.send(now, Activity.RETURNING, along(way))
         state.at_home, state.makes_room = False, True
-        self._emit("robot_makes_room", {"robot": state.robot.id, "makes_room_for": asker.robot.id})
+        self._emit(RobotMakesRoom(robot=state.robot.id, makes_room_for=asker.robot.id))
 
     def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:
         """The way from where a robot is; by way of the last place known to be free, if it stands where it cannot."""
@@ -265,19 +248,19 @@ class Dispatch:
         stands = self._way(state.robot, state.position, state.position) is not None
         return state.position if stands else state.refuge
 
-    def _to_task(self, state: RobotState, task: str, now: float) -> Iterator[Change]:
+    def _to_task(self, state: RobotState, task: str, now: float) -> None:
         work = work_of(self._ledger.tasks[task], state.robot, self._plan_motion, self._way, state.times)
         if isinstance(work, Impossible):
-            yield from self.refuse(state, task, work.reason, now)
+            self.refuse(state, task, work.reason, now)
             return
         way = self.way(state, work.entry)
         home = self._way_home(state, work)
         if way is None or home is None:
             reason = "there is no way" if way is None else "there is no way from it to the end of the route"
-            yield from self.refuse(state, task, f"unreachable: {reason}", now)
+            self.refuse(state, task, f"unreachable: {reason}", now)
             return
         if wrong := self._goods.refusal(self._ledger.tasks[task], state.robot):
-            yield from self._leave_misfit(state, task, wrong, now)
+            self._leave_misfit(state, task, wrong, now)
             return
         there = along(way, task)
         delay = self._ledger.delays_s.get(task, 0.0)
@@ -285,16 +268,14 @@ class Dispatch:
         home_usage, home_s = usage_home(state, work, home)
         least = least_usage(state, work, there, lasts) + home_usage
         if exceeds(least, self._capacity(state)):
-            yield from self.refuse(
-                state, task, f"capacity: {least:.2f} used with it, of {self._capacity(state):.2f}", now
-            )
+            self.refuse(state, task, f"capacity: {least:.2f} used with it, of {self._capacity(state):.2f}", now)
             return
         state.work, state.work_s, state.delay_s = work, lasts, delay
         state.home_usage, state.home_s = home_usage, home_s
         late = self._too_late(state, task, now + least_s(state, state.position, there))
         if late:
             state.work = None
-            yield from self.refuse(state, task, late, now)
+            self.refuse(state, task, late, now)
             return
         may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task)
         state.charged_idle = False
@@ -302,23 +283,22 @@ class Dispatch:
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)
         state.send(now, Activity.DRIVING, [*there, *(delayed(work, delay) if state.works else ())])
-        self._emit("sets_out", {"robot": state.robot.id, "task": task})
+        self._emit(SetsOut(robot=state.robot.id, task=task, used=state.used))
 
     def _arrive(self, state: RobotState, now: float) -> None:
         task = state.route[0]
-        self._ledger.arrive(task, state.used, now)
-        state.arrived_s, state.arrived_used, state.sent_again = now, state.used, 0
-        self._emit("arrives", {"robot": state.robot.id, "task": task})
+        state.sent_again = 0
+        self._emit(Arrives(robot=state.robot.id, task=task, used=state.used))
         if state.works:
-            self._begin(task, [state], (state.robot.id,), now)
+            self._begin(task, [state], (state.robot.id,))
             state.begin_activity(now, Activity.WORKING)
         else:
             state.begin_activity(now, Activity.WAITING)
 
-    def _begin_or_wait(self, state: RobotState, task: str, now: float) -> Iterator[Change]:
+    def _begin_or_wait(self, state: RobotState, task: str, now: float) -> None:
         """Begin a task, and those that begin with it, with all their robots; or say for what a robot waits."""
         if self._peers is not None and self._ledger.is_joint(task):
-            yield from self._begin_with_peers(state, task, self._peers, now)
+            self._begin_with_peers(state, task, self._peers, now)
             return
         wait = self._beginning.wait(task, now)
         if wait is not None:
@@ -331,12 +311,12 @@ class Dispatch:
         late = [(one, name, self._too_late(one, name, now)) for name, team in teams.items() for one in team]
         for one, name, reason in late:
             if reason:
-                yield from self.refuse(one, name, reason, now)
+                self.refuse(one, name, reason, now)
         if not any(reason for _, _, reason in late):
             for name, team in teams.items():
                 self._work(name, team, now)
 
-    def _begin_with_peers(self, state: RobotState, task: str, peers: Peers, now: float) -> Iterator[Change]:
+    def _begin_with_peers(self, state: RobotState, task: str, peers: Peers, now: float) -> None:
         """Tell the others that a robot is at a task that several begin; begin it when that is agreed."""
         self._count_delay(state, task)
         wait, earliest_s = self._beginning.wait(task, now), self._beginning.earliest_s(task, now)
@@ -349,7 +329,7 @@ class Dispatch:
         found = peers.gather(task, unit, earliest_s, state.work_s, opens)
         late = self._too_late(state, task, earliest_s if found.begin_s == math.inf else found.begin_s)
         if late:
-            yield from self.refuse(state, task, late, now)
+            self.refuse(state, task, late, now)
         elif wait is None and found.absent:
             self._say_wait(state, task, *_words_for_absent(task, found.absent))
         elif found.begin_s <= now:
@@ -359,7 +339,7 @@ class Dispatch:
     def _say_wait(self, state: RobotState, task: str, cause: str, words: str) -> None:
         said, state.wait_cause, state.wait_words = state.wait_words, cause, words
         if cause != "prerequisite" and words != said:
-            self._emit("waits", {"robot": state.robot.id, "task": task, "cause": cause, "words": words})
+            self._emit(Waits(robot=state.robot.id, task=task, cause=cause, words=words))
 
     def _too_late(self, state: RobotState, task: str, begin_s: float) -> str:
         """Why a robot that is at a task at a time cannot do it, by window, deadline or shift; else empty."""
@@ -378,15 +358,14 @@ class Dispatch:
     def _work(self, task: str, team: Sequence[RobotState], now: float) -> None:
         for state in team:
             self._count_delay(state, task)
-        self._begin(task, team, tuple(state.robot.id for state in team), now)
+        self._begin(task, team, tuple(state.robot.id for state in team))
         slowest = max(state.work_s for state in team)
         for state in team:
             work_for(state, slowest, now, stands=len(team) > 1)
 
     def _work_with_peers(self, state: RobotState, task: str, agreed: Gathering, now: float) -> None:
         """The robot's part of what several have agreed to begin."""
-        self._begin(task, [state], agreed.team, now)
-        self._ledger.begin(task, agreed.begin_s)
+        self._begin(task, [state], agreed.team, agreed.begin_s)
         lasts_s = max(state.work_s, agreed.begin_s + agreed.lasts_s - now)
         work_for(state, lasts_s, now, stands=len(agreed.team) > 1)
 
@@ -396,16 +375,17 @@ class Dispatch:
         state.delay_s, before = delay, state.delay_s
         state.work_s += state.delay_s - before
 
-    def _begin(self, task: str, team: Sequence[RobotState], robots: tuple[str, ...], now: float) -> None:
+    def _begin(
+        self, task: str, team: Sequence[RobotState], robots: tuple[str, ...], from_s: float | None = None
+    ) -> None:
         """Robots of the crew begin a task, of all the robots that do it."""
-        self._ledger.arrive(task, max(one.arrived_used for one in team), max(one.arrived_s for one in team))
-        self._ledger.begin(task, now)
-        self._ledger.teams[task] = robots
-        if len(team) > 1:
-            self._ledger.team_waits_s[task] = sum(now - state.arrived_s for state in team)
         for state in team:
             state.wait_cause = state.wait_words = ""
-        self._emit("starts", {"task": task, **_names(robots)})
+        self._emit(Starts(task=task, robot=robots[0], team=_team(robots), used=self._used(robots[0]), from_s=from_s))
+
+    def _used(self, robot: str) -> float | None:
+        """The usage of a robot, if it is of the crew."""
+        return self._crew[robot].used if robot in self._crew else None
 
     def _end_work(self, state: RobotState, now: float) -> None:
         """The work has ended, unless it was delayed meanwhile, or others of the team are still at it."""
@@ -432,19 +412,15 @@ class Dispatch:
         robots = self._ledger.teams.get(task) or tuple(state.robot.id for state in team)
         for state in team:
             state.charge_work()
-        self._ledger.end(task, robots[0], now)
-        flown = sum(state.used - state.used_before for state in team)
-        self._ledger.usage[task] = sum(state.usage_to_task for state in team), flown
+        usage = sum(state.usage_to_task for state in team), sum(state.used - state.used_before for state in team)
+        parts = {state.robot.id: (state.usage_to_task, state.used) for state in team} if len(robots) > 1 else {}
         for state in team:
             state.used_before = state.used
-            state.planned_before += state.usage_to_task
             state.route.pop(0)
-            state.done.append(task)
-            state.stops.append(task)
             state.warned_short = 0.0
-            self._goods.end(self._ledger.tasks[task], state.robot.id)
             state.begin_activity(now, Activity.IDLE)
-        self._emit("ends", {"task": task, **_names(robots)})
+        used = self._used(robots[0])
+        self._emit(Ends(task=task, robot=robots[0], team=_team(robots), used=used, parts=parts, usage=usage))
 
     def _planned_usage(self, state: RobotState, task: str) -> float:
         """What a task costs by the plan in force, from the task before it or from where that plan was made."""
@@ -460,9 +436,9 @@ class Dispatch:
         return None if way is None else along(way)
 
 
-def _names(robots: Sequence[str]) -> dict[str, Any]:
-    """Who does a task, as events name them: the first robot, and the team where there are more."""
-    return {"robot": robots[0]} | ({"team": list(robots)} if len(robots) > 1 else {})
+def _team(robots: tuple[str, ...]) -> tuple[str, ...]:
+    """The team, as events name it: where there are more robots than the first."""
+    return robots if len(robots) > 1 else ()
 
 
 def _words_for_absent(task: str, absent: Sequence[tuple[str, str]]) -> tuple[str, str]:

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from muster.execution.changes import Change
+from muster.execution.record import Tell
 from muster.execution.robot_energy import RobotEnergy
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.station_calls import Call
 from muster.execution.stations import Stations
-from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import along, path_length, place, travel_s
 from muster.mission.model import Station
 from muster.motion.port import Place
+from muster.state.robot_events import EnergyLow
+from muster.state.task_ledger import Ledger
 
 TOLERANCE = 0.01
 """Share of the capacity by which a level may be lower than planned; a robot arrives with at least as much."""
@@ -35,6 +36,8 @@ class EnergyWatch:
         from where a robot is; None: there is none.
     ahead
         by robot what it uses after each task of its route, by the plan in force.
+    ask
+        receives events that ask for a new plan.
     on_duty
         whether the fleet stays on duty now, so that orders may come.
     """
@@ -44,6 +47,7 @@ class EnergyWatch:
     ledger: Ledger
     way: Callable[[RobotState, Place], Sequence[Place] | None]
     ahead: Callable[[], Mapping[str, Mapping[str, float]]]
+    ask: Tell
     on_duty: Callable[[], bool] = lambda: False
     _learnt_from: int = 0
 
@@ -51,7 +55,7 @@ class EnergyWatch:
         """Robots whose telemetry tells that their batteries are empty."""
         return (one for one in self.crew.values() if not one.out and one.energy is not None and one.energy.is_empty)
 
-    def look(self, now: float) -> Iterator[Change]:
+    def look(self, now: float) -> None:
         """Robots whose energy does not last to their next charge, or the end of their route: they are planned anew."""
         self._learn_detours()
         for state in self.crew.values():
@@ -64,14 +68,13 @@ class EnergyWatch:
             if state.activity is Activity.RETURNING:
                 state.stop(now)
                 continue
-            yield Change(
-                "energy_low",
-                {
-                    "robot": state.robot.id,
-                    "charge": round(state.energy.share, 6),
-                    "missing": round(missing, 6),
-                    "drain": round(state.energy.drain, 4),
-                },
+            self.ask(
+                EnergyLow(
+                    robot=state.robot.id,
+                    charge=round(state.energy.share, 6),
+                    missing=round(missing, 6),
+                    drain=round(state.energy.drain, 4),
+                )
             )
 
     def _learn_detours(self) -> None:

@@ -9,26 +9,23 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from muster.execution.beginning import Beginning
-from muster.execution.changes import FAILED, OUT, SILENT, STUCK, Change, Changes, new_robot_state
-from muster.execution.completed_work import CompletedWork
+from muster.execution.changes import Changes, new_robot_state, require_port
 from muster.execution.deadlocks import Deadlocks
 from muster.execution.dispatch import Dispatch
 from muster.execution.energy_watch import EnergyWatch
 from muster.execution.forecast import Forecast
-from muster.execution.goods_ledger import GoodsLedger
 from muster.execution.insertion import Insertion
 from muster.execution.monitor import Limits, moves_again
-from muster.execution.orders import IMPROVED, Orders
 from muster.execution.outlooks import Outlooks
 from muster.execution.peers import Peers
 from muster.execution.punctuality import Punctuality
-from muster.execution.reallocation import Reallocation, Revision, first_ahead, reasons_in_one_line
-from muster.execution.record import ExecutionEvent, NoObserver, Observer
+from muster.execution.reallocation import Reallocation, Revision, first_ahead
+from muster.execution.record import NoObserver, Observer
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.report import Account
 from muster.execution.robot_state import Activity, RobotState
@@ -38,9 +35,8 @@ from muster.execution.standing import KEPT_EVENTS, KEPT_REVISIONS, UNTIL_DONE, E
 from muster.execution.station_service import StationService
 from muster.execution.stations import Stations
 from muster.execution.supervision import Leader, NoLeader, Supervisor
-from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import MotionPlanner, Way, straight
-from muster.execution.team_work import break_off
+from muster.execution.team_work import stop_work
 from muster.execution.traffic_waits import TrafficWaits
 from muster.execution.travel import Travel, travel_of
 from muster.execution.work_figures import at_stations, back_s, planned_so_far, shifts_exceeded_s
@@ -50,6 +46,12 @@ from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
+from muster.state import ExecutionEvent, MissionState, OtherEvent
+from muster.state.mission_state import AT_MOST_ONCE
+from muster.state.quantiles import Quantiles
+from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck
+from muster.state.run_events import IMPROVED, EventRefused, MissionEnded, PlanAdopted, Replanned, Resumed
+from muster.state.task_events import DoneElsewhere, Lost, WorkBrokenOff
 
 
 class Executor:
@@ -75,8 +77,9 @@ class Executor:
         receives all events.
     now
         seconds of the mission's clock at which it begins.
-    past
-        what was done before, of a mission that goes on; then `now` is the time that it has reached.
+    state, used
+        what is known of a mission that goes on after a stop, None: it begins; and by robot its usage then, where that
+        is known better than from events.
     peers
         the other robots' say, where this is the executor of those alone that have a port: then the mission is not over
         when they have nothing to do.
@@ -106,41 +109,52 @@ class Executor:
         limits: Limits | None = None,
         observer: Observer | None = None,
         now: float = 0.0,
-        past: CompletedWork | None = None,
+        state: MissionState | None = None,
+        used: Mapping[str, float] | None = None,
         peers: Peers | None = None,
         standing: Standing | None = None,
         on_doors: Callable[[Collection[str]], None] = lambda closed: None,
         leader: Leader | None = None,
     ) -> None:
-        self.mission = mission
-        self.ledger = Ledger.of(mission.tasks, "prerequisite" not in plan.ignored, plan.ignored)
-        own = [robot for robot in mission.robots if peers is None or robot.id in ports]
-        self.crew = {robot.id: new_robot_state(mission, robot, ports, now, plan.ignored) for robot in own}
-        self.goods = GoodsLedger()
-        for state in self.crew.values():
-            self.goods.join(state.robot)
-        self.stations = Stations.of(mission.stations, self.crew)
-        self.ended_s: float | None = None
+        begins = state is None
+        planned = required_routes(mission, plan)
+        own = [robot.id for robot in mission.robots] if peers is None else list(ports)
+        self.mission, self.planned = mission, plan
+        self.state = MissionState(mission, plan.ignored, own=own) if state is None else state
+        self.ledger, self.goods, self.orders = self.state.ledger, self.state.goods, self.state.orders
+        for robot in mission.robots if peers is None else ():
+            require_port(robot, ports)
+        here = [known for name, known in self.state.robots.items() if name in ports]
+        self.crew = {one.robot.id: new_robot_state(mission, one, ports, now, self.ledger) for one in here}
+        self.stations = Stations.of(self.state, self.crew)
+        self.clock_lag = Quantiles()
         self._standing = UNTIL_DONE if standing is None else standing
-        self.orders = Orders()
         self.events = EventLog(KEPT_EVENTS if self._standing.forgets else None)
         self.revisions: deque[Revision] = deque(maxlen=KEPT_REVISIONS if self._standing.forgets else None)
-        self._plans = self._plans_searched = 0
-        self.planned = plan
+        self._plans_searched = 0
         self._travel = travel_of(mission) if travel is None else travel
         self._replan = Reallocation(travel=self._travel) if replan is None else replan
         self._insertion = Insertion(self._travel)
         self._observer = NoObserver() if observer is None else observer
+        self._asked: list[ExecutionEvent] = []
         self._changes = Changes(
-            mission, self.ledger, self.crew, ports, self._travel, self.stations, self.goods, way, on_doors
+            mission, self.state, self.crew, ports, self._travel, self.stations, self._ask, way, on_doors
         )
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
         hold_until_s = self._forecast.hold_until_s if peers is None else peers.hold_until_s
         self._beginning = Beginning(self.ledger, self.crew, hold_until_s, self._alone)
-        self._punctuality = Punctuality(self.ledger, self.crew, self._beginning)
+        self._punctuality = Punctuality(self.ledger, self.crew, self._beginning, self.emit, self._ask)
         self._dispatch = Dispatch(
-            self.ledger, self.crew, self._beginning, self._capacity, plan_motion, way, self.emit, peers, self.goods
+            self.state,
+            self.crew,
+            self._beginning,
+            self._capacity,
+            plan_motion,
+            way,
+            self.emit,
+            self._ask,
+            peers,
         )
         self._dispatch.service = StationService(
             self.stations, self.ledger, self.goods, self._dispatch.way, self.emit, self._ask
@@ -151,6 +165,7 @@ class Executor:
             self.ledger,
             self._dispatch.way,
             lambda: self._dispatch.ahead,
+            self._ask,
             on_duty=lambda: self._on_duty,
         )
         self.outlook = Outlooks(self.ledger, self.crew, self._beginning, self._forecast)
@@ -164,42 +179,42 @@ class Executor:
             self._capacity,
             limits or Limits(),
             self.emit,
+            self._ask,
             now,
             NoLeader() if leader is None else leader,
         )
-        self._deadlocks = Deadlocks(self.ledger, self.crew, self._beginning, self._punctuality)
-        self._forgetting = Forgetting(self.ledger, self.crew, self._forecast, self._standing.keep_s)
-        self._past = past
-        self._script = self._script_after(-math.inf if past is None else past.happened_until_s(now))
-        self._asked: list[Change] = []
-        self._left_out = {item.task: reasons_in_one_line(item.reasons) for item in plan.unassigned if item.reasons}
+        self._deadlocks = Deadlocks(self.ledger, self.crew, self._beginning, self._punctuality, self._ask)
+        self._forgetting = Forgetting(self.ledger, self.crew, self._forecast, self._standing.keep_s, self.emit)
+        self._script = self._script_after(-math.inf if begins else self.state.now_s)
         self.now_s = now
-        self.begun_s = now if past is None else past.begun_s
-        planned = required_routes(mission, plan)
-        for robot, stops in planned.items():
-            if robot in self.crew:
-                self.crew[robot].route = [stop.name for stop in stops if not stop.is_station]
-        if past is not None:
-            self._recall(past)
-        ahead = first_ahead(self._rest(), self._travel, planned)
-        for robot, one in ahead.items():
-            self.crew[robot].calls = list(one.calls)
-        self._dispatch.ahead = {robot: one.usage for robot, one in ahead.items()}
+        if begins:
+            self.state.apply(PlanAdopted.of(plan, self.state).at(now))
+        else:
+            self._recall(used or {})
+        for name, hand in self.crew.items():
+            hand.route = [] if hand.out else list(self.state.routes.get(name, ()))
+        ahead = first_ahead(self._rest(), self._travel, planned if begins else {})
+        for name, one in ahead.items():
+            self.crew[name].calls = list(one.calls)
+        self._dispatch.ahead = {name: one.usage for name, one in ahead.items()}
         self._punctuality.expect(self._forecast, now)
-        self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
-        if past is not None:
+        planned_ahead = {name: ahead[""] for name, ahead in self._dispatch.ahead.items() if math.isfinite(ahead[""])}
+        self.usage_planned = {
+            name: hand.known.planned + planned_ahead.get(name, 0.0) for name, hand in self.crew.items()
+        }
+        if not begins:
             self._follow_script()  # what was due while nothing ran
-        self._observer.on_plan(now, plan)
+        self._observer.on_plan(now, self.plan if not begins else plan)
 
     @property
     def plan(self) -> Plan:
         """The plan of the whole mission as it is now: what each robot did, does and will do."""
-        return whole_plan(self.mission, self.planned, self.crew, self.ledger, self._left_out)
+        return whole_plan(self.mission, self.planned, self.crew, self.ledger, self.state.left_out)
 
     @property
     def done(self) -> bool:
         """Whether the mission is over."""
-        return self.ended_s is not None
+        return self.state.ended_s is not None and not self._asked
 
     @property
     def idle(self) -> bool:
@@ -217,25 +232,23 @@ class Executor:
         times = [*standing, *available, *self._punctuality.times(self.now_s)]
         return min((time for time in times if time > self.now_s), default=math.inf)
 
-    def report(self, event: Event, reason: str = "") -> None:
+    def report(self, event: Event, reason: str = "", came_s: float | None = None) -> None:
         """Let something happen that the mission file did not foresee; its `at_s` does not count.
 
-        A mission that was over goes on if that changes anything. Why a robot fails may be said, in words.
+        A mission that was over goes on if that changes anything. Why a robot fails may be said, in words, and when a
+        task was ordered, if that was before now.
 
         Raises
         ------
         ParameterError
             if the event does not fit (see `Changes.apply`).
         """
-        changes = list(self._changes.apply(self._due_at_once(event), self.now_s, reason))
+        asked = len(self._asked)
+        self._changes.apply(self._due_at_once(event), self.now_s, reason, came_s)
         if event.door is not None:
             self._forecast.forget()
-        if event.robot_joins is not None and self._past is not None:
-            self._past.recall_robot(self.crew[event.robot_joins.id], self.ledger)
-        self._ask(changes)
-        self.ended_s = None if changes else self.ended_s
-        if not changes and event.robot_silent is None:
-            self.emit("without_effect", plain(event))
+        if len(self._asked) == asked and event.robot_silent is None:
+            self.emit(OtherEvent(kind="without_effect", content=plain(event)))
 
     def _due_at_once(self, event: Event) -> Event:
         """An order to a standing fleet that says not when it is due is due when it comes, where lateness counts."""
@@ -259,32 +272,31 @@ class Executor:
         """Raise ParameterError where a robot cannot join; its port need not be there yet."""
         self._changes.require_newcomer(robot)
 
-    def report_if_it_fits(self, event: Event, reason: str = "") -> bool:
+    def report_if_it_fits(self, event: Event, reason: str = "", came_s: float | None = None) -> bool:
         """As `report`, but an event that does not fit is refused, with the event `event_refused`."""
         try:
-            self.report(event, reason)
+            self.report(event, reason, came_s)
         except ParameterError as error:
-            self.emit("event_refused", {"event": plain(event), "reason": str(error)})
+            self.emit(EventRefused(event=plain(event), reason=str(error)))
             return False
         return True
 
-    def plan_again(self, kind: str, data: Mapping[str, Any]) -> None:
+    def plan_again(self, cause: ExecutionEvent) -> None:
         """Have the rest planned again at the next tick, because of something that is known elsewhere."""
-        self._ask([Change(kind, data)])
+        self._ask(cause)
 
     def end_elsewhere(self, task: str, robots: Sequence[str]) -> bool:
         """Robots have done a task, as others say; return whether that is new. Work of the crew on it continues."""
         at_work = any(state.activity is Activity.WORKING and state.route[0] == task for state in self.crew.values())
         if is_new := not at_work and task not in self.ledger.ends_s:
-            self.ledger.end(task, robots[0], self.now_s)
-            self.ledger.teams[task] = tuple(robots)
+            self.emit(DoneElsewhere(task=task, robots=tuple(robots)))
         return is_new
 
     def break_off(self, task: str) -> None:
         """Robots elsewhere have left a task that they and the crew had begun together: the crew leaves it too."""
         robots = [state.robot.id for state in self.crew.values() if state.route[:1] == [task]]
-        broken = break_off(self.crew, self.ledger, task, self.now_s)
-        self._ask([Change("work_broken_off", {"task": name, "robot": robots[0]}) for name in broken])
+        for name in stop_work(self.crew, self.ledger, task, self.now_s):
+            self._ask(WorkBrokenOff(task=name, robot=robots[0]))
 
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Go on to a time, not before the last, in seconds; returns what happened.
@@ -300,9 +312,9 @@ class Executor:
         for state in self._present:
             state.note_energy()
         self._follow_script()
-        self._ask(self._supervisor.look(now))
+        self._supervisor.look(now)
         self._look_at_energy()
-        self._ask(self._punctuality.look(now))
+        self._punctuality.look(now)
         self._go_on()
         self._get_on()
         self._improve()
@@ -336,23 +348,21 @@ class Executor:
         for state in self.crew.values():
             if (said := state.hear(self.now_s)) is not None:
                 self._observer.on_telemetry(self.now_s, state.robot.id, said)
-                if state.out == SILENT:
-                    self._ask(self._changes.readmit(state, self.now_s))
-                elif state.out == STUCK and moves_again(state):
-                    self._ask(self._changes.readmit(state, self.now_s, "it moves again"))
+                if state.out == RobotSilent.kind:
+                    self._changes.readmit(state, self.now_s)
+                elif state.out == RobotStuck.kind and moves_again(state):
+                    self._changes.readmit(state, self.now_s, "it moves again")
 
     def _look_at_energy(self) -> None:
         """Who is empty fails; who runs low is planned again."""
         for state in list(self._energy.empty()):
-            self._ask(self._changes.exclude(state, FAILED, self.now_s, "its battery is empty"))
-        self._ask(self._energy.look(self.now_s))
+            self._changes.exclude(state, RobotFails, self.now_s, "its battery is empty")
+        self._energy.look(self.now_s)
 
     def _follow_script(self) -> None:
         """Let those events of the mission file, and orders, happen that are due."""
         for event in self._script.due(self.now_s):
-            if event.new_task is not None:
-                self.orders.comes(event.new_task.id, event.at_s)
-            self.report_if_it_fits(event)
+            self.report_if_it_fits(event, came_s=event.at_s)
 
     def _script_after(self, time_s: float) -> Script:
         """What is to happen after a time: events of the mission file, and orders."""
@@ -377,27 +387,25 @@ class Executor:
     def _capacity(self, state: RobotState) -> float | None:
         return None if "capacity" in self.planned.ignored else state.capacity
 
-    def _recall(self, past: CompletedWork) -> None:
+    def _recall(self, used: Mapping[str, float]) -> None:
         """Robots keep the open tasks of their routes; all of them are planned again from the robots' positions."""
-        past.recall(self.ledger, self.crew, self.goods, self.stations, self.orders)
-        self._dispatch.misfits.update(past.misfits)
-        self._plans = past.replanned
-        if past.closed is not None:
-            self._changes.set_doors(past.closed)
-        left = {task.id for task in self.ledger.open} - past.barred.keys()
-        for state in self.crew.values():
-            state.route = [] if state.out else [task for task in state.route if task in left]
+        at_work = [task for name, task in self.ledger.tasks.items() if self.ledger.at_work(name)]
+        again = tuple(task.id for task in at_work if task.across_partition != AT_MOST_ONCE)
+        self._ask(Resumed(how="from where robots stand", again=again, used=used))
+        for robot in self.crew.values():
+            robot.recall_known()
+        if self.state.doors.known:
+            self._changes.close_doors()
 
     def _get_on(self) -> None:
         """When no robot gets on, or has a task any more, see what another plan can do."""
         if not self._alone:
             return
-        if changes := self._deadlocks.look(self.now_s):
-            self._ask(changes)
+        if self._deadlocks.look(self.now_s):
             self._go_on()
-        left = self._deadlocks.left_out_to_try(self._left_out)
+        left = self._deadlocks.left_out_to_try(self.state.left_out)
         if left and any(self._replan(self._rest()).routes.values()):
-            self._ask([Change("robots_free", {"left_out": left})])
+            self._ask(RobotsFree(left_out=tuple(left)))
             self._go_on()
 
     def _go_on(self) -> None:
@@ -406,15 +414,14 @@ class Executor:
             if self._asked:
                 self._plan_again()
             for state in self._present:
-                self._ask(self._dispatch.send_on(state, self.now_s))
+                self._dispatch.send_on(state, self.now_s)
             if not self._asked:
                 return
 
-    def _ask(self, changes: Iterable[Change]) -> None:
-        """Have the rest planned again because of changes."""
-        for change in changes:
-            self._asked.append(change)
-            self.emit(change.kind, change.data)
+    def _ask(self, cause: ExecutionEvent) -> None:
+        """Have the rest planned again because of something that happens now."""
+        self._asked.append(cause)
+        self.emit(cause)
 
     def _rest(self) -> RemainingMission:
         return remaining_mission_of(
@@ -429,7 +436,7 @@ class Executor:
         )
 
     def _plan_again(self) -> None:
-        causes, self._asked = [{"kind": change.kind, **change.data} for change in self._asked], []
+        causes, self._asked = [{"kind": cause.kind, **cause.data} for cause in self._asked], []
         self._adopt(self._replan(self._rest()), causes)
 
     def _adopt(self, revision: Revision, causes: Sequence[Mapping[str, Any]]) -> None:
@@ -440,14 +447,16 @@ class Executor:
         for state in self.crew.values():
             if state.out:
                 state.route = []
-        fresh = revision.left_out.keys() - self._left_out.keys() - set(revision.dropped)
+        known = self.state.left_out
+        fresh = revision.left_out.keys() - known.keys() - set(revision.dropped)
         left_out = {task: why for task, why in revision.left_out.items() if task in fresh}
-        self._dispatch.ahead, self._left_out = revision.ahead, dict(revision.left_out)
+        self._dispatch.ahead = revision.ahead
         self._punctuality.expect(self._forecast, self.now_s)
         self.revisions.append(revision)
-        self._plans += 1
-        self.emit("replanned", {"causes": causes, **revision.difference(), "left_out": left_out})
-        self._observer.on_plan(self.now_s, self.plan)
+        self.emit(Replanned(causes=tuple(causes), **revision.difference(), left_out=left_out))
+        plan = whole_plan(self.mission, self.planned, self.crew, self.ledger, revision.left_out)
+        self.state.apply(PlanAdopted.of(plan, self.state).at(self.now_s))
+        self._observer.on_plan(self.now_s, plan)
 
     @property
     def _improvement_due_s(self) -> float:
@@ -463,25 +472,28 @@ class Executor:
         if better is not None:
             self._adopt(better, [{"kind": IMPROVED}])
             self._go_on()
-        if improver.due_s == math.inf and self._plans != self._plans_searched and any(s.route for s in self._present):
-            self._plans_searched = self._plans
+        if (
+            improver.due_s == math.inf
+            and self.state.replanned != self._plans_searched
+            and any(s.route for s in self._present)
+        ):
+            self._plans_searched = self.state.replanned
             improver.begin(self._rest())
 
     def _forget(self) -> None:
         """Of a standing fleet what is long done is forgotten."""
         if self._standing.forgets:
-            for task, reason in self._forgetting.look(self.now_s):
-                self.emit("lost", {"task": task, "reason": reason})
+            self._forgetting.look(self.now_s)
 
     def _end_if_over(self) -> None:
         if self._on_duty:
             return
         if self._alone and not self.done and self.idle and not self._may_bring_work:
             last = max((event.time_s for event in self.events), default=self.begun_s)
-            self.ended_s = max([last, *(state.begun_s for state in self._present if state.done)])
+            ended_s = max([last, *(state.begun_s for state in self._present if state.done)])
             for task, reason in self.lost().items():
-                self.emit("lost", {"task": task, "reason": reason})
-            self.emit("mission_ended", {})
+                self.emit(Lost(task=task, reason=reason))
+            self.emit(MissionEnded(ended_s=ended_s))
 
     @property
     def _may_bring_work(self) -> bool:
@@ -496,6 +508,7 @@ class Executor:
     @property
     def account(self) -> Account:
         """What it took, so far or in all."""
+        over_s = self.now_s if self.state.ended_s is None else self.state.ended_s
         return Account(
             objective=self._objective,
             objective_planned=self.planned.objective_value,
@@ -504,28 +517,31 @@ class Executor:
             used={name: state.used for name, state in self.crew.items()},
             usage_planned=self.usage_planned,
             planned_so_far={name: planned_so_far(state) for name, state in self.crew.items()},
-            mission_time_s=(self.now_s if self.ended_s is None else self.ended_s) - self.begun_s,
-            reallocations=self._plans,
-            orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s),
+            mission_time_s=over_s - self.begun_s,
+            reallocations=self.state.replanned,
+            orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s, self.clock_lag),
             charges={name: share for name, state in self.crew.items() if (share := state.share_left) is not None},
             stations={name: one for name, state in self.crew.items() if (one := at_stations(state)) is not None},
             shifts_exceeded_s=shifts_exceeded_s(self._worked, self.now_s),
-            traffic=self.traffic.account.with_waits(self.traffic.waits),
+            traffic=self.traffic.with_waits(self.state.traffic),
+            waits_s=self._punctuality.waits_s,
             back_s=back_s(self._worked) if self.mission.rules.makespan_includes_return else (),
         )
 
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why; before the end: that is not done yet and in no route."""
         under_way = {name for state in self._present for name in state.route}
-        gone = {
-            state.robot.id: f"{OUT[state.out]} at {round(state.out_s, 1):g} s"
-            for state in self.crew.values()
-            if state.out
-        }
-        return self.ledger.lost(lambda task: self._left_out.get(task, "left out by the plan"), gone, under_way)
+        why = self.state.left_out
+        return self.ledger.lost(lambda task: why.get(task, "left out by the plan"), self.state.gone, under_way)
 
-    def emit(self, kind: str, data: Mapping[str, Any]) -> None:
-        """Keep, and tell the observer, that something happened now."""
-        self.events.append(ExecutionEvent(self.now_s, kind, data))
-        self.orders.take(self.now_s, kind, data)
-        self._observer.on_event(self.now_s, kind, data)
+    @property
+    def begun_s(self) -> float:
+        """When the mission began."""
+        return self.now_s if self.state.begun_s is None else self.state.begun_s
+
+    def emit(self, event: ExecutionEvent) -> None:
+        """Apply an event that happens now, keep it, and tell the observer."""
+        event = event.at(self.now_s)
+        self.state.apply(event)
+        self.events.append(event)
+        self._observer.on_event(self.now_s, event.kind, event.data)

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 
 from muster.execution.beginning import next_begin
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import MotionPlanner, Way, Work, travel_s, work_of
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
+from muster.state.task_ledger import Ledger
 
 _MARGIN = 0.1  # share of the time until a dependant's robot arrives, by which that may be late
 _SETTLED_S = 1e-6

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from muster.execution.beginning import Beginning
-from muster.execution.changes import FAILED, SILENT
 from muster.execution.forecast import Forecast
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.stations import AT_STATION
-from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import Work
 from muster.motion.outlook import Outlook, Visit
+from muster.state.robot_events import RobotFails, RobotSilent
+from muster.state.task_ledger import Ledger
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Outlooks:
     def __call__(self, robot: str) -> Outlook:
         """Where a robot will go after where its last order leads."""
         state = self.crew[robot]
-        if state.out in (FAILED, SILENT):
+        if state.out in (RobotFails.kind, RobotSilent.kind):
             return Outlook(gone=True)
         at_home = state.home is not None and state.at_home and not state.route
         if state.activity in (Activity.WAITING, Activity.RETURNING, *AT_STATION) or (at_home and not state.calls):

@@ -7,13 +7,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from muster.execution.beginning import Beginning, Missed, next_begin
-from muster.execution.changes import Change
 from muster.execution.forecast import Forecast
+from muster.execution.record import Tell
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import TIME_ROUNDING_S, Ledger, MissedTask
-
-MISSED = {"window": "window_missed", "deadline": "deadline_missed", "prerequisite": "within_missed"}
-"""By rule: the kind of event that says that a task cannot begin in time any more."""
+from muster.state.task_events import MISSED
+from muster.state.task_ledger import TIME_ROUNDING_S, Ledger
 
 
 @dataclass
@@ -24,11 +22,18 @@ class Punctuality:
     ----------
     ledger, crew, beginning
         of the executor.
+    emit, ask
+        receive every event; those that ask for a new plan.
+    waits_s
+        by cause for how long robots have waited at tasks, in all.
     """
 
     ledger: Ledger
     crew: Mapping[str, RobotState]
     beginning: Beginning
+    emit: Tell
+    ask: Tell
+    waits_s: dict[str, float] = field(default_factory=dict)
     _planned_s: dict[str, float] = field(default_factory=dict)
     _in_time_until_s: dict[str, float] = field(default_factory=dict)  # until when each task need not be looked at
     _revision: int = -1  # of the ledger, when that was found
@@ -40,7 +45,7 @@ class Punctuality:
         self._planned_s = (forecast.begins(now) or {}) if self._timed else {}
         self._in_time_until_s = {}
 
-    def look(self, now: float) -> Iterator[Change]:
+    def look(self, now: float) -> None:
         """Tasks that were not begun in time: those of routes ask for a new plan."""
         if not self._timed:
             return
@@ -52,24 +57,20 @@ class Punctuality:
             if task.id in self.ledger.starts_s or task.id in self.ledger.expired or not self.ledger.is_open(task.id):
                 continue
             missed = self.beginning.missed(task.id, now)
-            if missed is not None:
-                self.ledger.expire(task.id, missed.reason)
-            else:
+            if missed is None:
                 self._in_time_until_s[task.id] = self.beginning.in_time_until_s(task.id, now)
                 missed = self._missed_window(task.id, now)
             if missed is not None:
-                self.ledger.missed.append(MissedTask(task.id, now, missed.reason, missed.next_s))
-                if self._is_routed(task.id):
-                    yield Change(
-                        MISSED[missed.rule], {"task": task.id, "reason": missed.reason, "next_s": missed.next_s}
-                    )
+                tell = self.ask if self._is_routed(task.id) else self.emit
+                tell(MISSED[missed.rule](task=task.id, reason=missed.reason, next_s=missed.next_s))
 
     def count_waits(self, seconds: float) -> None:
         """Robots have waited for so long, each for what it said last."""
         if not self._timed or seconds <= 0:
             return
         for state in self._waiting:
-            self.ledger.waits(state.route[0], state.wait_cause or "prerequisite", seconds)
+            cause = state.wait_cause or "prerequisite"
+            self.waits_s[cause] = self.waits_s.get(cause, 0.0) + seconds
 
     def times(self, now: float) -> Iterator[float]:
         """When the clock alone lets a robot that waits begin, or one is about to arrive where it must ask."""

@@ -18,13 +18,14 @@ from muster.allocation.problem import Problem
 from muster.allocation.rewiring import rewired
 from muster.allocation.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
-from muster.execution.remaining_problem import RemainingMission, RemainingProblem, in_one_line, remaining_problem
+from muster.execution.remaining_problem import RemainingMission, RemainingProblem, remaining_problem
 from muster.execution.route_ahead import RouteAhead, route_ahead, stops_of
 from muster.execution.station_calls import Call
 from muster.execution.travel import Travel
 from muster.mission.clock import VirtualClock
 from muster.mission.errors import ParameterError
-from muster.mission.plan import Reason, RouteStop, Unassigned, teams_of
+from muster.mission.plan import RouteStop, Unassigned, teams_of
+from muster.state.reasons import in_one_line, reasons_in_one_line
 
 RobotsOf = Mapping[int, frozenset[int]]
 """For each task, by index, the robots that do it."""
@@ -300,10 +301,5 @@ def nobody(rest: RemainingMission) -> Revision:
 
 def why_left_out(item: Unassigned, refused: Mapping[str, str]) -> str:
     """Why a task is left out; robots that refused it have a reason of their own, which the plan does not know."""
-    others = reasons_in_one_line(reason for reason in item.reasons if reason.robot not in refused)
+    others = reasons_in_one_line([reason for reason in item.reasons if reason.robot not in refused])
     return "; ".join(part for part in (in_one_line(refused.items()), others) if part)
-
-
-def reasons_in_one_line(reasons: Iterable[Reason]) -> str:
-    """Reasons in one line."""
-    return in_one_line((reason.robot, f"{reason.reason}: {reason.detail}") for reason in reasons)

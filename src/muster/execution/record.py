@@ -1,23 +1,17 @@
-"""Observers of a mission under way: the form of the events that they receive."""
+"""Observers of a mission under way, and what they are told."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
+from muster.state import ExecutionEvent
 
-
-@dataclass(frozen=True)
-class ExecutionEvent:
-    """An event of a mission that is being carried out: when (seconds of the mission's clock), what, and plain data."""
-
-    time_s: float
-    kind: str
-    data: Mapping[str, Any]
+Tell = Callable[[ExecutionEvent], None]
+"""Receives events that happen now: their time is put in."""
 
 
 class Observer(Protocol):

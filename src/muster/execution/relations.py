@@ -6,9 +6,9 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from muster.execution.task_ledger import Ledger
 from muster.execution.teams import lacking
 from muster.mission.model import Robot, Task
+from muster.state.task_ledger import Ledger
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ and times are those of the whole mission, and prerequisites that have ended are 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,15 +17,14 @@ import numpy as np
 from muster.allocation.charges import Charge
 from muster.allocation.fixed import admissible_alone, with_fixed_routes
 from muster.allocation.problem import Problem
-from muster.execution.goods_ledger import as_amount
 from muster.execution.relations import Binding
-from muster.execution.task_ledger import some_of
-from muster.execution.teams import units_of
 from muster.execution.travel import Spot, Travel
-from muster.mission.goods import Amount, by_commodity
+from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
+from muster.mission.task_relations import units_of
 from muster.motion.port import Place
+from muster.state.reasons import in_one_line
 
 SO_FAR = "so far"
 _MOST_RESERVE = 0.9  # share of the capacity that is left for the way to a station at most
@@ -353,14 +352,6 @@ def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | N
     if lock is not None and not meant:
         return robots, f"lock: only {', '.join(lock)} may do it, and takes no part any more"
     return robots, in_one_line(refused.items())
-
-
-def in_one_line(reasons: Iterable[tuple[str, str]]) -> str:
-    """Say why each robot cannot: robots with the same reason together."""
-    robots: dict[str, list[str]] = {}
-    for robot, why in reasons:
-        robots.setdefault(why, []).append(robot)
-    return "; ".join(f"{why} ({some_of(names)})" for why, names in robots.items())
 
 
 def _delayed(rest: RemainingMission, problem: Problem) -> Problem:

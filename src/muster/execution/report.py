@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
-from muster.execution.orders import OrdersReport
-from muster.execution.task_ledger import Ledger
-from muster.execution.traffic_waits import TrafficAccount
 from muster.mission.data_frames import data_frame
 from muster.mission.html_tables import html_line, html_table
 from muster.mission.objectives import lateness, objective_values
+from muster.state.orders import OrdersReport
+from muster.state.task_ledger import Ledger
+from muster.state.traffic_account import TrafficAccount
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -62,6 +62,8 @@ class Account:
         when robots were back, where that counts for the makespan.
     traffic
         who held up whom in traffic.
+    waits_s
+        by cause for how long robots waited at tasks, where tasks have rules about time or teams.
     orders
         of a mission in which tasks came on the way.
     """
@@ -81,6 +83,7 @@ class Account:
     shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
+    waits_s: Mapping[str, float] = field(default_factory=dict)
     orders: OrdersReport | None = None
 
 
@@ -357,21 +360,18 @@ def _task(ledger: Ledger, task: str) -> TaskReport:
 def _traffic(account: TrafficAccount) -> tuple[TrafficReport, ...]:
     rows = [
         TrafficReport(robot, other, pair.waiting_s, pair.times, pair.longest_s, pair.place)
-        for (robot, other), pair in account.pairs.items()
+        for robot, others in account.pairs.items()
+        for other, pair in others.items()
     ]
     return tuple(sorted(rows, key=lambda row: (-row.waiting_s, row.robot, row.waits_for)))
 
 
 def _waiting_by_cause(account: Account) -> dict[str, float]:
-    ledger = account.ledger
-    causes = dict(ledger.retired.waits_s)
+    causes = dict(account.waits_s)
     if account.traffic.pairs:
         causes["traffic"] = account.traffic.waiting_s
     if _slot_wait_s(account) > 0:
         causes["slot"] = _slot_wait_s(account)
-    for by_cause in ledger.waits_s.values():
-        for cause, seconds in by_cause.items():
-            causes[cause] = causes.get(cause, 0.0) + seconds
     return dict(sorted(causes.items()))
 
 

@@ -17,6 +17,8 @@ from muster.execution.task_motion import Work, path_length, place
 from muster.mission.model import Robot
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
+from muster.state.robot_events import RobotFails
+from muster.state.robots import KnownRobot
 
 
 class Activity(Enum):
@@ -41,8 +43,8 @@ class RobotState:
 
     Parameters
     ----------
-    robot, port
-        who it is, and how it is reached.
+    robot, known, port
+        who it is, what is known of it by events, and how it is reached.
     home
         where its route must end; None: anywhere.
     times
@@ -55,11 +57,10 @@ class RobotState:
         at stations, on that route.
     energy
         of its battery, if it has one.
-    out
-        why it takes no part now: failed, silent, stuck; empty if it does.
     """
 
     robot: Robot
+    known: KnownRobot
     port: RobotPort
     home: Place | None
     times: LegTimes
@@ -68,8 +69,6 @@ class RobotState:
     route: list[str] = field(default_factory=list)
     calls: list[Call] = field(default_factory=list)
     energy: RobotEnergy | None = None
-    done: list[str] = field(default_factory=list)
-    stops: list[str] = field(default_factory=list)  # tasks done, and stations between them
     station: str = ""  # where it is or goes to, on a call
     queued_s: float = 0.0  # since when it waits for a slot there, or did
     away: bool = False  # whether it waits for that where it is, not at the station
@@ -77,9 +76,7 @@ class RobotState:
     visits: int = 0  # so often it was served at a station
     slot_wait_s: float = 0.0  # for so long it waited for slots
     charged_idle: bool = False  # whether it has gone to charge of itself, and has done no task since
-    out: str = ""
-    out_s: float = 0.0  # since when
-    out_at: Place | None = None  # where it was then
+    out_at: Place | None = None  # where it was when it was out
     aside_until_s: float = -math.inf  # until when it stands aside for others in a jam
     activity: Activity = Activity.IDLE
     telemetry: Telemetry | None = None
@@ -90,14 +87,11 @@ class RobotState:
     at_home: bool = True
     cut_off: bool = False  # whether it found no way to where its route ends
     begun_s: float = 0.0  # the activity
-    arrived_s: float = 0.0  # at the current task, and its usage then
-    arrived_used: float = 0.0
     wait_cause: str = ""  # of `beginning.Wait`, while it waits
     wait_words: str = ""
     work_s: float = 0.0  # how long the current work takes, delays included
     charged: float = 0.0  # usage of works that ended, as far as it was not travelled
     used_before: float = 0.0  # usage at the end of the last task
-    planned_before: float = 0.0  # usage up to then as planned
     usage_to_task: float = 0.0  # from then to the end of the current task, as planned
     busy_s: float = 0.0
     since_s: float = 0.0  # up to when `busy_s` counts
@@ -114,6 +108,16 @@ class RobotState:
     home_s: float = 0.0  # at least, for the same
     _order: int = 0
     _waypoints: tuple[Waypoint, ...] = ()
+
+    @property
+    def out(self) -> str:
+        """The kind of the event after which it takes no part; empty if it does."""
+        return self.known.out
+
+    @property
+    def done(self) -> list[str]:
+        """The tasks that it did."""
+        return self.known.done
 
     @property
     def available(self) -> bool:
@@ -172,6 +176,19 @@ class RobotState:
         """Set its usage before the first telemetry, in the mission's unit."""
         said = self.port.telemetry()
         self.busy_s, self.charged = used, used - (said.odometry_m if said is not None else 0.0)
+        self.used_before = used
+
+    def recall_known(self) -> None:
+        """Take over what is known of the time before, of a robot that has taken part before."""
+        if self.known.used is not None:
+            self.recall(self.known.used)
+        if self.known.charge is not None and self.energy is not None:
+            share, then = self.known.charge
+            self.energy.recall(share, (self.known.used or then) - then)
+        self.at_home = self.at_home and not self.done
+        said = self.port.telemetry()
+        if self.out and self.out != RobotFails.kind and said is not None:
+            self.out_at = said.position
 
     def hear(self, now: float) -> Telemetry | None:
         """Its telemetry, if that is new."""

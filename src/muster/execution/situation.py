@@ -7,20 +7,20 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from muster.allocation.charges import Charge
-from muster.execution.goods_ledger import GoodsLedger
 from muster.execution.relations import binding_of, narrowed, with_whole_team
 from muster.execution.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.station_calls import with_calls
 from muster.execution.station_service import level_after_service
 from muster.execution.stations import AT_STATION, Stations
-from muster.execution.task_ledger import Ledger, task_as_it_holds
 from muster.execution.transports import deliveries_aboard, load_after_work, on_board, transports
 from muster.execution.travel import Spot
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.value_types import shown
+from muster.state.goods_ledger import GoodsLedger
+from muster.state.task_ledger import Ledger, task_as_it_holds
 
 
 def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[RouteStop, ...]]:
@@ -149,7 +149,7 @@ def whole_plan(
 ) -> Plan:
     """The plan of the whole mission, what is done included; without figures."""
     routes = tuple(
-        Route(state.robot.id, (*state.stops, *(with_calls(state.route, state.calls) if not state.out else ())))
+        Route(state.robot.id, (*state.known.stops, *(with_calls(state.route, state.calls) if not state.out else ())))
         for state in crew.values()
     )
     there = {name for route in routes for name in route.tasks}

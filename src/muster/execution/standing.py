@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from numbers import Real
 from typing import Any, Protocol, overload
 
 from muster.execution.forecast import Forecast
-from muster.execution.record import ExecutionEvent
+from muster.execution.record import Tell
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.robot_state import RobotState
 from muster.execution.script import checked_orders
-from muster.execution.task_ledger import Ledger
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.mission.value_types import shown
+from muster.state import ExecutionEvent
+from muster.state.task_events import Forgets, Lost
+from muster.state.task_ledger import Ledger
 
 KEEP_S, KEPT_EVENTS, KEPT_REVISIONS, LOOK_S = 300.0, 2_000, 10, 30.0
 """How long tasks that are done are remembered; how many events and plans are; seconds between two looks at them."""
@@ -162,16 +164,19 @@ class Forgetting:
         of the executor.
     keep_s
         how long ago.
+    emit
+        receives events.
     """
 
     ledger: Ledger
     crew: Mapping[str, RobotState]
     forecast: Forecast
     keep_s: float
+    emit: Tell
     _look_s: float = field(default=0.0, init=False)
 
-    def look(self, now: float) -> Iterator[tuple[str, str]]:
-        """Forget what is due; yields the tasks that are lost thereby, and why."""
+    def look(self, now: float) -> None:
+        """Forget what is due; what is neither done nor cancelled is lost thereby."""
         if now < self._look_s:
             return
         self._look_s = now + LOOK_S
@@ -179,12 +184,11 @@ class Forgetting:
         settled = self.ledger.settled(now - self.keep_s) - in_routes - self._last_done()
         gone = [name for name in self.ledger.tasks if name in settled]
         for name in gone:
-            if name not in self.ledger.ends_s and name not in self.ledger.cancelled:
-                yield name, self.ledger.expired[name]
-        self.ledger.retire(gone)
-        self.forecast.forget()
-        for state in self.crew.values():
-            state.done = [name for name in state.done if name not in settled]
+            if self.ledger.is_open(name):
+                self.emit(Lost(task=name, reason=self.ledger.expired[name]))
+        if gone:
+            self.emit(Forgets(tasks=tuple(gone)))
+            self.forecast.forget()
 
     def _last_done(self) -> set[str]:
         """The last task of each robot, from which its way to the next is counted."""

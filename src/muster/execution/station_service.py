@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TypedDict
 
-from muster.execution.changes import Change
 from muster.execution.energy_watch import has_tasks_without_robot
-from muster.execution.goods_ledger import GoodsLedger, tied_goods
+from muster.execution.record import Tell
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.station_calls import Call
 from muster.execution.stations import Stations
-from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import along, place
 from muster.motion.port import Place, Waypoint
+from muster.state.goods_ledger import GoodsLedger, tied_goods
+from muster.state.robot_events import RobotCharged
+from muster.state.station_events import (
+    ArrivesAtStation,
+    GoesToStation,
+    ServiceBegins,
+    ServiceEnds,
+    StationUnreachable,
+    WaitsForSlot,
+)
+from muster.state.task_ledger import Ledger
 
 CHARGE_MARGIN = 0.02
 """Share of the capacity that a robot charges more than planned: no way is driven exactly as it was planned."""
@@ -42,8 +51,8 @@ class StationService:
     ledger: Ledger
     goods: GoodsLedger
     way: Callable[[RobotState, Place], Sequence[Place] | None]
-    emit: Callable[[str, Mapping[str, Any]], None]
-    ask: Callable[[Iterable[Change]], None]
+    emit: Tell
+    ask: Tell
 
     def advance(self, state: RobotState, now: float) -> None:
         """Check whether a robot has arrived at a station, or its service is over."""
@@ -52,24 +61,24 @@ class StationService:
         elif state.activity is Activity.SERVED and state.arrived:
             self._end(state, now)
 
-    def set_out(self, state: RobotState, call: Call, now: float) -> Iterator[Change]:
+    def set_out(self, state: RobotState, call: Call, now: float) -> None:
         """Send a robot to a station; one with a body waits where it is until there will be a slot when it comes.
 
         Bodies that wait before a slot are in the way of each other and of those that leave it.
         """
         state.station, state.at_home, state.work = call.station, False, None
         if self._finds_slot(state, now):
-            yield from self._drive(state, now)
+            self._drive(state, now)
             return
         state.send(now, Activity.QUEUEING, ())
         state.queued_s, state.away = now, True
         self._say_wait(state)
 
-    def serve_or_wait(self, state: RobotState, now: float) -> Iterator[Change]:
+    def serve_or_wait(self, state: RobotState, now: float) -> None:
         """Begin the service of a robot that waits for a slot, or let it go there, or say for what it waits."""
         if state.away and self._finds_slot(state, now):
             state.slot_wait_s += now - state.queued_s
-            yield from self._drive(state, now)
+            self._drive(state, now)
         elif not state.away and self.stations.has_slot_for(state):
             self._begin(state, now)
         else:
@@ -81,22 +90,21 @@ class StationService:
         least_s = state.times.least_seconds(math.dist(state.position, self._place(state)))
         return self.stations.finds_slot(state, now, least_s)
 
-    def _drive(self, state: RobotState, now: float) -> Iterator[Change]:
+    def _drive(self, state: RobotState, now: float) -> None:
         state.away, state.wait_words = False, ""
         way = self.way(state, self._place(state))
         if way is None:
-            self.stations.cut_off.add(state.station)
             state.stop(now)
-            yield Change("station_unreachable", {"station": state.station, "robot": state.robot.id})
+            self.ask(StationUnreachable(station=state.station, robot=state.robot.id))
             return
         state.send(now, Activity.TO_STATION, along(way, state.station))
-        self.emit("goes_to_station", {"robot": state.robot.id, "station": state.station} | _level(state))
+        self.emit(GoesToStation(**_at(state)))
 
     def _say_wait(self, state: RobotState) -> None:
         served = [other.robot.id for other in self.stations.served(state.station)]
         words = f"waits for a slot at {state.station}: {', '.join(served) or 'others come first'}"
         if not state.wait_words:
-            self.emit("waits_for_slot", {"robot": state.robot.id, "station": state.station, "served": served})
+            self.emit(WaitsForSlot(robot=state.robot.id, station=state.station, served=tuple(served)))
         state.wait_words = words
 
     def _arrive(self, state: RobotState, now: float) -> None:
@@ -106,7 +114,7 @@ class StationService:
         else:
             state.send(now, Activity.QUEUEING, ())
         state.queued_s, state.sent_again = now, 0
-        self.emit("arrives_at_station", {"robot": state.robot.id, "station": state.station} | _level(state))
+        self.emit(ArrivesAtStation(**_at(state)))
 
     def _is_there(self, state: RobotState) -> bool:
         """Whether a robot is as near to a station as others that are there let it."""
@@ -133,8 +141,8 @@ class StationService:
             Activity.SERVED,
             [Waypoint(there, hold_s=state.service_s, label=station.id, uses=0.0, service=station.id)],
         )
-        told = {"robot": state.robot.id, "station": station.id, "services": list(station.services)}
-        self.emit("service_begins", told | {"takes_s": round(state.service_s, 6)} | _level(state))
+        takes_s = round(state.service_s, 6)
+        self.emit(ServiceBegins(**_at(state), services=tuple(station.services), takes_s=takes_s))
 
     def _end(self, state: RobotState, now: float) -> None:
         station = self.stations.known[state.station]
@@ -144,18 +152,17 @@ class StationService:
             return
         if state.energy is not None and not state.energy.told:
             state.energy.add(_to_add(self.stations, state))
-        gone = self.goods.unload(state.robot.id, tied_goods(self.ledger)) if station.unloads else {}
+        gone = self.goods.loose(state.robot.id, tied_goods(self.ledger)) if station.unloads else {}
         call = state.call
         if call is not None:
             state.calls.remove(call)
-        state.stops.append(station.id)
         state.visits += 1
         state.warned_short = 0.0
         state.begin_activity(now, Activity.IDLE)
-        self.emit("service_ends", {"robot": state.robot.id, "station": station.id, "unloaded": gone} | _level(state))
+        self.emit(ServiceEnds(**_at(state), unloaded=gone))
         state.charged_idle = call is not None and not call.planned
         if state.charged_idle and has_tasks_without_robot(self.ledger, self.stations.crew):
-            self.ask([Change("robot_charged", {"robot": state.robot.id, "station": station.id})])
+            self.ask(RobotCharged(robot=state.robot.id, station=station.id))
 
     def extend(self, state: RobotState, now: float) -> None:
         """Charge on, beyond what the service under way was to bring, as far as the robot's call says now."""
@@ -210,6 +217,14 @@ def _takes_s(stations: Stations, state: RobotState) -> float:
     return station.swap_s if station.swaps and state.energy is not None else 0.0
 
 
-def _level(state: RobotState) -> dict[str, Any]:
-    """The level of a robot's battery, as events have it: a share."""
-    return {} if state.energy is None else {"charge": round(state.energy.share, 6)}
+class _At(TypedDict):
+    robot: str
+    station: str
+    charge: float | None
+    used: float
+
+
+def _at(state: RobotState) -> _At:
+    """What events of stations tell of a robot: the level of its battery is a share."""
+    charge = None if state.energy is None else round(state.energy.share, 6)
+    return {"robot": state.robot.id, "station": state.station, "charge": charge, "used": state.used}

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.station_calls import Call
 from muster.mission.model import Station
+from muster.state import MissionState
 
 AT_STATION = (Activity.TO_STATION, Activity.QUEUEING, Activity.SERVED)
 """What a robot does on a call."""
@@ -24,20 +25,20 @@ class Stations:
         by id.
     crew
         of the executor.
-    failed
-        those that serve nobody.
-    cut_off
-        those to which a robot found no way; they are planned for again when ways open.
+    failed, cut_off
+        of the state of the mission: those that serve nobody; those to which a robot found no way, which are planned
+        for again when ways open.
     """
 
     known: Mapping[str, Station]
     crew: Mapping[str, RobotState]
-    failed: set[str] = field(default_factory=set)
-    cut_off: set[str] = field(default_factory=set)
+    failed: Collection[str] = ()
+    cut_off: Collection[str] = ()
 
     @classmethod
-    def of(cls, stations: Iterable[Station], crew: Mapping[str, RobotState]) -> Stations:
-        return cls({station.id: station for station in stations}, crew)
+    def of(cls, state: MissionState, crew: Mapping[str, RobotState]) -> Stations:
+        known = {station.id: station for station in state.mission.stations}
+        return cls(known, crew, state.failed_stations, state.cut_off_stations)
 
     @property
     def working(self) -> tuple[Station, ...]:

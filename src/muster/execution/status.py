@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
-from muster.execution.changes import OUT
 from muster.execution.robot_state import Activity, RobotState
 from muster.execution.stations import AT_STATION, Stations
-from muster.execution.task_ledger import Ledger
+from muster.state.robots import OUT
+from muster.state.task_ledger import Ledger
 
 if TYPE_CHECKING:
     from muster.execution.executor import Executor
 
-TaskState = Literal["open", "under way", "done", "lost", "cancelled"]
 IN_TRAFFIC = "in traffic"
 """The activity of a robot under way that waits for another."""
 _AT_TASK = (Activity.DRIVING, Activity.WAITING, Activity.WORKING)
@@ -78,7 +77,7 @@ class Status:
     """The crew and the tasks by their ids, now."""
 
     robots: Mapping[str, RobotStatus]
-    tasks: Mapping[str, TaskState]
+    tasks: Mapping[str, str]
 
 
 def status_of(executor: Executor) -> Status:
@@ -90,7 +89,7 @@ def status_of(executor: Executor) -> Status:
         name: _in_traffic(_robot(state, executor, limited=limited), traffic.waits_for(name))
         for name, state in crew.items()
     }
-    return Status(robots, {task: _state(task, executor) for task in executor.ledger.tasks})
+    return Status(robots, executor.state.stages)
 
 
 def _robot(state: RobotState, executor: Executor, *, limited: bool) -> RobotStatus:
@@ -143,14 +142,3 @@ def _team(state: RobotState, crew: Mapping[str, RobotState]) -> tuple[str, ...]:
     task = state.route[0]
     team = tuple(other.robot.id for other in crew.values() if not other.out and task in other.route)
     return team if len(team) > 1 else ()
-
-
-def _state(task: str, executor: Executor) -> TaskState:
-    ledger = executor.ledger
-    if task in ledger.ends_s:
-        return "done"
-    if task in ledger.cancelled:
-        return "cancelled"
-    if task in ledger.starts_s:
-        return "under way"
-    return "lost" if executor.done else "open"

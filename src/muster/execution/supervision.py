@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from muster.execution.changes import SILENT, STUCK, Change, Changes
-from muster.execution.dispatch import Dispatch, Emit
+from muster.execution.changes import Changes
+from muster.execution.dispatch import Dispatch
 from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
+from muster.execution.record import Tell
 from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.execution.standstill import Standstill
-from muster.execution.task_ledger import Ledger
 from muster.execution.task_motion import place
 from muster.execution.traffic_waits import Progress, TrafficWaits, plain_place
 from muster.motion.port import Place
+from muster.state.robot_events import (
+    RobotRunsLow,
+    RobotSentAgain,
+    RobotSilent,
+    RobotStandsAside,
+    RobotStuck,
+    TrafficJam,
+)
+from muster.state.task_events import TaskRefused
+from muster.state.task_ledger import Ledger
 
 GIVES_UP_AFTER = 4
 """Times the limit of a jam after which one of its robots gives up its task."""
@@ -64,8 +74,8 @@ class Supervisor:
         how much a robot can use; None: any amount.
     limits
         how long what may last.
-    emit
-        receives every event that asks for no new plan.
+    emit, ask
+        receive every event that asks for no new plan; and those that ask for one.
     look_s
         when the next look is due.
     leader
@@ -79,32 +89,33 @@ class Supervisor:
     traffic: TrafficWaits
     capacity: Callable[[RobotState], float | None]
     limits: Limits
-    emit: Emit
+    emit: Tell
+    ask: Tell
     look_s: float
     leader: Leader
     standstill: Standstill = field(default_factory=Standstill)
 
-    def look(self, now: float) -> Iterator[Change]:
-        """Check all robots that take part, if that is due; yields changes that require a new plan."""
+    def look(self, now: float) -> None:
+        """Check all robots that take part, if that is due."""
         if now < self.look_s:
             return
         self.look_s = now + self.limits.look_every_s
         self._look_at_traffic(now)
-        yield from self._break_jams(now)
-        yield from self._break_standstill(now)
+        self._break_jams(now)
+        self._break_standstill(now)
         for state in self._present:
             if is_silent(state, now, self.limits):
-                yield from self.changes.exclude(state, SILENT, now)
+                self.changes.exclude(state, RobotSilent, now)
             elif state.refused and state.activity in MOVING:
-                yield from self._give_up(state, state.refused, now)
+                self._give_up(state, state.refused, now)
             elif (broken := self._broken_before(state)) is not None:
-                yield from self._give_way_to_broken(state, broken, now)
+                self._give_way_to_broken(state, broken, now)
             elif state.activity is Activity.IDLE and self.leader.makes_no_room(state.robot.id):
-                yield from self.changes.exclude(state, STUCK, now, "makes no room for others")
+                self.changes.exclude(state, RobotStuck, now, "makes no room for others")
             elif is_stuck(state, now, self.limits):
-                yield from self._free_or_put_out(state, now)
+                self._free_or_put_out(state, now)
             elif state.activity is Activity.DRIVING and self.capacity(state) is not None:
-                yield from self._notice_capacity(state, now)
+                self._notice_capacity(state, now)
 
     def pass_over(self, now: float) -> None:
         """Leave a pause that ends now out of all that is counted."""
@@ -116,8 +127,8 @@ class Supervisor:
 
         Work that takes far too long is told whatever traffic plans.
         """
-        for kind, data in self.traffic.look(now):
-            self.emit(kind, data)
+        for event in self.traffic.look(now):
+            self.emit(event)
         for robot in self.traffic.waits:
             self.crew[robot].nearest_s = now
         for state in (self.crew[robot] for robot in self.traffic.sent_round):
@@ -128,7 +139,7 @@ class Supervisor:
     def _present(self) -> list[RobotState]:
         return [state for state in self.crew.values() if not state.out]
 
-    def _free_or_put_out(self, state: RobotState, now: float) -> Iterator[Change]:
+    def _free_or_put_out(self, state: RobotState, now: float) -> None:
         """A robot without progress is sent again, and excluded the next time; not if a failed robot blocks it.
 
         One under way that has not taken its last order is sent again a few times more: it may take the next one.
@@ -137,11 +148,11 @@ class Supervisor:
         broken = [other for other in self.crew.values() if other.out]
         blocking = next((one for one in broken if stands_in_the_way(one, state.robot, state.points_left)), None)
         if blocking is not None and takes:
-            yield from self._give_way_to_broken(state, blocking, now)
+            self._give_way_to_broken(state, blocking, now)
         elif state.sent_again >= (1 if takes else self._most_sent_again(state)):
-            yield from self.changes.exclude(state, STUCK, now, "no progress with nobody in its way")
+            self.changes.exclude(state, RobotStuck, now, "no progress with nobody in its way")
         else:
-            self.emit("robot_sent_again", {"robot": state.robot.id, "reason": "no progress"})
+            self.emit(RobotSentAgain(robot=state.robot.id, reason="no progress"))
             self.dispatch.again(state, now)
 
     def _most_sent_again(self, state: RobotState) -> int:
@@ -157,18 +168,18 @@ class Supervisor:
         least_s = AGAIN_AFTER_S if known else self.limits.stuck_after_s
         return other if self.traffic.progress[state.robot.id].behind_s.get(other.robot.id, 0.0) > least_s else None
 
-    def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> Iterator[Change]:
+    def _give_way_to_broken(self, state: RobotState, broken: RobotState, now: float) -> None:
         """Where there is no way round it a robot ends here or gives up its task; traffic leads those that it steers."""
         if self._goes_round(state, broken, now):
             return
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
         elif state.activity is Activity.TO_STATION:
-            yield self.dispatch.leave_station(state, f"unreachable: {broken.robot.id} stands there, out", now)
+            self.dispatch.leave_station(state, f"unreachable: {broken.robot.id} stands there, out", now)
         else:
-            yield from self._give_up_blocked(state, broken, now)
+            self._give_up_blocked(state, broken, now)
 
-    def _break_jams(self, now: float) -> Iterator[Change]:
+    def _break_jams(self, now: float) -> None:
         """In a jam one robot after the other stands aside; a long one is told; at last a robot gives up its task."""
         for jam in self.traffic.jams():
             members = self.traffic.members(jam)
@@ -180,7 +191,7 @@ class Supervisor:
             if lasted_s >= self._longest_jam_s:
                 for one in members:
                     one.jammed_s = self.limits.jam_after_s
-                yield from self._give_up_in_jam(self._first_to_yield(members), jam, now)
+                self._give_up_in_jam(self._first_to_yield(members), jam, now)
             elif not self._is_ring(jam):
                 if lasted_s >= self.limits.jam_after_s:
                     self._lead_round(jam, now)
@@ -205,7 +216,7 @@ class Supervisor:
         self.traffic.progress[state.robot.id].goes_round(state.way_left_m)
         return True
 
-    def _break_standstill(self, now: float) -> Iterator[Change]:
+    def _break_standstill(self, now: float) -> None:
         """Where robots that traffic leads have not got on for as long as a jam may last one of them gives up."""
         self.standstill.look(self.crew.values(), now)
         under_way = [one for one in self._present if one.steered and one.activity in MOVING]
@@ -213,7 +224,7 @@ class Supervisor:
             return
         self.standstill.since_s = now
         state = self._first_to_yield([self.traffic.progress[one.robot.id] for one in under_way])
-        yield from self._give_up(state, f"jam: nobody has got on for {self._longest_jam_s:g} s", now)
+        self._give_up(state, f"jam: nobody has got on for {self._longest_jam_s:g} s", now)
 
     @property
     def _longest_jam_s(self) -> float:
@@ -251,7 +262,7 @@ class Supervisor:
         for robot in jam & self.traffic.progress.keys():
             self.traffic.progress[robot].told = True
         place = plain_place(self.crew[members[0].robot].position)
-        self.emit("traffic_jam", {"robots": sorted(jam), "position": place, "since_s": since_s})
+        self.emit(TrafficJam(robots=tuple(sorted(jam)), position=place, since_s=since_s))
 
     def _let_stand_aside(self, state: RobotState, now: float) -> None:
         """Longer each time; work is not broken off for that."""
@@ -259,55 +270,59 @@ class Supervisor:
         progress = self.traffic.progress[robot]
         progress.asides += 1
         if state.activity is not Activity.WORKING:
-            self.emit("robot_stands_aside", {"robot": robot, "waits_for": self.traffic.waits[robot].waits_for})
+            self.emit(RobotStandsAside(robot=robot, waits_for=self.traffic.waits[robot].waits_for))
             aside_s = min(progress.asides, LONGEST_ASIDE) * self.limits.aside_s
             self.dispatch.stand_aside(state, now + aside_s, now)
 
-    def _give_up_in_jam(self, state: RobotState, jam: Collection[str], now: float) -> Iterator[Change]:
+    def _give_up_in_jam(self, state: RobotState, jam: Collection[str], now: float) -> None:
         others = ", ".join(robot for robot in sorted(jam) if robot != state.robot.id)
-        return self._give_up(state, f"jam: held up by {others} for {self._longest_jam_s:g} s", now)
+        self._give_up(state, f"jam: held up by {others} for {self._longest_jam_s:g} s", now)
 
-    def _give_up(self, state: RobotState, reason: str, now: float) -> Iterator[Change]:
+    def _give_up(self, state: RobotState, reason: str, now: float) -> None:
         """A robot does not get to its way point: other robots do the task, or it ends where it is."""
         if state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
         elif state.activity is Activity.TO_STATION:
-            yield self.dispatch.leave_station(state, reason, now)
+            self.dispatch.leave_station(state, reason, now)
         else:
-            yield from self.dispatch.refuse(state, state.route[0], reason, now)
+            self.dispatch.refuse(state, state.route[0], reason, now)
 
-    def _give_up_blocked(self, state: RobotState, blocking: RobotState, now: float) -> Iterator[Change]:
+    def _give_up_blocked(self, state: RobotState, blocking: RobotState, now: float) -> None:
         """A failed robot stands in the way to a task: others that have no way to it, or to others, get none either."""
         task, reason = state.route[0], f"unreachable: {blocking.robot.id} stands there, out"
         others: dict[str, list[str]] = {}
         for other in self._present:
             able = set(self.ledger.tasks[task].requires) <= set(other.robot.skills)
             if other is not state and able and stands_in_the_way(blocking, other.robot, state.places_of_work):
-                self.ledger.refuse(task, other.robot.id, reason)
                 others.setdefault(task, []).append(other.robot.id)
-        self.ledger.blocked_by[task] = blocking.robot.id
         for other in self._present:
-            for cut_off in self._refuse_cut_off(other, blocking.robot.id, reason):
+            for cut_off in self._cut_off(other, [task] if other.robot.id in others.get(task, ()) else []):
                 others.setdefault(cut_off, []).append(other.robot.id)
-        more = {"blocked_by": blocking.robot.id, "others": others}
-        return self.dispatch.refuse(state, task, reason, now, more)
+        refused = TaskRefused(
+            task=task,
+            robot=state.robot.id,
+            reason=reason,
+            blocked_by=blocking.robot.id,
+            others={name: tuple(robots) for name, robots in others.items()},
+        )
+        self.dispatch.leave(state, refused, now)
 
-    def _refuse_cut_off(self, state: RobotState, blocking: str, reason: str) -> Iterator[str]:
-        """Refuse a robot the tasks to which traffic knows no way for it; yields them."""
-        known = [task for task in self.ledger.open if state.robot.id not in self.ledger.refusals.get(task.id, {})]
+    def _cut_off(self, state: RobotState, refused: Collection[str]) -> list[str]:
+        """The tasks to which traffic knows no way for a robot, but for those that it has refused, or does now."""
+        robot, refusals = state.robot.id, self.ledger.refusals
+        open_tasks = [task for task in self.ledger.open if task.id not in refused]
+        known = [task for task in open_tasks if robot not in refusals.get(task.id, {})]
         places = [place(task.position if task.entry is None else task.entry) for task in known]
-        for task, reached in zip(known, self.leader.reaches(state.robot.id, places), strict=True):
-            if not reached and state.route[:1] != [task.id]:
-                self.ledger.refuse(task.id, state.robot.id, reason)
-                self.ledger.blocked_by[task.id] = blocking
-                yield task.id
+        reached = self.leader.reaches(robot, places)
+        cut_off = [task.id for task, is_reached in zip(known, reached, strict=True) if not is_reached]
+        return [task for task in cut_off if state.route[:1] != [task]]
 
-    def _notice_capacity(self, state: RobotState, now: float) -> Iterator[Change]:
+    def _notice_capacity(self, state: RobotState, now: float) -> None:
         """The capacity of a robot is too small for its current task, or for the rest of its route."""
         task, capacity, after = state.route[0], self.capacity(state), state.used_after(now)
         if exceeds(after + state.home_usage, capacity):
             reason = f"capacity: {after + state.home_usage:.2f} used with it, of {capacity:.2f}"
-            yield from self.dispatch.refuse(state, task, reason, now)
+            self.dispatch.refuse(state, task, reason, now)
         elif state.warned_of != task and exceeds(after + self.dispatch.ahead[state.robot.id].get(task, 0.0), capacity):
             state.warned_of = task
-            yield Change("robot_runs_low", {"robot": state.robot.id, "capacity": capacity})
+            self.ask(RobotRunsLow(robot=state.robot.id, capacity=capacity))

@@ -5,20 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger
+from muster.state.task_ledger import Ledger
 
 
-def break_off(crew: Mapping[str, RobotState], ledger: Ledger, task: str, now: float) -> tuple[str, ...]:
-    """Break off the work on a task, and on those that began with it: what was done of it is lost.
-
-    All robots at work on them stop, free for a new plan. Returns the tasks that were under way and did not end.
-    """
-    broken = tuple(name for name in ledger.unit(task) if name in ledger.starts_s and name not in ledger.ends_s)
+def stop_work(crew: Mapping[str, RobotState], ledger: Ledger, task: str, now: float) -> tuple[str, ...]:
+    """Stop all robots at work on a task, and on those that began with it; return the tasks that are under way."""
+    under_way = tuple(name for name in ledger.unit(task) if ledger.at_work(name))
     for state in crew.values():
-        if state.activity is Activity.WORKING and state.route and state.route[0] in (*broken, task):
+        if state.activity is Activity.WORKING and state.route and state.route[0] in (*under_way, task):
             state.stop(now)
-    for name in (*broken, task):
-        ledger.give_up(name)
-    if late := ledger.too_late_to_begin_with(ledger.unit(task)):
-        ledger.expired |= dict.fromkeys(broken, late)
-    return broken
+    return under_way

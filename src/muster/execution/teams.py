@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from muster.allocation.bottleneck import matched
 from muster.mission.model import Robot, Task, TeamPart
-from muster.mission.task_relations import tied_by
 
 _ROUNDING = 1e-9  # relative; by which abilities may be below what is needed
 
@@ -43,13 +42,3 @@ def _lacking_part(parts: Sequence[TeamPart], robots: Sequence[Robot]) -> str:
 def _words(part: TeamPart) -> str:
     sort = " ".join(word for word in (part.kind, part.type) if word) or "robot"
     return f"{sort} with {', '.join(part.requires)}" if part.requires else sort
-
-
-def units_of(tasks: Collection[Task]) -> dict[str, tuple[str, ...]]:
-    """For each task all tasks that begin at the same moment, itself included, in the order given."""
-    listed = list(tasks)
-    tied = tied_by("starts_with", listed)
-    units: dict[int, list[str]] = {}
-    for task, first in zip(listed, tied, strict=True):
-        units.setdefault(first, []).append(task.id)
-    return {task.id: tuple(units[first]) for task, first in zip(listed, tied, strict=True)}

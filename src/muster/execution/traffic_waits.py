@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from muster.execution.monitor import distance_to_piece
 from muster.execution.robot_state import MOVING, Activity, RobotState
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.port import Place
+from muster.state.robot_events import GoesOn, WaitsInTraffic
+from muster.state.traffic_account import TrafficAccount
 
 WAITS_AFTER_S = 1.0
 """Seconds for which a robot is held up before that counts as waiting, and gets on before that is over."""
@@ -47,59 +48,6 @@ class TrafficWait:
         """It goes on, until now."""
         self.seconds[waits_for] = self.seconds.get(waits_for, 0.0) + now - self.until_s
         self.waits_for, self.until_s = waits_for, now
-
-
-@dataclass(frozen=True)
-class HeldUp:
-    """For how long, and how often, one robot held up another in traffic, and where that one stood the longest time."""
-
-    waiting_s: float
-    times: int
-    longest_s: float
-    place: Place
-
-    @staticmethod
-    def once(seconds: float, place: Place) -> HeldUp:
-        return HeldUp(seconds, 1, seconds, place)
-
-    def and_again(self, seconds: float, place: Place) -> HeldUp:
-        longest = (seconds, place) if seconds > self.longest_s else (self.longest_s, self.place)
-        return HeldUp(self.waiting_s + seconds, self.times + 1, *longest)
-
-
-class TrafficAccount:
-    """Who held up whom, added up: its size does not grow with time."""
-
-    def __init__(self) -> None:
-        self.pairs: dict[tuple[str, str], HeldUp] = {}
-
-    def add(self, robot: str, seconds: Mapping[str, float], place: Place) -> None:
-        """A robot has waited in traffic: seconds by robot that it waited for."""
-        for other, waited_s in seconds.items():
-            if waited_s > 0:
-                before = self.pairs.get((robot, other))
-                more = HeldUp.once(waited_s, place) if before is None else before.and_again(waited_s, place)
-                self.pairs[robot, other] = more
-
-    @property
-    def waiting_s(self) -> float:
-        """Seconds that all robots waited in traffic."""
-        return sum(pair.waiting_s for pair in self.pairs.values())
-
-    def take(self, kind: str, data: Mapping[str, Any]) -> None:
-        """An event of another's log: a wait that is over."""
-        if kind == "goes_on":
-            place = [*map(float, data.get("position", ())), 0.0, 0.0, 0.0]
-            self.add(str(data["robot"]), data["waited_s"], (place[0], place[1], place[2]))
-
-    def with_waits(self, waits: Mapping[str, TrafficWait]) -> TrafficAccount:
-        """The same with waits that are not over."""
-        account = TrafficAccount()
-        account.pairs = dict(self.pairs)
-        for robot, wait in waits.items():
-            if wait.told:
-                account.add(robot, wait.seconds, wait.place)
-        return account
 
 
 @dataclass
@@ -152,7 +100,6 @@ class TrafficWaits:
         self.waits: dict[str, TrafficWait] = {}
         self.progress: dict[str, Progress] = {}
         self.sent_round: set[str] = set()
-        self.account = TrafficAccount()
 
     def pass_over(self, now: float) -> None:
         """Leave a pause that ends now out of all waits."""
@@ -160,7 +107,7 @@ class TrafficWaits:
         for wait in self.waits.values():
             wait.until_s = now
 
-    def look(self, now: float) -> Iterator[tuple[str, dict[str, Any]]]:
+    def look(self, now: float) -> Iterator[WaitsInTraffic | GoesOn]:
         """See who waits now; yields an event of each wait that begins to count, or is over."""
         self.sent_round.clear()
         self._notice_returns()
@@ -180,7 +127,8 @@ class TrafficWaits:
                 wait.note(other, now)
                 if not wait.told and now - wait.since_s >= WAITS_AFTER_S:
                     wait.told = True
-                    yield "waits_in_traffic", _begun(robot, wait)
+                    place = plain_place(wait.place)
+                    yield WaitsInTraffic(robot=robot, waits_for=wait.waits_for, position=place, since_s=wait.since_s)
             elif wait is not None and (now - wait.until_s >= WAITS_AFTER_S or not _under_way(state)):
                 yield from self._over(robot, wait)
         since_s, self._looked_s = self._looked_s, now
@@ -201,6 +149,14 @@ class TrafficWaits:
             for one in self.progress.values():
                 one.behind_s.clear()
         self._out = out
+
+    def with_waits(self, account: TrafficAccount) -> TrafficAccount:
+        """An account of waits that are over, with those that are not."""
+        whole = TrafficAccount({robot: dict(others) for robot, others in account.pairs.items()})
+        for robot, wait in self.waits.items():
+            if wait.told:
+                whole.add(robot, wait.seconds, wait.place)
+        return whole
 
     def waits_for(self, robot: str) -> str:
         """For whom a robot waits in traffic; empty where it does not."""
@@ -239,11 +195,12 @@ class TrafficWaits:
         if _under_way(state):
             self.progress[robot].note(left_m)
 
-    def _over(self, robot: str, wait: TrafficWait) -> Iterator[tuple[str, dict[str, Any]]]:
+    def _over(self, robot: str, wait: TrafficWait) -> Iterator[GoesOn]:
         del self.waits[robot]
         if wait.told:
-            self.account.add(robot, wait.seconds, wait.place)
-            yield "goes_on", _ended(robot, wait)
+            waited_s = {other: seconds for other, seconds in wait.seconds.items() if seconds > 0}
+            place = plain_place(wait.place)
+            yield GoesOn(robot=robot, until_s=wait.until_s, waited_s=waited_s, position=place)
 
     def _stands(self, robot: str) -> bool:
         """Whether a robot stands and does nothing that ends by itself; one of which nothing is known may."""
@@ -320,15 +277,6 @@ def _pieces(state: RobotState, reach_m: float) -> Iterator[tuple[Place, Place]]:
         begin, reach_m = end, reach_m - long
 
 
-def _begun(robot: str, wait: TrafficWait) -> dict[str, Any]:
-    return {"robot": robot, "waits_for": wait.waits_for, "position": plain_place(wait.place), "since_s": wait.since_s}
-
-
-def _ended(robot: str, wait: TrafficWait) -> dict[str, Any]:
-    waited_s = {other: round(seconds, 6) for other, seconds in wait.seconds.items() if seconds > 0}
-    return {"robot": robot, "until_s": wait.until_s, "waited_s": waited_s, "position": plain_place(wait.place)}
-
-
-def plain_place(place: Place) -> list[float]:
+def plain_place(place: Place) -> tuple[float, ...]:
     """A place to the millimetre, as events have it: two coordinates on the ground."""
-    return [round(c, 3) for c in (place if place[2] else place[:2])]
+    return tuple(round(c, 3) for c in (place if place[2] else place[:2]))

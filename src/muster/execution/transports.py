@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from muster.execution.goods_ledger import GoodsLedger, negative
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import Ledger
-from muster.mission.goods import by_commodity
+from muster.mission.goods import by_commodity, negative
 from muster.mission.model import Task
+from muster.state.goods_ledger import GoodsLedger
+from muster.state.task_ledger import Ledger
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from muster.execution.report import StationAccount
 from muster.execution.robot_state import Activity, RobotState
-from muster.execution.task_ledger import TIME_ROUNDING_S
+from muster.state.task_ledger import TIME_ROUNDING_S
 
 
 def at_stations(state: RobotState) -> StationAccount | None:
@@ -38,4 +38,4 @@ def planned_so_far(state: RobotState) -> float:
     """Return the planned usage of the part of its route that a robot has carried out, the present leg in part."""
     since = max(0.0, state.used - state.used_before)
     has_task = bool(state.route) and state.activity in (Activity.DRIVING, Activity.WAITING, Activity.WORKING)
-    return state.planned_before + (min(since, state.usage_to_task) if has_task else since)
+    return state.known.planned + (min(since, state.usage_to_task) if has_task else since)

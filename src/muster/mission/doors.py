@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster.mission.events import Event
 from muster.mission.mission_data import MissionData
 
 
@@ -36,11 +35,10 @@ class Doors:
         doors = doors_of(mission)
         return cls(frozenset(doors), frozenset(name for name, is_open in doors.items() if not is_open))
 
-    def take(self, event: Event) -> bool:
-        """Let a door close or open; returns whether that changes anything."""
-        before = self.closed
-        if event.door_closes is not None:
-            self.closed |= {event.door_closes}
-        elif event.door_opens is not None:
-            self.closed -= {event.door_opens}
-        return self.closed != before
+    def close(self, door: str) -> None:
+        """A door is closed from now on."""
+        self.closed |= {door}
+
+    def open(self, door: str) -> None:
+        """A door is open from now on."""
+        self.closed -= {door}

@@ -51,3 +51,15 @@ def by_commodity(amount: Amount | None) -> Mapping[str, float]:
 def shown_amounts(amounts: Mapping[str, float]) -> str:
     """Amounts in one line: `3`, or `2 parcels, 1.5 water_l`."""
     return ", ".join(f"{value:.10g} {name}".rstrip() for name, value in amounts.items()) or "0"
+
+
+def as_amount(amounts: Mapping[str, float]) -> Amount | None:
+    """Amounts by commodity as a mission has them; None: nothing."""
+    if not amounts:
+        return None
+    return amounts[ONLY] if set(amounts) == {ONLY} else dict(amounts)
+
+
+def negative(amounts: Mapping[str, float]) -> Amount | None:
+    """The same amounts, put down."""
+    return as_amount({name: -amount for name, amount in amounts.items()})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from operator import attrgetter
 
 from muster.mission.mission_data import MissionData
@@ -43,6 +43,16 @@ def tied_by(relation: str, tasks: Sequence[Task]) -> list[int]:
                 low, high = sorted((found(k), found(index[name])))
                 first[high] = low
     return [found(k) for k in range(len(tasks))]
+
+
+def units_of(tasks: Collection[Task]) -> dict[str, tuple[str, ...]]:
+    """For each task all tasks that begin at the same moment, itself included, in the order given."""
+    listed = list(tasks)
+    tied = tied_by("starts_with", listed)
+    units: dict[int, list[str]] = {}
+    for task, first in zip(listed, tied, strict=True):
+        units.setdefault(first, []).append(task.id)
+    return {task.id: tuple(units[first]) for task, first in zip(listed, tied, strict=True)}
 
 
 def _wrong_names(mission: MissionData) -> Iterator[Fault]:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from muster.mission.stations import station_sign
-from muster.report.record import ExecutionEvent
-from muster.report.record.mission_state import OUT
+from muster.state import ExecutionEvent
+from muster.state.robots import OUT
 
 TRAVEL, WAITING, WORK, TRAFFIC, SERVICE = "travel", "waiting", "work", "traffic", "service"
 _BEGINS = {

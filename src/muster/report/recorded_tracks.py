@@ -21,10 +21,10 @@ from muster.report.canvas import (
 from muster.report.floor import draw_map, map_corners
 from muster.report.fonts import Names
 from muster.report.record import Recording
-from muster.report.record.mission_state import DONE, OPEN
 from muster.report.route_lines import Places, places
 from muster.report.station_marks import draw_stations, station_names
 from muster.report.styles import ALARM, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
+from muster.state.mission_state import DONE, OPEN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,7 +60,7 @@ def plot_flown(recording: Recording) -> Axes:
 
 def outcome(recording: Recording) -> list[str]:
     """The outcome of a mission in words."""
-    states = list(recording.outcome.states.values())
+    states = list(recording.outcome.stages.values())
     facts = [f"tasks {states.count(DONE)}/{len(states)}"]
     report = recording.report or {}
     if report.get("min_distance_m") is not None:
@@ -111,7 +111,7 @@ def _draw_tasks(ax: Any, recording: Recording, names: Names) -> list[tuple[Any, 
     colors = {DONE: TEXT, OPEN: LEFT_OUT}
     entries = {}
     for name, task in mission_state.tasks.items():
-        place, state = places([task.position], recording.mission.dimensions), mission_state.states[name]
+        place, state = places([task.position], recording.mission.dimensions), mission_state.stage(name)
         look = {"color": colors.get(state, ALARM), "markerfacecolor": TEXT if state == DONE else "white"}
         (mark,) = ax.plot(*place.T, linestyle="none", marker="o", markersize=4.5, zorder=5, gid=f"task-{name}", **look)
         entries[f"task {state}"] = mark

@@ -1,38 +1,41 @@
-"""Where a run was interrupted, and how it goes on from there."""
+"""Where a simulated run was interrupted, and where it goes on."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
-from muster.execution import CompletedWork, Executor
 from muster.mission.model import Mission
 from muster.simulation.world import standing
+from muster.state import MissionState
 
 
 @dataclass(frozen=True, kw_only=True)
 class Begun:
-    """Where a run was interrupted.
+    """Where a simulated run was interrupted.
 
     Parameters
     ----------
-    past : CompletedWork
-        What is known of the time before.
-    again : sequence of str
-        Tasks on which robots were at work: their work is begun again.
+    state : MissionState
+        What is known of the mission.
     bodies : mapping
-        Of a simulated world: where its bodies are, by `Simulation.snapshot`.
+        Where bodies were, by `Simulation.snapshot`.
+    time_s : float
+        The mission's clock when the run goes on, seconds.
     """
 
-    past: CompletedWork
-    again: Sequence[str] = ()
-    bodies: Mapping[str, Any] = field(default_factory=dict)
+    state: MissionState
+    bodies: Mapping[str, Any]
+    time_s: float
+
+    @property
+    def snapshot(self) -> Mapping[str, Any]:
+        """The bodies as a world takes them that goes on at that time."""
+        return {**self.bodies, "time_s": self.time_s}
 
     def standing(self, mission: Mission) -> Mission:
-        """Return a mission whose robots start where the bodies of a simulated world stand."""
-        return replace(mission, robots=tuple(standing(robot, self.bodies) for robot in mission.robots))
-
-    def resume(self, executor: Executor) -> None:
-        """Let an executor plan the rest again from where robots stand."""
-        executor.plan_again("resumed", {"how": "from where robots stand", "again": list(self.again)})
+        """Return a mission with all robots that have joined, each of which starts where its body stands."""
+        robots = tuple(standing(known.robot, self.bodies) for known in self.state.robots.values())
+        left = tuple(event for event in mission.events if event.at_s > self.bodies["time_s"] + 1e-9)
+        return replace(mission, robots=robots, events=left)

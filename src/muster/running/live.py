@@ -13,7 +13,6 @@ import numpy as np
 
 from muster.bridges.fleet import Fleet, has_simulated_time, is_paused, reason_of
 from muster.execution import (
-    CompletedWork,
     Executor,
     Recorder,
     Standing,
@@ -37,6 +36,8 @@ from muster.running.fleet_in_traffic import FleetInTraffic
 from muster.running.replanning import planning_of
 from muster.running.traffic_choice import manager_for
 from muster.running.wall_time import MissionStart, has_time_limits, require_time_left
+from muster.state import MissionState
+from muster.state.run_events import MissionBegins
 from muster.traffic.names import DEFAULT
 from muster.verification.required import require_geometry, require_open_ways
 
@@ -150,8 +151,8 @@ class Live:
         who says which robot passes first; see `Simulation`.
     recorder
         receives all events, and the positions that robots report.
-    past, zero_s
-        what was done before, of a mission that goes on; and when its clock was 0, seconds since 1970.
+    state
+        what is known of a mission that goes on after a stop.
     starts
         "given": the mission starts at its `starts_at`; "now": it starts now, with all its times shifted.
     wall
@@ -176,19 +177,19 @@ class Live:
         standing: Standing | None = None,
         traffic: str = DEFAULT,
         recorder: Recorder | None = None,
-        past: CompletedWork | None = None,
-        zero_s: float | None = None,
+        state: MissionState | None = None,
         starts: str = "given",
         wall: Clock | None = None,
     ) -> None:
         clock = clock_of(fleet, wall)
+        zero_s = None if state is None else state.zero_s
         self.start = start_of(mission, fleet, starts, wall) if zero_s is None else MissionStart.at(mission, zero_s)
         mission, begin_s = self.start.mission, self.start.seconds(clock)
-        if past is None:
+        if state is None:
             require_time_left(mission, begin_s)
             require_open_ways(mission, plan)  # later each robot stands anywhere, and a leg is checked when it is sent
         else:
-            begin_s = max(begin_s, past.happened_until_s(begin_s))
+            begin_s = max(begin_s, state.now_s)
         require_geometry(mission, "a run of real robots")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
@@ -206,14 +207,14 @@ class Live:
             replan=replan,
             observer=recorder,
             now=self._fleet.time_s,
-            past=past,
+            state=state,
             standing=self._standing,
             on_doors=lambda closed: None if manager is None else manager.close(closed),
             leader=manager,
         )
         if manager is not None:
             manager.expect(self.executor.outlook)
-        if past is None:
+        if state is None:
             self._say_start(mission, begin_s)
 
     @property
@@ -246,7 +247,7 @@ class Live:
             self._stood = False
             self.executor.pass_over(self.time_s)
         self.executor.tick(self.time_s)
-        self.executor.orders.clock_lag.add(self.time_s - self.executor.now_s)
+        self.executor.clock_lag.add(self.time_s - self.executor.now_s)
         self.tell_places()
 
     def hear(self, until_s: float) -> None:
@@ -278,11 +279,16 @@ class Live:
 
     def _say_start(self, mission: Mission, begin_s: float) -> None:
         """Emit when the mission starts; begun late, what is left in time is planned again."""
-        data = {"zero_s": round(self.start.zero_s, 6), "starts_at": mission.starts_at, "after_s": round(begin_s, 6)}
+        begins = MissionBegins(
+            zero_s=round(self.start.zero_s, 6),
+            starts_at=mission.starts_at,
+            after_s=round(begin_s, 6),
+            places={robot.id: (*robot.position, robot.heading_deg) for robot in mission.robots},
+        )
         if begin_s > LATE_S and has_time_limits(mission):
-            self.executor.plan_again("mission_begins", data)
+            self.executor.plan_again(begins)
         else:
-            self.executor.emit("mission_begins", data)
+            self.executor.emit(begins)
 
     def result(self) -> Report:
         """What it took, so far or in all."""

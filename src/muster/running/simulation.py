@@ -37,6 +37,7 @@ from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_
 from muster.running.traffic_choice import manager_for
 from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
 from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
+from muster.state import MissionState, OtherEvent
 from muster.traffic.names import DEFAULT
 from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
@@ -44,10 +45,10 @@ from muster.verification.required import require_geometry, require_open_ways
 if TYPE_CHECKING:
     from typing import Unpack
 
-    from muster.execution.record import ExecutionEvent
     from muster.execution.report import Report
     from muster.execution.standing import EventLog
     from muster.running.simulation_options import RecordedWorldOptions
+    from muster.state import ExecutionEvent
 
 OnWorld = Callable[[SimulatedWorld], None]
 LOOK_S = 0.5
@@ -135,10 +136,9 @@ class Simulation:
         on_world: OnWorld | None = None,
         begun: Begun | None = None,
     ) -> None:
-        if begun is None:
+        if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
             require_open_ways(mission, plan)
-        else:  # each robot stands anywhere, and a leg is checked when it is sent
-            mission = begun.standing(mission)
+        there = mission if begun is None else begun.standing(mission)
         require_geometry(mission, "a simulated run")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         travel = travel_of(mission, robot_paths)
@@ -153,7 +153,7 @@ class Simulation:
         )
         self._world = recorded_world(
             world,
-            mission,
+            there,
             recorder,
             law=law,
             wind=wind,
@@ -164,13 +164,13 @@ class Simulation:
             dt_s=dt_s,
             avoidance=avoidance,
             noise=noise,
-            snapshot=None if begun is None else begun.bodies,
+            snapshot=None if begun is None else begun.snapshot,
         )
         if on_world is not None:
             on_world(self._world)
-        robots = with_state_estimation(self._world, mission, pose=pose, localise=localise, seed=seed)
+        robots = with_state_estimation(self._world, there, pose=pose, localise=localise, seed=seed)
         self._estimated = robots if isinstance(robots, EstimatedWorld) else None
-        self._traffic = None if manager is None else RobotsInTraffic(robots, self._world, manager, mission)
+        self._traffic = None if manager is None else RobotsInTraffic(robots, self._world, manager, there)
         self._robots: RobotsInWorld = robots if self._traffic is None else self._traffic
         replan, self._standing = planning_of(mission, standing, planning, travel, seed)
         self._executor = Executor(
@@ -182,7 +182,8 @@ class Simulation:
             replan=replan,
             observer=recorder,
             now=self.time_s,
-            past=None if begun is None else begun.past,
+            state=None if begun is None else begun.state,
+            used={} if begun is None else begun.bodies["used"],
             standing=self._standing,
             on_doors=self._close,
             leader=manager,
@@ -190,14 +191,12 @@ class Simulation:
         if manager is not None:
             manager.expect(self._executor.outlook)
         self._camera_search = camera_search_for(
-            mission, self._world, self._robots.ports, noise=noise, seed=seed, on_look=on_look
+            there, self._world, self._robots.ports, noise=noise, seed=seed, on_look=on_look
         )
         self._recorder = recorder
-        self._ahead = sorted(mission.events, key=lambda event: event.at_s)
-        if begun is not None:
-            begun.resume(self._executor)
-            if self._camera_search is not None:
-                self._camera_search.resume(begun.bodies["found"])
+        self._ahead = sorted(there.events, key=lambda event: event.at_s)
+        if begun is not None and self._camera_search is not None:
+            self._camera_search.resume(begun.bodies["found"])
         self._tick()
 
     @property
@@ -206,9 +205,9 @@ class Simulation:
         return self._world
 
     @property
-    def executor(self) -> Executor:
-        """What carries the plan out; to look at."""
-        return self._executor
+    def state(self) -> MissionState:
+        """What is known of the mission; to look at."""
+        return self._executor.state
 
     @property
     def robots(self) -> RobotsInWorld:
@@ -279,7 +278,7 @@ class Simulation:
 
     def note_lag(self, seconds: float) -> None:
         """Note, for the report, by how much the mission's clock is behind the wall clock that it goes by."""
-        self._executor.orders.clock_lag.add(seconds)
+        self._executor.clock_lag.add(seconds)
 
     def replan(self) -> None:
         """Plan the rest again at once if events that were reported ask for that, and send robots on."""
@@ -340,7 +339,7 @@ class Simulation:
             return
         for found, event in self._camera_search.look(self.time_s):
             self._executor.set_clock(self.time_s)
-            self._executor.emit("found", found)
+            self._executor.emit(OtherEvent(kind="found", content=found))
             if event is None or not (event.new_task or self._is_open(event)):
                 continue
             if not self._executor.report_if_it_fits(event) and event.new_task is not None:

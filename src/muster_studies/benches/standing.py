@@ -16,12 +16,12 @@ from dataclasses import dataclass, replace
 from random import Random
 
 from muster.execution import Standing
-from muster.execution.orders import OrdersReport
 from muster.execution.report import Report
 from muster.mission.model import Event, Mission, Robot, Rules, Station, Task
 from muster.mission.stations import Battery
 from muster.planning.solve import solve
 from muster.running.simulation import LOOK_S, Simulation
+from muster.state.orders import OrdersReport
 from muster_studies.benches.measurement import Measurement
 
 ROBOTS, SIZE_M, SPEED_MPS, WORK_S = 20, (60.0, 40.0), 1.0, 10.0

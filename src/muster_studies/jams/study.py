@@ -10,10 +10,10 @@ import statistics
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from muster.execution.record import ExecutionEvent
 from muster.mission.model import Mission
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
+from muster.state import ExecutionEvent
 from muster_studies.effort import Effort
 from muster_studies.jams.scenes import KINEMATICS, SCENES
 from muster_studies.jams.space_time import space_time_s

@@ -8,8 +8,8 @@ from muster.allocation.registry import ALLOCATORS
 from muster.execution.executor import Executor
 from muster.execution.reallocation import Reallocation
 from muster.execution.report import report_of
-from muster.execution.teams import units_of
 from muster.execution.travel import travel_of
+from muster.mission.task_relations import units_of
 from tests import trials
 from tests.disturbances.stability import Stability
 from tests.disturbances.timed.missions import mission_of, with_members_failing

@@ -87,9 +87,9 @@ def test_tasks_take_the_color_of_who_has_done_them(footage):
         x, y = np.round(scene.view.pixels(np.array([(4.0, 2.5, 0.0)]))[0]).astype(int)
         before = scene.picture(0.0)[y, x].astype(float)
         assert before.min() > 225
-        assert scene.moments.mission_state.states["far"] == "open"
+        assert scene.moments.mission_state.stage("far") == "open"
         after = scene.picture(scene.moments.end_s)
-        assert scene.moments.mission_state.states["far"] == "done"
+        assert scene.moments.mission_state.stage("far") == "done"
         foot = np.round(scene.view.pixels(np.array([(3.0, 0.0, 0.0)]))[0]).astype(int)
         near = after[foot[1] - 12 : foot[1] + 12, foot[0] - 12 : foot[0] + 12].reshape(-1, 3).astype(float)
         assert max(hue(color) @ hue(color_of(0)) for color in near) > 0.99

@@ -19,7 +19,8 @@ from muster.report.page import data as data_of_page
 from muster.report.page import page_text, write_page
 from muster.report.page.data import page_data
 from muster.report.page.distances import nearest
-from muster.report.record import ExecutionEvent, Recording, Tracks
+from muster.report.record import Recording, Tracks
+from muster.state import event_of
 
 pytest.importorskip("mcap")
 
@@ -88,12 +89,12 @@ def test_ten_minutes_of_six_robots_are_less_than_two_megabytes():
         robots=[Robot(id=f"r_{k}", position=(0, 0)) for k in range(6)], tasks=[Task(id="t", position=(0, 0))]
     )
     steps = np.random.default_rng(1).normal(0, 0.1, (6001, 6, 3))
-    events = tuple(ExecutionEvent(k * 0.5, "starts", {"robot": "r_0", "task": "t"}) for k in range(1200))
+    events = tuple(event_of(k * 0.5, "starts", {"robot": "r_0", "task": "t"}) for k in range(1200))
     assert len(page_text(recording(mission, steps.cumsum(axis=0), events=events)).encode()) < 2e6
 
 
 def test_no_id_ends_the_data(pair):
-    events = (ExecutionEvent(0.0, "lost", {"task": "</script><script>alert(1)//", "reason": "@@STYLE@@"}),)
+    events = (event_of(0.0, "lost", {"task": "</script><script>alert(1)//", "reason": "@@STYLE@@"}),)
     text = page_text(recording(pair, np.zeros((1, 2, 3)), events=events))
     assert text.count("</script>") == 2
     (data,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', text, flags=re.DOTALL)
@@ -130,7 +131,7 @@ def test_tasks_that_come_move_and_are_lost(recorded):
 
 
 def test_what_was_cancelled_is_not_lost(pair):
-    events = (ExecutionEvent(9.0, "lost", {"task": "t", "reason": "cancelled at 4 s"}),)
+    events = (event_of(9.0, "lost", {"task": "t", "reason": "cancelled at 4 s"}),)
     data = page_data(recording(pair, np.zeros((1, 2, 3)), events=events))
     assert data["events"] == [[9000, "not done: task t, cancelled at 4 s", False]]
     assert data["figures"][1:] == [["tasks done", "0"], ["tasks lost", "0"], ["tasks cancelled", "1"]]
@@ -158,7 +159,7 @@ def test_the_runs_of_an_image_are_its_cells(cells, columns):
 
 def test_spans():
     def event(time, kind, **data):
-        return ExecutionEvent(time, kind, data)
+        return event_of(time, kind, data)
 
     a, b = {"robot": "a", "task": "t"}, {"robot": "b", "task": "u"}
     events = [
@@ -186,11 +187,11 @@ def test_spans():
 
 def test_a_way_to_a_task_that_another_has_now_ends_there_but_work_goes_on():
     events = [
-        ExecutionEvent(0, "sets_out", {"robot": "a", "task": "t"}),
-        ExecutionEvent(0, "sets_out", {"robot": "b", "task": "u"}),
-        ExecutionEvent(0, "starts", {"robot": "c", "task": "v"}),
-        ExecutionEvent(1, "sets_out", {"robot": "d", "task": "x"}),
-        ExecutionEvent(3, "replanned", {"moved": {"t": ["a", "b"], "v": ["c", "b"]}, "dropped": {"x": "no robot"}}),
+        event_of(0, "sets_out", {"robot": "a", "task": "t"}),
+        event_of(0, "sets_out", {"robot": "b", "task": "u"}),
+        event_of(0, "starts", {"robot": "c", "task": "v"}),
+        event_of(1, "sets_out", {"robot": "d", "task": "x"}),
+        event_of(3, "replanned", {"moved": {"t": ["a", "b"], "v": ["c", "b"]}, "dropped": {"x": "no robot"}}),
     ]
     assert spans(events, 10) == [
         Span("a", "t", "travel", 0, 3),

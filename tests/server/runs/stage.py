@@ -1,6 +1,5 @@
 """A run without processes: what users ask for comes at moments of the mission's clock, what is told is collected."""
 
-import json
 from collections import Counter
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
@@ -9,7 +8,7 @@ from itertools import pairwise
 from muster.mission.clock import VirtualClock
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import RunLoop
-from muster.server.runs.runner import _history, _simulated_run
+from muster.server.runs.runner import _known, _simulated_run
 from muster.server.runs.tracks import unpacked
 
 
@@ -89,20 +88,20 @@ def performed(
     begin = {
         "world": world,
         "settings": settings or {},
-        "plan": json.loads(json.dumps(plan.as_dict())),
         "seq": len(before.log),
         "checkpoint": before.checkpoint and before.checkpoint["data"],
         "log": before.log[before.checkpoint["seq"] if before.checkpoint else 0 :],
         "bodies": before.bodies,
         "until_s": max((one["time_s"] for one in (*before.log, *before.others) if "time_s" in one), default=0.0),
     }
-    history, checkpoint = _history(begin, mission)
+    state = _known(begin, mission, plan)
     tracked_s = before.tracks[-1][1] if before.tracks else 0.0
-    recorder = LogRecorder(mission, kept, history, seq=begin["seq"], tracked_s=tracked_s)
-    with suppress(Killed), closing(_simulated_run(begin, mission, recorder, None)) as world_run:
+    recorder = LogRecorder(mission, kept, state, seq=begin["seq"], tracked_s=tracked_s)
+    goes_on = state if begin["seq"] else None
+    with suppress(Killed), closing(_simulated_run(begin, mission, plan, recorder, goes_on, None)) as world_run:
         script = Script(world_run, asked)
         how = {"speed": None, "starts_at": mission.starts_at, "ended": ended, "clock": VirtualClock(step_s=1.0)}
-        how |= {"paused": paused, "cancelled": cancelled, "checkpoint": checkpoint}
+        how |= {"paused": paused, "cancelled": cancelled, "checkpoint": len(before.log) - len(begin["log"])}
         RunLoop(world_run, recorder, script, kept, **how).run()
     return kept
 

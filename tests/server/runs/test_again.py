@@ -14,9 +14,9 @@ import muster
 from muster.execution import Status
 from muster.mission.model import Mission, Robot, Task
 from muster.server.runs import checkpoints
-from muster.server.runs.crash_recovery import History
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import RunLoop
+from muster.state import MissionState
 
 MOMENTS = st.floats(0, 60).map(lambda value: round(value, 2))
 
@@ -136,6 +136,7 @@ class Drives:
 
     real, done, time_s, next_s = True, False, 5.0, 5.0
     status = Status(robots={}, tasks={})
+    state = robots = None
 
     def __init__(self):
         self.told = []
@@ -156,7 +157,7 @@ class Drives:
 def test_a_cancel_before_a_crash_holds_for_real_robots_also_where_the_log_has_no_report():
     mission = muster.load("6T-2R")
     kept, world_run = Kept(), Drives()
-    recorder = LogRecorder(mission, kept, History(mission, muster.solve(mission, "greedy")), seq=2)
+    recorder = LogRecorder(mission, kept, MissionState(mission), seq=2)
     how = {"speed": 1.0, "starts_at": None, "ended": lambda: False, "paused": True, "cancelled": True}
     RunLoop(world_run, recorder, None, kept, **how).run()
     assert world_run.told == ["not done when the run was cancelled"]

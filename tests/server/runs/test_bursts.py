@@ -9,10 +9,10 @@ from tests.server.runs.stage import Kept, performed, performed_with_crashes, req
 import muster
 from muster.mission.clock import VirtualClock
 from muster.mission.model import Mission, Robot, Task
-from muster.server.runs.crash_recovery import History
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import STEPS_FIRST_S, RunLoop
 from muster.server.runs.simulated_run import QUANTUM_S, SimulatedRun
+from muster.state import MissionState
 
 ROBOTS = tuple(Robot(id=f"r_{k}", position=(k % 5, k // 5), speed_mps=2.0) for k in range(20))
 MISSION = Mission(robots=ROBOTS, tasks=tuple(Task(id=f"t_{k}", position=(3 * k, 40)) for k in range(20)))
@@ -72,7 +72,7 @@ class Stream:
 @pytest.mark.long
 def test_while_orders_come_without_end_the_clock_goes_on():
     kept, clock = Kept(), VirtualClock(step_s=STEPS_FIRST_S / 10)
-    recorder = LogRecorder(MISSION, kept, History(MISSION, PLAN))
+    recorder = LogRecorder(MISSION, kept, MissionState(MISSION))
     with closing(SimulatedRun(MISSION, PLAN, "kinematic", {}, recorder)) as world_run:
         how = {"speed": None, "starts_at": None, "ended": lambda: world_run.time_s > 20, "clock": clock}
         RunLoop(world_run, recorder, Stream(30), kept, **how).run()

@@ -10,9 +10,9 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from muster.execution.record import ExecutionEvent
 from muster.mission.event_descriptions import event_line, tells_cancelled
 from muster.motion.grid import Floats
+from muster.state import ExecutionEvent
 
 Picture = npt.NDArray[np.uint8]
 Rgb = tuple[int, int, int]

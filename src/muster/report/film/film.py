@@ -7,7 +7,6 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from muster.execution.record import ExecutionEvent
 from muster.mission.errors import ParameterError
 from muster.report.film.captions import (
     QUIET_INK,
@@ -23,8 +22,9 @@ from muster.report.film.captions import (
 from muster.report.film.files import film_file
 from muster.report.film.footage import Footage
 from muster.report.film.scenery import FilmScene
-from muster.report.record.mission_state import ALARMING, DONE
 from muster.report.styles import ALARM, LEFT_OUT, robot_style
+from muster.state import ExecutionEvent
+from muster.state.mission_state import DONE
 
 LONGEST_S = 24.0
 """Of a film whose speed is not said."""
@@ -99,7 +99,7 @@ def _pictures(scene: FilmScene, footage: Footage, speed: float, rate_hz: float) 
 def _write_upon(picture: Picture, scene: FilmScene, footage: Footage, now: float, speed: float) -> None:
     moments, width = scene.moments, picture.shape[1]
     wide = write(picture, clock(now), (_EDGE, 40), 28, weight=600)
-    states = list(moments.mission_state.states.values())
+    states = list(moments.mission_state.stages.values())
     facts = f"{states.count(DONE)} of {len(states)} tasks done"
     write(picture, shortened(footage.mission.name, 48), (_EDGE + wide + 16, 28), 17, weight=600)
     write(picture, f"{facts}  ·  {speed:g} x", (_EDGE + wide + 16, 48), 14, color=QUIET_INK)
@@ -115,7 +115,7 @@ def _plain(age_s: float) -> float:
 
 def _color(told: ExecutionEvent, scene: FilmScene) -> Rgb:
     robots = list(scene.moments.mission_state.robots)
-    if told.kind in ALARMING:
+    if told.alarming:
         return rgb(ALARM)
     name = told.data.get("robot")
     return rgb(robot_style(robots.index(name)).color if name in robots else LEFT_OUT)

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from muster.execution.record import ExecutionEvent
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
+from muster.state import ExecutionEvent, event_of
 
 
 class Footage:
@@ -61,7 +61,7 @@ class Footage:
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         """Record an event."""
-        self.events.append(ExecutionEvent(now, kind, data))
+        self.events.append(event_of(now, kind, data))
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
         """Telemetry is not visible in a film."""

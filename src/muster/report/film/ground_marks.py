@@ -11,13 +11,14 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from muster.mission.model import Robot, Station, Task
+from muster.mission.model import Station, Task
 from muster.motion.grid import Floats
 from muster.report.film.interpolation import RunInterpolation
-from muster.report.record.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
 from muster.report.styles import ALARM, LEFT_OUT, SERVICE, SERVICE_EDGE, robot_style
 from muster.simulation.physics.buildings import Rgba
 from muster.simulation.physics.visual_marks import Mark, ball, disc, strip
+from muster.state.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
+from muster.state.robots import KnownRobot
 
 TASK_PX, RING_PX, TRAIL_PX, STATION_PX = 7.0, 7.0, 2.2, 9.0
 """Least sizes in pixels of a film: radii of tasks, rings and stations, width of trails."""
@@ -69,7 +70,7 @@ class GroundMarks:
             yield from self._station(station)
         for name, task in mission_state.tasks.items():
             who = colors.get(self._moments.busy_with.get(name, ""), LEFT_OUT)
-            yield from self._task(task, mission_state.states[name], who)
+            yield from self._task(task, mission_state.stage(name), who)
         yield from self._rings(mission_state.robots, colors, poses)
         for k in range(len(poses)):
             yield from self._trail(k, now, poses[k])
@@ -125,8 +126,9 @@ class GroundMarks:
         yield disc(top, radius * 1.15, rim)
         yield ball(top, radius * 0.8, core)
 
-    def _rings(self, robots: Mapping[str, Robot], colors: Mapping[str, str], poses: Floats) -> Iterator[Mark]:
-        for (name, robot), pose in zip(robots.items(), poses, strict=False):
+    def _rings(self, robots: Mapping[str, KnownRobot], colors: Mapping[str, str], poses: Floats) -> Iterator[Mark]:
+        for (name, known), pose in zip(robots.items(), poses, strict=False):
+            robot = known.robot
             if not np.isfinite(pose).all():
                 continue
             color = ALARM if name in self._moments.out else colors[name]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from muster.execution.record import ExecutionEvent
 from muster.motion.grid import Floats
 from muster.report.film.footage import Footage
-from muster.report.record.mission_state import OUT, MissionState
+from muster.state import ExecutionEvent, MissionState
+from muster.state.robots import OUT
 
 
 class RunInterpolation:
@@ -21,7 +21,7 @@ class RunInterpolation:
 
     def __init__(self, footage: Footage) -> None:
         self.times_s, self.poses = footage.times_s, footage.poses
-        self.mission_state = MissionState(footage.mission)
+        self.mission_state = MissionState(footage.mission, forgets=False)
         self.busy_with: dict[str, str] = {}
         """Tasks that are under way or done, and who does or did them."""
         self.out: set[str] = set()
@@ -57,7 +57,7 @@ class RunInterpolation:
 
     def _take(self, told: ExecutionEvent) -> None:
         task, robot = told.data.get("task"), told.data.get("robot")
-        self.mission_state.take(told.kind, told.data)
+        self.mission_state.apply(told)
         if told.kind in ("starts", "ends"):
             self.busy_with[str(task)] = str(robot)
         elif told.kind in OUT:

@@ -105,7 +105,7 @@ def name_all(
     """
     tasks, robots = (
         list(moments.mission_state.tasks.values()),
-        list(moments.mission_state.robots.values())[: len(poses)],
+        [known.robot for known in moments.mission_state.robots.values()][: len(poses)],
     )
     if len(tasks) <= _MOST_NAMED:
         places = np.array([(*task.position, ground_m)[:3] for task in tasks]).reshape(-1, 3)

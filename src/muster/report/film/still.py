@@ -13,8 +13,8 @@ from muster.report.film.footage import Footage
 from muster.report.film.ground_marks import GroundMarks
 from muster.report.film.interpolation import RunInterpolation
 from muster.report.film.scenery import name_all, places_of, tableau_of
-from muster.report.record.mission_state import DONE
 from muster.simulation.physics.rendering import Renderer
+from muster.state.mission_state import DONE
 
 _MOST_WIDE, _MOST_HIGH, _TOP, _EDGE = 1600, 1200, 44, 24
 """Pixels: at most so large, so much kept free above and at the other sides."""
@@ -52,7 +52,7 @@ def write_still(path: str | Path, footage: Footage) -> None:
     with Renderer(tableau, width, height) as renderer:
         picture = renderer.seen_from_above((float(centre[0]), float(centre[1])), height * pixel_m, marks=marks).copy()
     name_all(picture, moments, poses, pixels, pixel_m, tableau.ground_m)
-    states = list(moments.mission_state.states.values())
+    states = list(moments.mission_state.stages.values())
     facts = f"{states.count(DONE)} of {len(states)} tasks done  ·  {clock(moments.end_s)}"
     wide = write(picture, footage.mission.name, (_EDGE, 28), 18, weight=600)
     write(picture, facts, (_EDGE + wide + 14, 28), 15, color=QUIET_INK)

@@ -21,10 +21,12 @@ from muster.report.area_marks import areas_of
 from muster.report.level_lines import recorded_level
 from muster.report.page.distances import nearest
 from muster.report.record import ExecutionEvent, Recording, Tracks
-from muster.report.record.mission_state import ALARMING, OPEN, OUT, MissionState
 from muster.report.recorded_gantt import recorded_rows
 from muster.report.styles import PALETTE
 from muster.report.time_marks import page_marks
+from muster.state import MissionState
+from muster.state.mission_state import OPEN
+from muster.state.robots import OUT
 
 Floats = npt.NDArray[np.float64]
 
@@ -145,24 +147,22 @@ def _unwrapped(headings: Floats) -> Floats:
 
 def _event(event: ExecutionEvent) -> list[Any]:
     """When it was, its line, and whether somebody should look at it."""
-    alarming = event.kind in ALARMING and not tells_cancelled(event.kind, event.data)
+    alarming = event.alarming and not tells_cancelled(event.kind, event.data)
     return [_thousandths(event.time_s), event_line(event.kind, event.data), alarming]
 
 
 def _tasks(recording: Recording) -> list[dict[str, Any]]:
     """For each task its place and its state over time."""
-    mission_state = MissionState(recording.mission)
+    mission_state = MissionState(recording.mission, forgets=False)
     tasks = {name: _task(mission_state, name, 0.0) for name in mission_state.tasks}
     for event in recording.events:
-        name = mission_state.take(event.kind, event.data)
-        if name not in mission_state.tasks or event.kind == "robot_joins":
-            continue
-        if name not in tasks:
-            tasks[name] = _task(mission_state, name, event.time_s)
-            continue
         now = _thousandths(event.time_s)
-        tasks[name]["places"].append([now, *_millimetres(mission_state.tasks[name].position)])
-        tasks[name]["states"].append([now, mission_state.states[name], event.data.get("robot")])
+        for name in mission_state.apply(event):
+            if name not in tasks:
+                tasks[name] = _task(mission_state, name, event.time_s)
+                continue
+            tasks[name]["places"].append([now, *_millimetres(mission_state.tasks[name].position)])
+            tasks[name]["states"].append([now, mission_state.stage(name), event.data.get("robot")])
     return list(tasks.values())
 
 

@@ -13,8 +13,8 @@ from typing import Any
 from muster.mission.model import Point
 from muster.mission.plan import Plan, Reason, Route, Unassigned
 from muster.mission.plan_reader import plan_from
-from muster.report.record.mission_state import MissionState
 from muster.report.record.routes import is_over, names_ahead
+from muster.state import MissionState
 
 Lines = Mapping[str, Sequence[Point]]
 
@@ -43,7 +43,7 @@ class ReadPlan:
             self.plan, self.lines = plan_from(data["plan"], self.source), data.get("lines", {})
             return self.plan
         routes = {route.robot: route for route in self.plan.routes}
-        routes |= {robot: Route(robot, tuple(tasks)) for robot, tasks in data["routes"].items()}
+        routes |= {robot: Route(robot, tuple(tasks)) for robot, tasks in (data["routes"] | data["stops"]).items()}
         left_out = {one.task: one for one in self.plan.unassigned} | {
             task: Unassigned(task, (Reason("", "not-chosen", why or ""),)) for task, why in data["left_out"].items()
         }
@@ -76,9 +76,10 @@ class PlanChanges:
         self._left_out: dict[str, str] = {}
 
     def of(self, plan: Plan, lines: Lines, mission_state: MissionState) -> dict[str, Any]:
-        """Return the data of a plan: `plan` and `lines`, or `routes`, `lines` and `left_out` as far as they change.
+        """Return the data of a plan: `plan` and `lines`, or what changes of `routes`, `stops`, `lines` and `left_out`.
 
-        Tasks that are over are in none of these. A task that was left out and no longer is has None in `left_out`.
+        Tasks that are over are in none of these; stations are in `stops`, of routes that have some. A task that was
+        left out and no longer is has None in `left_out`.
         """
         ahead = {route.robot: names_ahead(route.tasks, mission_state) for route in plan.routes}
         changed = [robot for robot in lines if self._is_new(robot, ahead[robot], lines[robot], mission_state)]
@@ -91,8 +92,14 @@ class PlanChanges:
         if self._whole:
             self._whole = False
             return {"plan": plan.as_dict(), "lines": lines}
-        routes = {robot: ahead[robot] for robot in changed}
-        return {"routes": routes, "lines": {r: lines[r] if routes[r] else [] for r in changed}, "left_out": news | back}
+        stops = {robot: ahead[robot] for robot in changed}
+        routes = {robot: [name for name in names if name in mission_state.tasks] for robot, names in stops.items()}
+        return {
+            "routes": routes,
+            "stops": {robot: names for robot, names in stops.items() if names != routes[robot]},
+            "lines": {robot: lines[robot] if stops[robot] else [] for robot in changed},
+            "left_out": news | back,
+        }
 
     def _is_new(self, robot: str, ahead: Sequence[str], line: Sequence[Point], mission_state: MissionState) -> bool:
         """Whether a robot has another way ahead than what is left of the one before."""

@@ -18,8 +18,8 @@ from muster.mission.event_descriptions import event_line
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
 from muster.report.record import json_messages, scene
-from muster.report.record.mission_state import ALARMING, KEPT_OVER, MissionState
 from muster.report.record.routes import RouteLines
+from muster.state import MissionState, event_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -36,7 +36,7 @@ class Publisher(ABC):
     def __init__(self, mission: Mission, rate_hz: float) -> None:
         if not rate_hz > 0:
             raise ParameterError(f"rate_hz: {rate_hz}; expected a number above 0")
-        self._mission_state = MissionState(mission, KEPT_OVER)
+        self._mission_state = MissionState(mission)
         self._routes = RouteLines(mission)
         self._places: dict[str, Point] = {}
         self._period_s, self._next_s = 1.0 / rate_hz, 0.0
@@ -82,13 +82,14 @@ class Publisher(ABC):
         self._add("/muster/state", now, json_messages.state_text(now, present, rows))
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Publish an event; `mission_state` defines the meaning of each kind."""
+        """Publish an event; `muster.state` defines the meaning of each kind."""
+        event = event_of(now, kind, data)
         self._add("/muster/event", now, json_messages.json_bytes({"time_s": now, "kind": kind, "data": data}))
-        level = json_messages.WARNING if kind in ALARMING else json_messages.INFO
+        level = json_messages.WARNING if event.alarming else json_messages.INFO
         self._write("/log", now, json_messages.log(now, level, event_line(kind, data)))
-        changed = self._mission_state.take(kind, data)
-        if changed is not None:
-            self._write("/scene", now, scene.update([self._entity(now, kind, changed)]))
+        entities = scene.changed_entities(now, self._mission_state, event)
+        if entities:
+            self._write("/scene", now, scene.update(entities))
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:  # noqa: B027 - nobody has to hear it
         """Telemetry is not published: the steps contain the robots' states."""
@@ -114,12 +115,6 @@ class Publisher(ABC):
         self._write("/muster/report", now, {"time_s": now, "report": report})
         self._flush()
 
-    def _entity(self, now: float, kind: str, name: str) -> dict[str, Any]:
-        if kind == "robot_joins":
-            robots = self._mission_state.robots
-            return scene.robot_entity(now, robots[name], list(robots).index(name))
-        return scene.task_entity(now, self._mission_state.tasks[name], self._mission_state.states[name])
-
     def _tell_mission(self) -> None:
         """The map, if it is an image, and the scene as it is in the beginning."""
         mission = self._mission_state.mission
@@ -130,7 +125,7 @@ class Publisher(ABC):
             if image is not None:
                 self._write("/map", 0.0, json_messages.grid_message(image))
         robots = [scene.robot_entity(0.0, robot, k) for k, robot in enumerate(mission.robots)]
-        tasks = [scene.task_entity(0.0, task, self._mission_state.states[task.id]) for task in mission.tasks]
+        tasks = [scene.task_entity(0.0, task, self._mission_state.stage(task.id)) for task in mission.tasks]
         stations = [scene.station_entity(station) for station in mission.stations]
         self._write("/scene", 0.0, scene.update([*scene.map_entities(mission.map), *stations, *tasks, *robots]))
         self._flush()

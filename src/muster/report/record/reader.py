@@ -10,17 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from muster.execution.record import ExecutionEvent
 from muster.mission.errors import Finding, InputError
 from muster.mission.from_data import mission_from
 from muster.mission.model import Mission
 from muster.mission.yaml_reader import parse_data
 from muster.report.record.json_messages import grid_from
-from muster.report.record.mission_state import MissionState
 from muster.report.record.plan_changes import ReadPlan
 from muster.report.record.recording import Floats, PlanVersion, Recording, Tracks
 from muster.report.record.schemas import MISSION_FILE
 from muster.report.record.writer import require_mcap
+from muster.state import MissionState, event_of
 
 _STATE = ("x", "y", "z", "heading_rad", "vx", "vy", "vz")
 _EXPECTED = "a record that muster has written (MCAP)"
@@ -109,8 +108,8 @@ def whole_records(stream: Any, ended: list[bool]) -> Iterator[Any]:
 
 def _recording(file: Path, text: str, messages: Messages, tracks: _TrackRows, complete: bool) -> Recording:
     mission = _mission(file, text)
-    events = tuple(ExecutionEvent(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
-    mission_state = MissionState.after(mission, ((event.kind, event.data) for event in events))
+    events = tuple(event_of(m["time_s"], m["kind"], m["data"]) for m in messages.get("/muster/event", []))
+    mission_state = MissionState.after(mission, events)
     read = ReadPlan(str(file))
     plans = [PlanVersion(m["time_s"], read.take(m), read.lines) for m in messages.get("/muster/plan", [])]
     maps, reports = messages.get("/map", []), messages.get("/muster/report", [])

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.execution.record import ExecutionEvent
 from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
-from muster.report.record.mission_state import MissionState
+from muster.state import ExecutionEvent, MissionState
 
 Floats = npt.NDArray[np.float64]
 
@@ -96,12 +95,12 @@ class Recording:
     @cached_property
     def outcome(self) -> MissionState:
         """The robots and tasks after the last event, with their states; not to be changed."""
-        return MissionState.after(self.mission, ((event.kind, event.data) for event in self.events))
+        return MissionState.after(self.mission, self.events)
 
     @cached_property
     def robots(self) -> tuple[Robot, ...]:
         """Those of the mission, then those that joined."""
-        return tuple(self.outcome.robots.values())
+        return tuple(known.robot for known in self.outcome.robots.values())
 
     @cached_property
     def tasks(self) -> tuple[Task, ...]:

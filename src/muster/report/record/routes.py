@@ -8,8 +8,8 @@ from itertools import pairwise
 
 from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.plan import Plan
-from muster.report.record.mission_state import CANCELLED, DONE, LOST, UNDER_WAY, MissionState
 from muster.report.route_lines import PathFunction, has_area, path_function, work_points
+from muster.state.mission_state import CANCELLED, DONE, LOST, UNDER_WAY, MissionState
 
 _OVER = (DONE, LOST, CANCELLED)
 _MOST_LEGS = 10_000  # that are kept: a standing fleet has new ones for ever
@@ -40,7 +40,7 @@ class RouteLines:
     def _line(
         self, name: str, tasks: tuple[str, ...], mission_state: MissionState, places: Mapping[str, Point]
     ) -> list[Point]:
-        robot = mission_state.robots[name]
+        robot = mission_state.robots[name].robot
         line = [self._flat(places.get(name, robot.position))]
         left = [[self._flat(one) for one in stop] for stop in _left(tasks, mission_state, robot, line[0])]
         for first, *others in left:
@@ -56,7 +56,8 @@ class RouteLines:
         if leg not in self._found:
             if len(self._found) >= _MOST_LEGS:
                 self._found.clear()
-            self._found[leg] = tuple(tuple(point) for point in self._path(mission_state.robots[name], start, goal))[1:]
+            robot = mission_state.robots[name].robot
+            self._found[leg] = tuple(tuple(point) for point in self._path(robot, start, goal))[1:]
         return self._found[leg]
 
     def _flat(self, place: Point) -> Point:
@@ -90,7 +91,7 @@ def _passed(task: Task) -> Sequence[Point]:
 def _lanes_left(mission_state: MissionState, task: Task, robot: Robot, here: Point) -> Sequence[Point]:
     """The lanes over an area; of an area on which the robot works those that follow the nearest place."""
     points = work_points(task, robot)
-    if mission_state.states[task.id] != UNDER_WAY or len(points) < 2:
+    if mission_state.stage(task.id) != UNDER_WAY or len(points) < 2:
         return points
     gaps = [_gap(here, *(point[: len(here)] for point in lane)) for lane in pairwise(points)]
     return points[1 + gaps.index(min(gaps)) :]
@@ -107,4 +108,4 @@ def _gap(place: Point, start: Point, end: Point) -> float:
 
 def is_over(task: str, mission_state: MissionState) -> bool:
     """Return whether a task is done, lost or cancelled."""
-    return mission_state.states.get(task, DONE) in _OVER
+    return task not in mission_state.tasks or mission_state.stage(task) in _OVER

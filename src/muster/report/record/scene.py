@@ -8,8 +8,9 @@ from typing import Any
 from muster.mission.model import Map, Point, Robot, Station, Task, Zone
 from muster.mission.stations import station_sign
 from muster.report.record.json_messages import MAP_FRAME, body_frame, pose, stamp
-from muster.report.record.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
 from muster.report.styles import ALARM, FRAME, LEFT_OUT, SERVICE_EDGE, robot_style
+from muster.state import ExecutionEvent
+from muster.state.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY, MissionState
 
 _LEAST_RADIUS_M = 0.1  # so that a robot without a radius is seen
 _TASK_RADIUS_M = 0.12
@@ -131,3 +132,12 @@ def _in_space(point: Point) -> Point:
 def _color(hexadecimal: str) -> dict[str, float]:
     red, green, blue = (int(hexadecimal[k : k + 2], 16) / 255 for k in (1, 3, 5))
     return {"r": red, "g": green, "b": blue, "a": 1.0}
+
+
+def changed_entities(now: float, mission_state: MissionState, event: ExecutionEvent) -> list[dict[str, Any]]:
+    """Apply an event; return the entities of the tasks that it has brought on or moved, and of robots that join."""
+    before = len(mission_state.robots)
+    changed = mission_state.apply(event)
+    tasks = [task_entity(now, mission_state.tasks[name], mission_state.stage(name)) for name in changed]
+    robots = list(mission_state.robots.values())
+    return [*tasks, *(robot_entity(now, robots[k].robot, k) for k in range(before, len(robots)))]

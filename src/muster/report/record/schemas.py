@@ -138,7 +138,7 @@ SCHEMAS: dict[str, Schema] = {
             "muster.Plan",
             time_s=_NUMBER,
             lines=_LINES,
-            maybe={"plan": {"type": "object"}, "routes": {"type": "object"}, "left_out": {"type": "object"}},
+            maybe={key: {"type": "object"} for key in ("plan", "routes", "stops", "left_out")},
         ),
         _record(
             "muster.Bid", time_s=_NUMBER, round=_COUNT, task=_TEXT, robot=_TEXT, price=_NUMBER, bids={"type": "object"}

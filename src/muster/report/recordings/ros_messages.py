@@ -40,8 +40,8 @@ from muster.motion.frames import enu_to_flu, wrapped
 from muster.report.record import Recording
 from muster.report.record import scene as scenes
 from muster.report.record.json_messages import MAP_FRAME, body_frame, json_bytes
-from muster.report.record.mission_state import MissionState
 from muster.report.recordings.markers import Markers
+from muster.state import MissionState
 
 
 @dataclass(frozen=True)
@@ -120,22 +120,15 @@ def _in_space(point: Sequence[float]) -> Sequence[float]:
 
 def _events(recording: Recording, begins_s: float) -> Iterator[TimedMessage]:
     """Each event as JSON, and the markers that it changes; first those of the beginning."""
-    mission, mission_state = recording.mission, MissionState(recording.mission)
+    mission, mission_state = recording.mission, MissionState(recording.mission, forgets=False)
     markers = Markers(ros_names(recording.tracks.robots))
-    tasks = [scenes.task_entity(0.0, task, mission_state.states[task.id]) for task in mission.tasks]
+    tasks = [scenes.task_entity(0.0, task, mission_state.stage(task.id)) for task in mission.tasks]
     robots = [scenes.robot_entity(0.0, robot, k) for k, robot in enumerate(mission.robots)]
     first = markers.of([*scenes.map_entities(mission.map), *tasks, *robots], begins_s)
     yield TimedMessage("/markers", 0.0, MarkerArray(first))
     for event in recording.events:
         text = json.dumps({"time_s": event.time_s, "kind": event.kind, "data": json.loads(json_bytes(event.data))})
         yield TimedMessage("/muster/event", event.time_s, String(text))
-        changed = mission_state.take(event.kind, event.data)
-        if changed is not None:
-            entity = _entity(mission_state, event.kind, changed)
-            yield TimedMessage("/markers", event.time_s, MarkerArray(markers.of([entity], begins_s + event.time_s)))
-
-
-def _entity(mission_state: MissionState, kind: str, name: str) -> dict[str, Any]:
-    if kind == "robot_joins":
-        return scenes.robot_entity(0.0, mission_state.robots[name], list(mission_state.robots).index(name))
-    return scenes.task_entity(0.0, mission_state.tasks[name], mission_state.states[name])
+        entities = scenes.changed_entities(0.0, mission_state, event)
+        if entities:
+            yield TimedMessage("/markers", event.time_s, MarkerArray(markers.of(entities, begins_s + event.time_s)))

@@ -66,8 +66,6 @@ class WorkReport:
         (seconds, kind, data) of each, as an executor reports them.
     used
         the usage so far, in the mission's unit.
-    usages
-        planned and flown usage of tasks that it has done since its last report.
     idle
         whether it has neither a task nor a path left.
     settled
@@ -78,7 +76,6 @@ class WorkReport:
 
     events: Sequence[tuple[float, str, Mapping[str, Any]]]
     used: float
-    usages: Mapping[str, tuple[float, float]]
     idle: bool
     settled: bool
     heard: int

@@ -20,6 +20,7 @@ from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, Ra
 from muster.running.negotiated.team_log import TeamLog
 from muster.running.state_estimation import RobotsInWorld
 from muster.simulation import SimulatedWorld
+from muster.state import OtherEvent
 
 _STEP_S = 0.05
 """The real time between two steps, seconds."""
@@ -62,8 +63,6 @@ class RobotBodies:
             self._work_reports[robot], self._log.used[robot] = report, report.used
             for at_s, kind, data in report.events:
                 self._log.take(robot, at_s, kind, data, report.used)
-            for task, usage in report.usages.items():
-                self._log.note_usage(robot, task, usage)
 
     @property
     def ports(self) -> Mapping[str, RobotPort]:
@@ -124,7 +123,7 @@ class RobotBodies:
             return
         unheard = self._world.ports.keys() - self._connected
         for found, event in self.camera_search.look(self.time_s, unheard):
-            self._log.tell(self.time_s, "found", found)
+            self._log.tell(OtherEvent(time_s=self.time_s, kind="found", content=found))
             if event is not None:
                 self._take_event(event)
 
@@ -155,7 +154,7 @@ class RobotBodies:
     def _take_event(self, event: Event) -> None:
         """Apply an event to bodies, processes and their radio; send an event that concerns tasks to one robot."""
         if not self._is_possible(event):
-            self._log.tell(self.time_s, "without_effect", plain(event))
+            self._log.tell(OtherEvent(time_s=self.time_s, kind="without_effect", content=plain(event)))
             return
         if event.robot_fails is not None:
             self._fail(event.robot_fails)  # first, as its last reports precede the event

@@ -10,11 +10,9 @@ from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_of
 from muster.execution.monitor import exceeds
 from muster.execution.peers import Gathering
-from muster.execution.punctuality import MISSED
 from muster.execution.reallocation import usage_ahead
 from muster.execution.remaining_problem import RemainingMission
 from muster.execution.robot_state import Activity
-from muster.execution.task_ledger import moved
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, MovedTask, Task
 from muster.mission.plan import Plan
@@ -26,6 +24,9 @@ from muster.negotiation.knowledge import deeds, in_order
 from muster.negotiation.messages import Fact
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import content_of, task_of
+from muster.state import OtherEvent
+from muster.state.task_events import MISSED, Ends, TaskRefused
+from muster.state.task_ledger import moved
 
 NOTICE_HEARTBEATS = 3.0
 """The time before a joint begin in which all have to learn of it, in heartbeats."""
@@ -33,6 +34,7 @@ NOTICE_HEARTBEATS = 3.0
 LATENESS = 0.1
 """The share of the time until a task begins by which it may be late; what it must follow soon is held back for that."""
 
+_MISSED = frozenset(event.kind for event in MISSED.values())
 _ITS_OWN = {
     "sets_out",
     "arrives",
@@ -53,11 +55,11 @@ _ITS_OWN = {
     "task_refused",
     "waits",
     "work_broken_off",
-    *MISSED.values(),
+    *_MISSED,
 }
 """Events that nobody else knows of."""
 
-_REFUSALS = {"task_refused", *MISSED.values()}
+_REFUSALS = {"task_refused", *_MISSED}
 """Of these, those that say why a robot does not do a task."""
 
 
@@ -124,10 +126,6 @@ class RobotControl:
         """The usage so far, in the mission's unit."""
         return self._hand.used
 
-    def usage(self, task: str) -> tuple[float, float]:
-        """The planned and flown usage of its part in a task that was done; nothing if it has restarted since."""
-        return self._executor.ledger.usage.get(task) or self._left_with.get(task, (0.0, 0.0))
-
     def tick(self, now: float) -> Sequence[ExecutionEvent]:
         """Advance to a time, after its telemetry; return what the robot did and what happened to its body."""
         self._first = self._executor.events.total
@@ -135,7 +133,7 @@ class RobotControl:
         self._learn()
         wanted = self._wanted
         if not self._hand.out and (wanted != self._hand.route or any(map(self._too_late_for, wanted))):
-            self._executor.plan_again("agreed", {})
+            self._executor.plan_again(OtherEvent(kind="agreed"))
         for event in self._executor.tick(now):
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
@@ -284,11 +282,11 @@ class RobotControl:
 
     def _count_as_done(self, task: str, by: Sequence[Fact]) -> None:
         """A task was done, as these facts say. A robot may have done its part, and hear only now that others have."""
-        team = sorted(fact.robot for fact in by)
+        team = tuple(sorted(fact.robot for fact in by))
         is_new = self._executor.end_elsewhere(task, team)
         if is_new and by[0].kind == "part" and self._negotiator.robot in team:
-            more = {"team": team} if len(team) > 1 else {}
-            self._executor.emit("ends", {"task": task, "robot": team[0], **more})
+            part = self._left_with.get(task, (0.0, 0.0))
+            self._executor.emit(Ends(task=task, robot=team[0], team=team if len(team) > 1 else (), usage=part))
 
     def _owned(self, rest: RemainingMission) -> Revision:
         """The plan of the rest is what the robot owns. It gives back what it cannot do."""
@@ -327,7 +325,7 @@ class RobotControl:
         robot = self._negotiator.robot
         told = (event.data["task"] for event in self._news if event.kind in _REFUSALS)
         if task not in told:
-            self._executor.emit("task_refused", {"task": task, "robot": robot, "reason": reason})
+            self._executor.emit(TaskRefused(task=task, robot=robot, reason=reason))
 
     def _too_late_for(self, task: str) -> str:
         """Why the robot can begin a task no more where one that begins with it is done; empty where none is."""

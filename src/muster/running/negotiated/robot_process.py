@@ -95,13 +95,12 @@ class RobotWorker:
         did = WorkReport(
             events=events,
             used=control.used,
-            usages={str(data["task"]): control.usage(data["task"]) for _, kind, data in events if kind == "ends"},
             idle=control.idle,
             settled=self._node.negotiator.settled,
             heard=self._heard,
         )
         if did != self._reported:
-            self._reported = replace(did, events=[], usages={})
+            self._reported = replace(did, events=[])
             self._context.pipe.send(did)
 
     def _steer(self, steer: SteerCommand) -> None:

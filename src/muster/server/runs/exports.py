@@ -56,7 +56,7 @@ def geojson_file(recording: Recording, _: Log) -> dict[str, str]:
     outcome = recording.outcome
     for name, spot in zip(outcome.tasks, _task_spots(recording, "GeoJSON"), strict=True):
         shape = {"type": "Point", "coordinates": [spot.lon, spot.lat, spot.alt]}
-        features.append(_feature(shape, {"name": name, "kind": "task", "state": outcome.states[name]}))
+        features.append(_feature(shape, {"name": name, "kind": "task", "state": outcome.stage(name)}))
     data = {"type": "FeatureCollection", "name": recording.mission.name, "features": features}
     return {"flown.geojson": json.dumps(data, ensure_ascii=False)}
 
@@ -69,7 +69,7 @@ def gpx_file(recording: Recording, _: Log) -> dict[str, str]:
         point = add(root, "wpt", lat=decimal(spot.lat), lon=decimal(_below_180(spot.lon)))
         add(point, "ele", spot.alt)
         add(point, "name", name)
-        add(point, "desc", recording.outcome.states[name])
+        add(point, "desc", recording.outcome.stage(name))
     for robot, _times, spots in _tracks(recording, "GPX"):
         track = add(root, "trk")
         add(track, "name", robot)

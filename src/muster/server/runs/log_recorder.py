@@ -15,9 +15,9 @@ from muster.mission.plan import Plan
 from muster.report.record.json_messages import json_bytes
 from muster.report.record.plan_changes import PlanChanges
 from muster.report.record.routes import RouteLines
-from muster.server.runs.crash_recovery import History
 from muster.server.runs.log_lines import line_of
 from muster.server.runs.tracks import Floats, Row, Steps, Track, packed
+from muster.state import MissionState
 
 
 class Out(Protocol):
@@ -36,8 +36,8 @@ class LogRecorder:
         the mission of the run.
     out
         receives new entries and stretches.
-    history
-        what has happened; each entry is added to it.
+    state
+        what is known of the mission, to look at; once there is an executor its state takes the place of this one.
     seq
         the last entry of the log.
     tracked_s
@@ -50,31 +50,28 @@ class LogRecorder:
         self,
         mission: Mission,
         out: Out,
-        history: History,
+        state: MissionState,
         *,
         seq: int = 0,
         tracked_s: float = 0.0,
         stretch_s: float = 5.0,
     ) -> None:
-        self._out, self.history, self.seq = out, history, seq
-        self._mission_state = history.state
+        self._out, self.state, self.seq = out, state, seq
+        self.robots: Collection[str] | None = None
+        """Whose positions come with each step, in this order; None: those that the state has."""
         self._routes, self._plan_changes = RouteLines(mission), PlanChanges(whole=seq == 0)
         self._track = Track(stretch_s)
         self.tracked_s = tracked_s if seq else -1.0
         self._held: list[Callable[[], None]] | None = None
-        self._now = history.now_s
+        self._now = max(0.0, state.now_s)
         self.rows: dict[str, Row] = {}
         self.rows_s = 0.0
-
-    def keep_robots(self, robots: Collection[str]) -> None:
-        """Forget all other robots: those that joined before a crash and cannot be reached join again."""
-        known = self._mission_state.robots
-        self._mission_state.robots = {name: known[name] for name in robots}
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """See `Recorder`."""
         states = np.column_stack([positions, headings, velocities])
-        rows = zip(self._mission_state.robots, states.tolist(), strict=True)
+        robots = self.state.robots if self.robots is None else self.robots
+        rows = zip(robots, states.tolist(), strict=True)
         self.rows = {name: row for name, row in rows if all(map(math.isfinite, row))}
         self.rows_s = float(now)
         self._now = max(self._now, self.rows_s)
@@ -91,9 +88,9 @@ class LogRecorder:
     def on_plan(self, now: float, plan: Plan) -> None:
         """See `Recorder`; the entry also has the routes as lines from the robots' positions."""
         places = {name: tuple(row[:3]) for name, row in self.rows.items()}
-        data = self._plan_changes.of(plan, self._routes.of(plan, self._mission_state, places), self._mission_state)
+        data = self._plan_changes.of(plan, self._routes.of(plan, self.state, places), self.state)
         if "plan" in data:
-            data["stations"] = [station.id for station in self._mission_state.mission.stations]
+            data["stations"] = [station.id for station in self.state.mission.stations]
         self.write(now, "plan", data)
 
     def on_report(self, report: Mapping[str, Any]) -> None:
@@ -121,7 +118,6 @@ class LogRecorder:
         self._now = max(self._now, float(now))
         plain = json.loads(json_bytes(data))
         entry = {"time_s": round(self._now, 9), "kind": kind, "data": plain}
-        self.history.take(**entry)
         self._out.entry({"type": "entry", "seq": self.seq, **entry, "line": line_of(kind, plain)})
 
     def _keep(self, steps: Steps | None) -> None:

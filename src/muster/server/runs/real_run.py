@@ -11,9 +11,9 @@ from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.planning.options import PlanningOptions
-from muster.running.begun import Begun
 from muster.running.live import Live, elsewhere, with_reported_starts
-from muster.server.runs.gauged import Gauged
+from muster.state import MissionState
+from muster.state.robot_events import Elsewhere, FinalStates
 from muster.traffic.names import DEFAULT
 
 LOOK_S = 0.1
@@ -25,8 +25,8 @@ class RealRun:
 
     Parameters
     ----------
-    begun, zero_s
-        where the run was interrupted, if it was; and when its clock was 0, seconds since 1970.
+    state
+        what is known of a run that goes on after a crash.
     standing
         of a fleet that stays on duty.
     traffic
@@ -50,16 +50,14 @@ class RealRun:
         planning: PlanningOptions | None = None,
         standing: Standing | None = None,
         traffic: str = DEFAULT,
-        begun: Begun | None = None,
-        zero_s: float | None = None,
+        state: MissionState | None = None,
         starts: str = "given",
         wall: Clock | None = None,
         at_end: Callable[[], None] = lambda: None,
     ) -> None:
         self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
         self._paused = False
-        there = with_reported_starts(mission, fleet)
-        gauged = Gauged(recorder)
+        there = with_reported_starts(mission, fleet) if state is None else mission
         self._live = Live(
             there,
             plan,
@@ -69,18 +67,18 @@ class RealRun:
             standing=standing,
             traffic=traffic,
             ignore=plan.ignored,
-            recorder=gauged,
-            past=None if begun is None else begun.past,
-            zero_s=zero_s,
+            recorder=recorder,
+            state=state,
             starts=starts,
             wall=wall,
         )
-        gauged.executor = self._live.executor
-        if begun is not None:
-            begun.resume(self._live.executor)
-        else:
-            for line in elsewhere(mission, there):
-                self._live.executor.emit("elsewhere", {"what": line})
+        for line in elsewhere(mission, there) if state is None else ():
+            self._live.executor.emit(Elsewhere(what=line))
+
+    @property
+    def state(self) -> MissionState:
+        """See `run_loop.WorldRun`."""
+        return self._live.executor.state
 
     @property
     def starts_at(self) -> str | None:
@@ -139,7 +137,7 @@ class RealRun:
         """Log where each robot is at the end, what it does, and whether it still flies, drives or is armed."""
         states = final_states_of(self._fleet, self._live.start.mission)
         robots = [{"robot": one.robot, "moving": one.moving, "words": str(one)} for one in states]
-        self._live.executor.emit("final_states", {"robots": robots})
+        self._live.executor.emit(FinalStates(robots=tuple(robots)))
 
     def pause(self) -> None:
         self._live.pause()

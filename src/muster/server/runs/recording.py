@@ -18,12 +18,12 @@ from muster.mission.model import Mission
 from muster.report.page.data import MOST_SAMPLES
 from muster.report.page.page import page_text
 from muster.report.record import Recording, RecordWriter, read_record
-from muster.report.record.mission_state import MissionState
 from muster.report.record.plan_changes import ReadPlan
 from muster.server.runs.exports import EXPORTS
 from muster.server.runs.record_files import read_log, read_tracks
 from muster.server.runs.tracks import VALUES, Steps
 from muster.server.work.missions import mission_of
+from muster.state import MissionState, event_of
 
 Logged = Mapping[str, Any]
 """An entry: `time_s`, `kind`, `data`."""
@@ -57,7 +57,7 @@ def _files(found: Mapping[str, bytes]) -> dict[str, Any]:
 
 def write_record(file: Path, mission: Mission, log: Iterable[Logged], stretches: Iterable[Steps]) -> None:
     """Pass a run's log and tracks to a recorder in the order of time, steps before events."""
-    mission_state, steps, plan = MissionState(mission), _steps(stretches), ReadPlan("the log")
+    mission_state, steps, plan = MissionState(mission, forgets=False), _steps(stretches), ReadPlan("the log")
     with RecordWriter(file, mission) as writer:
         step = next(steps, None)
         for entry in log:
@@ -66,7 +66,7 @@ def write_record(file: Path, mission: Mission, log: Iterable[Logged], stretches:
                 step = next(steps, None)
             _tell(writer, entry, plan)
             if entry["kind"] not in _OURS:
-                mission_state.take(entry["kind"], entry["data"])
+                mission_state.apply(event_of(entry["time_s"], entry["kind"], entry["data"]))
         while step is not None:
             _tell_step(writer, list(mission_state.robots), *step)
             step = next(steps, None)
@@ -99,7 +99,7 @@ def flown(recording: Recording) -> dict[str, Any]:
             for row in told.get("tasks", ())
         ],
         "tasks_lost": told.get("tasks_lost", []),
-        "states": dict(recording.outcome.states),
+        "states": recording.outcome.stages,
         "planned": dict(recording.plans[0].lines) if recording.plans else {},
         "tracks": ways,
     }

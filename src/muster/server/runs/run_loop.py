@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Protocol
 
 from muster.execution import Report, RobotStatus, Status
@@ -16,6 +16,7 @@ from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pacing import Pace
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.user_events import event_given
+from muster.state import MissionState, checkpoint_of
 
 STATES_S, STATUS_S = 0.095, 0.5
 """Seconds of the wall clock between two tellings of where robots are, and what they do."""
@@ -30,6 +31,10 @@ class WorldRun(Protocol):
 
     real: bool
 
+    @property
+    def state(self) -> MissionState: ...
+    @property
+    def robots(self) -> Collection[str] | None: ...
     @property
     def starts_at(self) -> str | None: ...
     @property
@@ -87,6 +92,7 @@ class RunLoop:
         clock: Clock | None = None,
     ) -> None:
         self._world_run, self._recorder, self._inbox, self._outbox = world_run, recorder, inbox, outbox
+        recorder.state, recorder.robots = world_run.state, world_run.robots
         self._clock, self._ended, self._starts_at = clock or SystemClock(), ended, starts_at
         self._pace = Pace(self._clock, speed, world_run.time_s)
         self._paused, self._cancelled, self._must_replan = paused, cancelled, False
@@ -178,7 +184,7 @@ class RunLoop:
             bodies = self._world_run.bodies()
             self._outbox.send({"type": "tick", "bodies": None if bodies is None else {**bodies, "seq": seq}})
         if self._schedule.take(seq):
-            data = base64.b64encode(packed_state(self._recorder.history.checkpoint())).decode()
+            data = base64.b64encode(packed_state(checkpoint_of(self._recorder.state))).decode()
             self._outbox.send({"type": "checkpoint", "seq": seq, "data": data})
 
     def _do(self, verb: str, data: Mapping[str, Any]) -> None:

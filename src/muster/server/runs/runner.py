@@ -24,6 +24,7 @@ from typing import Any
 
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
+from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
 from muster.running.begun import Begun
@@ -31,7 +32,7 @@ from muster.running.claim_locks import robots_claimed
 from muster.running.robot_claims import claims_as_far_as_known
 from muster.running.worlds import WORLDS
 from muster.server.runs.checkpoints import unpacked_state
-from muster.server.runs.crash_recovery import History
+from muster.server.runs.crash_recovery import recovered_from
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.run_loop import RunLoop, WorldRun
@@ -39,6 +40,7 @@ from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
+from muster.state import MissionState
 from muster.traffic.names import DEFAULT
 
 _ENDS_WITHIN_S = 30.0
@@ -98,18 +100,20 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
         mission = mission_of(begin["mission"])
         outbox.send({"type": "mission", "mission": _shown(mission)})
         outbox.send({"type": "resuming", "share": 0.4})
-        history, checkpoint = _history(begin, mission)
+        plan = plan_from(begin["plan"], "the plan")
+        state = _known(begin, mission, plan)
         recorder = LogRecorder(
             mission,
             outbox,
-            history,
+            state,
             seq=begin["seq"],
             tracked_s=begin["tracked_s"],
             stretch_s=REAL_STRETCH_S if real else STRETCH_S,
         )
         outbox.send({"type": "resuming", "share": 0.6})
         make = _real_run if real else _simulated_run
-        with closing(make(begin, mission, recorder, ended)) as world_run:
+        goes_on = state if begin["seq"] else None
+        with closing(make(begin, mission, plan, recorder, goes_on, ended)) as world_run:
             if real:
                 outbox.send({"type": "mission", "mission": _shown(replace(mission, starts_at=world_run.starts_at))})
             how = {key: begin[key] for key in ("speed", "paused", "cancelled")}
@@ -121,18 +125,15 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
                 outbox,
                 starts_at=world_run.starts_at,
                 ended=ended.is_set,
-                checkpoint=checkpoint,
+                checkpoint=begin["seq"] - len(begin["log"]),
                 **how,
             ).run()
 
 
-def _history(begin: Mapping[str, Any], mission: Mission) -> tuple[History, int]:
-    """What has happened in the run so far; and the entry of its last checkpoint, 0 for none."""
-    state = None if begin["checkpoint"] is None else unpacked_state(base64.b64decode(begin["checkpoint"]))
-    history = History(mission, plan_from(begin["plan"], "the plan"), state)
-    for entry in begin["log"]:
-        history.take(entry["time_s"], entry["kind"], entry["data"])
-    return history, begin["seq"] - len(begin["log"])
+def _known(begin: Mapping[str, Any], mission: Mission, plan: Plan) -> MissionState:
+    """What is known of the mission so far."""
+    checkpoint = None if begin["checkpoint"] is None else unpacked_state(base64.b64decode(begin["checkpoint"]))
+    return recovered_from(mission, plan, begin["log"], checkpoint)
 
 
 def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
@@ -141,37 +142,41 @@ def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
 
 
 def _simulated_run(
-    begin: Mapping[str, Any], mission: Mission, recorder: LogRecorder, ended: threading.Event
+    begin: Mapping[str, Any],
+    mission: Mission,
+    plan: Plan,
+    recorder: LogRecorder,
+    state: MissionState | None,
+    _: threading.Event,
 ) -> WorldRun:
     from muster.server.runs.simulated_run import SimulatedRun
 
-    history, bodies = recorder.history, begin["bodies"]
-    if not begin["seq"]:
-        return SimulatedRun(mission, history.plan, begin["world"], begin["settings"], recorder)
-    if bodies is None:
-        expected = "expected a world with snapshots, in a run that this version of Muster has begun"
-        raise ParameterError(f"world {begin['world']}: it is not known where bodies were; {expected}")
-    found = history.recovered(history.state.robots)
-    time_s = max(begin["until_s"], history.now_s, bodies["time_s"])
-    past = replace(found.past, used={**found.past.used, **bodies["used"]})
-    begun = Begun(past=past, again=found.again, bodies={**bodies, "time_s": time_s})
-    return SimulatedRun(found.mission, found.plan, begin["world"], begin["settings"], recorder, begun)
+    bodies, begun = begin["bodies"], None
+    if state is not None:
+        if bodies is None:
+            expected = "expected a world with snapshots, in a run that this version of Muster has begun"
+            raise ParameterError(f"world {begin['world']}: it is not known where bodies were; {expected}")
+        begun = Begun(state=state, bodies=bodies, time_s=max(begin["until_s"], state.now_s, bodies["time_s"]))
+    return SimulatedRun(mission, plan, begin["world"], begin["settings"], recorder, begun)
 
 
-def _real_run(begin: Mapping[str, Any], mission: Mission, recorder: LogRecorder, ended: threading.Event) -> WorldRun:
+def _real_run(
+    begin: Mapping[str, Any],
+    mission: Mission,
+    plan: Plan,
+    recorder: LogRecorder,
+    state: MissionState | None,
+    ended: threading.Event,
+) -> WorldRun:
     from muster.running.fleets import fleet_ready
     from muster.server.runs.real_run import RealRun
     from muster.server.runs.run_settings import standing_of
     from muster.server.work.tasks.check_request import checked_options
 
-    history, settings, plan = recorder.history, begin["settings"], recorder.history.plan
-    fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=begin["seq"] > 0)
+    settings = begin["settings"]
+    fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=state is not None)
     try:
-        begun = None
-        if begin["seq"]:
-            found = history.recovered(fleet.ports)
-            mission, plan, begun = found.mission, found.plan, Begun(past=found.past, again=found.again)
-        run = RealRun(
+        return RealRun(
             mission,
             plan,
             fleet,
@@ -180,13 +185,10 @@ def _real_run(begin: Mapping[str, Any], mission: Mission, recorder: LogRecorder,
             planning=checked_options(settings.get("planning", {})),
             standing=standing_of(settings),
             traffic=settings.get("traffic", DEFAULT),
-            begun=begun,
-            zero_s=history.zero_s,
+            state=state,
             starts=settings.get("starts", "given"),
             at_end=at_end,
         )
-        recorder.keep_robots(run.robots)
-        return run
     except BaseException:
         fleet.close()
         raise

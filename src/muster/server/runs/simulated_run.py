@@ -14,10 +14,10 @@ from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.running.begun import Begun
 from muster.running.simulation import Simulation
-from muster.server.runs.gauged import Gauged
 from muster.server.runs.run_settings import standing_of
 from muster.server.work.tasks.check_request import checked_options
 from muster.simulation import Noise
+from muster.state import MissionState
 
 QUANTUM_S = 0.1
 """Seconds of mission time between two moments at which users can have a say."""
@@ -43,11 +43,18 @@ class SimulatedRun:
         how["ignore"] = plan.ignored
         how.pop("accept_partial", None)  # the plan was accepted
         how["planning"] = checked_options(how.get("planning", {}))
-        gauged = Gauged(recorder)
-        self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=gauged, begun=begun, **how)
-        gauged.executor = self._simulation.executor
+        self._simulation = Simulation(mission, plan, world=world, noise=noise, recorder=recorder, begun=begun, **how)
         self._quanta = math.ceil(self.time_s / QUANTUM_S - 1e-9)
         self.starts_at = mission.starts_at
+
+    @property
+    def state(self) -> MissionState:
+        """See `run_loop.WorldRun`."""
+        return self._simulation.state
+
+    @property
+    def robots(self) -> None:
+        """See `run_loop.WorldRun`."""
 
     @property
     def time_s(self) -> float:

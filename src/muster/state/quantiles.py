@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from dataclasses import dataclass, field
 
 _RATIO = 1.02  # of the limits of a bin; a quantile is off by half of that
@@ -18,22 +17,25 @@ class Quantiles:
     ----------
     count, most
         how many values there were, and the greatest.
+    bins
+        how many fell into each bin, by its number.
     """
 
     count: int = 0
     most: float = 0.0
-    _bins: Counter[int] = field(default_factory=Counter)
+    bins: dict[int, int] = field(default_factory=dict)
 
     def add(self, value: float) -> None:
         self.count += 1
         self.most = max(self.most, value)
-        self._bins[_bin(value)] += 1
+        number = _bin(value)
+        self.bins[number] = self.bins.get(number, 0) + 1
 
     def at(self, share: float) -> float:
         """The value that a share of all values, 0 to 1, do not exceed; 0 without values."""
         left = share * self.count
-        for number in sorted(self._bins):
-            left -= self._bins[number]
+        for number in sorted(self.bins):
+            left -= self.bins[number]
             if left <= 1e-9:
                 return min(self.most, _upper(number))
         return self.most

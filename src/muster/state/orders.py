@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from muster.execution.quantiles import Quantiles
+from muster.state.quantiles import Quantiles
 
 KEPT_REFUSED = 20
 """How many refused orders are listed: the last ones."""
@@ -115,32 +114,39 @@ class Orders:
     improved: int = 0
     until_in_route: Quantiles = field(default_factory=Quantiles)
     until_done: Quantiles = field(default_factory=Quantiles)
-    clock_lag: Quantiles = field(default_factory=Quantiles)
-    last_refused: deque[RefusedOrder] = field(default_factory=lambda: deque(maxlen=KEPT_REFUSED))
-    _open: dict[str, float] = field(default_factory=dict)  # by order when it came
-    _waiting: dict[str, float] = field(default_factory=dict)  # those that have been in no route yet
-    _came_s: dict[str, float] = field(default_factory=dict)  # of orders that are about to be taken
+    last_refused: list[RefusedOrder] = field(default_factory=list)
+    open_since: dict[str, float] = field(default_factory=dict)  # by order when it came
+    waiting_since: dict[str, float] = field(default_factory=dict)  # those that have been in no route yet
 
-    def comes(self, task: str, at_s: float) -> None:
-        """An order came at a time that may be before the executor hears of it."""
-        self._came_s[task] = at_s
+    def come(self, task: str, came_s: float) -> None:
+        """A task was ordered."""
+        self.taken += 1
+        self.open_since[task] = self.waiting_since[task] = came_s
+        self.most_open = max(self.most_open, len(self.open_since))
 
-    def take(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Note an event."""
-        if kind == "new_task":
-            self._take_order(data["task"]["id"], now)
-        elif kind == "replanned":
-            for task in data["added"]:
-                self._routed(task, now)
-            self.improved += any(cause["kind"] == IMPROVED for cause in data["causes"])
-        elif kind == "event_refused":
-            self.refused += 1
-            self.last_refused.append(RefusedOrder.of(data["event"], data["reason"], now))
-            self._came_s.clear()
-        elif kind in ("ends", "cancel_task", "lost") and data["task"] in self._open:
-            self._close(data["task"], kind, now)
+    def route(self, task: str, now: float) -> None:
+        """A robot has a task in its route."""
+        if task in self.waiting_since:
+            self.until_in_route.add(now - self.waiting_since.pop(task))
 
-    def report(self, over_s: float, not_taken_from_s: float | None = None) -> OrdersReport | None:
+    def refuse(self, event: Mapping[str, Any], reason: str, now: float) -> None:
+        """An order does not fit."""
+        self.refused += 1
+        self.last_refused = [*self.last_refused, RefusedOrder.of(event, reason, now)][-KEPT_REFUSED:]
+
+    def close(self, task: str, how: str, now: float) -> None:
+        """A task is over: done, cancelled or lost."""
+        if task not in self.open_since:
+            return
+        came_s = self.open_since.pop(task)
+        self.waiting_since.pop(task, None)
+        setattr(self, how, getattr(self, how) + 1)
+        if how == "done":
+            self.until_done.add(now - came_s)
+
+    def report(
+        self, over_s: float, not_taken_from_s: float | None = None, clock_lag: Quantiles | None = None
+    ) -> OrdersReport | None:
         """Figures after so many seconds of the mission's clock; None if there was no order."""
         if not self.taken and not self.refused and not_taken_from_s is None:
             return None
@@ -150,38 +156,13 @@ class Orders:
             cancelled=self.cancelled,
             lost=self.lost,
             refused=self.refused,
-            open=len(self._open),
+            open=len(self.open_since),
             most_open=self.most_open,
             done_per_hour=round(3600 * self.done / over_s, 2) if over_s > 0 else 0.0,
             until_in_route=Seconds.of(self.until_in_route),
             until_done=Seconds.of(self.until_done),
             improved=self.improved,
-            clock_lag=Seconds.of(self.clock_lag) if self.clock_lag.count else None,
+            clock_lag=Seconds.of(clock_lag) if clock_lag is not None and clock_lag.count else None,
             not_taken_from_s=not_taken_from_s,
             last_refused=tuple(self.last_refused),
         )
-
-    def _take_order(self, task: str, now: float) -> None:
-        self.taken += 1
-        came_s = self._came_s.pop(task, now)
-        self._open[task] = self._waiting[task] = came_s
-        self.most_open = max(self.most_open, len(self._open))
-
-    def _routed(self, task: str, now: float) -> None:
-        if task in self._waiting:
-            self.until_in_route.add(now - self._waiting.pop(task))
-
-    def _close(self, task: str, kind: str, now: float) -> None:
-        came_s = self._open.pop(task)
-        self._waiting.pop(task, None)
-        if kind == "ends":
-            self.done += 1
-            self.until_done.add(now - came_s)
-        elif kind == "cancel_task":
-            self.cancelled += 1
-        else:
-            self.lost += 1
-
-
-IMPROVED = "improved"
-"""The cause of a new plan that a search in the background has found."""

@@ -1,4 +1,4 @@
-"""The task ledger: all tasks, the progress of each, and why one is lost.
+"""The task ledger: all tasks, the progress of each, and why one is lost. Only events change it.
 
 Entries are removed only of standing fleets, and live on in sums (`Retired`).
 """
@@ -11,9 +11,10 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from muster.execution.teams import units_of
 from muster.mission.event_descriptions import cancelled_at
+from muster.mission.goods import as_amount
 from muster.mission.model import Point, Robot, Task
+from muster.mission.task_relations import units_of
 
 TIME_ROUNDING_S = 1e-6
 """By which a time may be past a limit: clocks add up steps."""
@@ -41,8 +42,8 @@ class Retired:
     ----------
     done, cancelled, lost
         how many.
-    waiting_s, waits_s
-        as `Ledger.waiting_s`, and by cause.
+    waiting_s
+        as `Ledger.waiting_s`.
     lateness_s, lateness
         after due times, and weighed by priority.
     arrival_usage
@@ -57,7 +58,6 @@ class Retired:
     cancelled: int = 0
     lost: int = 0
     waiting_s: float = 0.0
-    waits_s: dict[str, float] = field(default_factory=dict)
     lateness_s: float = 0.0
     lateness: float = 0.0
     arrival_usage: float = 0.0
@@ -102,10 +102,11 @@ class Ledger:
     blocked_by: dict[str, str] = field(default_factory=dict)  # task: the broken robot that stands there
     teams: dict[str, tuple[str, ...]] = field(default_factory=dict)  # the robots of each task begun
     team_waits_s: dict[str, float] = field(default_factory=dict)  # their waiting for it, in all
-    waits_s: dict[str, dict[str, float]] = field(default_factory=dict)  # task, cause: seconds that robots waited
     missed: list[MissedTask] = field(default_factory=list)
     expired: dict[str, str] = field(default_factory=dict)  # tasks that can never begin any more, and why
+    told_lost: dict[str, str] = field(default_factory=dict)  # tasks that the end of the mission found not done, and why
     retired: Retired = field(default_factory=Retired)
+    touched: dict[str, None] = field(default_factory=dict)  # tasks that the last event has brought on, or moved
     revision: int = 0  # how often tasks came, went or were opened again
     _units: dict[str, tuple[str, ...]] = field(default_factory=dict)
     _must_follow: dict[str, list[str]] | None = None  # by task: those that must begin within some time after it
@@ -127,7 +128,12 @@ class Ledger:
             self.expired[task.id] = late
             task = replace(task, starts_with=())
         self.tasks[task.id] = task
+        self.touched[task.id] = None
         self._tasks_changed()
+
+    def as_it_holds(self, robot: Robot) -> Robot:
+        """A robot without what does not hold."""
+        return robot_as_it_holds(robot, self.ignored)
 
     def too_late_to_begin_with(self, tasks: Iterable[str]) -> str:
         """Why nothing can begin together with these tasks any more; empty if it still can."""
@@ -226,22 +232,38 @@ class Ledger:
         """Prerequisites that have not ended."""
         return [name for name in self.prerequisites(task) if name not in self.ends_s]
 
-    def arrive(self, task: str, used: float, now: float) -> None:
-        self.arrivals_s[task], self.arrival_usage[task] = now, used
+    def begin(self, task: str, robots: tuple[str, ...], now: float) -> None:
+        """Robots begin a task."""
+        self.starts_s[task], self.teams[task] = now, robots
+        self.touched[task] = None
+        self.told_lost.pop(task, None)
 
-    def begin(self, task: str, now: float) -> None:
-        self.starts_s[task] = now
+    def arrive(self, task: str, came: Collection[tuple[float, float]], now: float) -> None:
+        """Robots that begin a task came to it: when, and what each had used by then."""
+        self.arrivals_s[task] = max(at_s for at_s, _ in came)
+        self.arrival_usage[task] = max(used for _, used in came)
+        if len(came) > 1:
+            self.team_waits_s[task] = sum(now - at_s for at_s, _ in came)
+
+    def at_work(self, task: str) -> tuple[str, ...]:
+        """The robots that have begun a task and not ended it."""
+        return self.teams.get(task, ()) if task in self.starts_s and task not in self.ends_s else ()
+
+    def break_off(self, task: str) -> None:
+        """Work on a task, and on those that began with it, is broken off: what was done of it is lost."""
+        if task not in self.tasks:
+            return
+        broken = [name for name in self.unit(task) if self.at_work(name)]
+        for name in broken:
+            self.give_up(name)
+        if broken and (late := self.too_late_to_begin_with(self.unit(task))):
+            self.expired |= dict.fromkeys(broken, late)
 
     def expire(self, task: str, reason: str) -> None:
         """Neither a task nor those that begin with it can begin any more."""
         for name in self.unit(task):
             if self.is_open(name):
                 self.expired.setdefault(name, reason if name == task else f"relation: begins with {task}; {reason}")
-
-    def waits(self, task: str, cause: str, seconds: float) -> None:
-        """A robot has waited at a task."""
-        by_cause = self.waits_s.setdefault(task, {})
-        by_cause[cause] = by_cause.get(cause, 0.0) + seconds
 
     def late_s(self, task: str) -> float:
         """By how much a task done ended after its due time."""
@@ -262,15 +284,28 @@ class Ledger:
     def give_up(self, task: str) -> None:
         """The robot that was at it is no more."""
         if task not in self.ends_s:
+            self.touched[task] = None
             self.teams.pop(task, None)
             self.team_waits_s.pop(task, None)
             self.arrivals_s.pop(task, None)
             self.arrival_usage.pop(task, None)
             self.starts_s.pop(task, None)
 
-    def end(self, task: str, robot: str, now: float) -> None:
-        self.ends_s[task] = now
-        self.done_by[task] = robot
+    def end(self, task: str, robots: tuple[str, ...], now: float) -> None:
+        """Robots have done a task."""
+        self.ends_s[task], self.done_by[task], self.teams[task] = now, robots[0], robots
+        self.cancelled.pop(task, None)  # its robots had not heard that in time
+        for name in self.unit(task):
+            if self.is_open(name) and name not in self.starts_s:
+                self.expired.setdefault(name, self.too_late_to_begin_with([task]))
+        self.touched[task] = None
+        self.told_lost.pop(task, None)
+
+    def lose(self, task: str, reason: str) -> None:
+        """The mission is over, and a task is not done."""
+        if task in self.tasks:
+            self.told_lost[task] = reason
+            self.touched[task] = None
 
     def refuse(self, task: str, robot: str, reason: str) -> None:
         self.refusals.setdefault(task, {})[robot] = reason
@@ -283,8 +318,10 @@ class Ledger:
                 del refusals[robot]
 
     def move(self, task: str, to: Point) -> None:
-        """A task is elsewhere from now on."""
+        """A task is elsewhere from now on: robots may try it that could not do it where it was."""
         self.tasks[task] = moved(self.tasks[task], to)
+        self.give_up(task)
+        self.refusals.pop(task, None)
 
     def delay(self, task: str, by_s: float) -> None:
         self.delays_s[task] = self.delays_s.get(task, 0.0) + by_s
@@ -301,8 +338,10 @@ class Ledger:
         self._tasks_changed()
 
     def withdraw(self, task: str, now: float) -> None:
+        """A task is cancelled: what begins with it never can."""
         self.cancelled[task] = now
         self.give_up(task)
+        self.expire(task, "cancelled")
 
     def settled(self, before_s: float) -> set[str]:
         """Tasks done or cancelled before a time, or that can never begin, to which no other task refers."""
@@ -318,8 +357,8 @@ class Ledger:
         self.missed = [one for one in self.missed if one.task not in tasks]
         by_task: tuple[dict[str, Any], ...] = (
             *(self.tasks, self.delays_s, self.arrivals_s, self.arrival_usage, self.starts_s, self.ends_s, self.done_by),
-            *(self.usage, self.cancelled, self.refusals, self.blocked_by, self.teams, self.team_waits_s, self.waits_s),
-            self.expired,
+            *(self.usage, self.cancelled, self.refusals, self.blocked_by, self.teams, self.team_waits_s),
+            *(self.expired, self.told_lost),
         )
         for entries in by_task:
             for name in tasks:
@@ -333,8 +372,6 @@ class Ledger:
 
     def _sum_up(self, task: str) -> None:
         sums = self.retired
-        for cause, seconds in self.waits_s.get(task, {}).items():
-            sums.waits_s[cause] = sums.waits_s.get(cause, 0.0) + seconds
         if task in self.starts_s:
             sums.waiting_s += self.waited_s(task)
         if task in self.ends_s:
@@ -421,3 +458,15 @@ def moved(task: Task, to: Point) -> Task:
         return tuple(c + b - a for c, a, b in zip(point, task.position, to, strict=True))
 
     return replace(task, position=to, entry=shifted(task.entry), exit=shifted(task.exit))
+
+
+def lying(task: Task, at: Point, amounts: Mapping[str, float]) -> Task:
+    """A task that took goods on board which now lie elsewhere: they are to be taken on there.
+
+    What its work had to wait for, by when it was to be done, and who was to do it together with whom, was kept when it
+    was done first. Its time windows hold for the work that is to be done now.
+    """
+    has_geometry = task.action is not None and task.action.has_geometry
+    there = moved(replace(task, entry=None, exit=None, action=None if has_geometry else task.action), at)
+    without: dict[str, Any] = {"prerequisites": (), "lags": {}, "deadline_s": None, "starts_with": ()}
+    return replace(there, load=as_amount(amounts), same_robot_as=(), other_robot_than=(), **without)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from muster.execution.task_ledger import Ledger
-from muster.mission.goods import ONLY, Amount, by_commodity, shown_amounts
+from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Robot, Task
+from muster.state.task_ledger import Ledger
 
 _ROUNDING = 1e-9
 
@@ -101,30 +101,27 @@ class GoodsLedger:
                 amount -= some
         _drop_empty(items)
 
-    def unload(self, robot: str, tied: Collection[str]) -> Sums:
-        """A robot unloads at a station all but the goods of some tasks, which others deliver; returns what."""
-        items = self.on_board.setdefault(robot, [])
+    def loose(self, robot: str, tied: Collection[str]) -> Sums:
+        """What a robot has on board but for the goods of some tasks, which others deliver."""
         gone: Sums = {}
-        for item in [item for item in items if item.task not in tied]:
-            items.remove(item)
-            _add(gone, item.amounts)
-        _add(self.unloaded, gone)
+        for item in self.on_board.get(robot, ()):
+            if item.task not in tied:
+                _add(gone, item.amounts)
         return gone
 
-    def fall(self, robot: str) -> list[Item]:
-        """A robot fails: what it has on board lies where it is. Returns what belongs to tasks, which are open again."""
+    def unload(self, robot: str, tied: Collection[str]) -> None:
+        """A robot unloads at a station all but the goods of some tasks, which others deliver."""
+        _add(self.unloaded, self.loose(robot, tied))
+        self.on_board[robot] = [item for item in self.on_board.get(robot, ()) if item.task in tied]
+
+    def fall(self, robot: str) -> None:
+        """A robot fails: what it has on board lies where it is, and tasks that took it on are open again."""
         items, self.on_board[robot] = self.on_board.get(robot, []), []
         for item in items:
             if item.task is None:
                 _add(self.left, item.amounts)
             else:
                 self.lying[item.task] = dict(item.amounts)
-        return [item for item in items if item.task is not None]
-
-    def lies(self, task: str, amounts: Mapping[str, float]) -> None:
-        """What a task took on before a restart lies elsewhere, and the task is open again."""
-        self.lying[task] = dict(amounts)
-        _add(self.taken, amounts)
 
     def refusal(self, task: Task, robot: Robot) -> str:
         """Why a robot cannot do a task with what it has on board; empty if it can."""
@@ -144,18 +141,6 @@ class GoodsLedger:
 def tied_goods(ledger: Ledger) -> set[str]:
     """The tasks whose goods a task delivers that is still to be done."""
     return {task.delivers for task in ledger.open if task.delivers is not None}
-
-
-def as_amount(amounts: Mapping[str, float]) -> Amount | None:
-    """Amounts by commodity as a mission has them; None: nothing."""
-    if not amounts:
-        return None
-    return amounts[ONLY] if set(amounts) == {ONLY} else dict(amounts)
-
-
-def negative(amounts: Mapping[str, float]) -> Amount | None:
-    """The same amounts, put down."""
-    return as_amount({name: -amount for name, amount in amounts.items()})
 
 
 def _add(sums: Sums, amounts: Mapping[str, float] | Iterable[tuple[str, float]]) -> None:
