@@ -114,6 +114,7 @@ class EventRefused(ExecutionEvent):
 class Resumed(ExecutionEvent):
     """A run goes on after a stop; work on `again` is begun again. `used` is by robot its usage, where that is known."""
 
+    written = ("again",)
     how: str = ""
     again: tuple[str, ...] = ()
     used: Mapping[str, float] = field(default_factory=dict)
