@@ -15,7 +15,7 @@ MORE = (
     (25.0, "move_task", {"task": "late <b>", "position": [-8, -9]}),
     (30.0, "lost", {"task": "late <b>", "reason": "capacity"}),
     (40.0, "cancel_task", {"task": "22"}),
-    (45.0, "contact", {"robots": ["r_0", "r_1"], "distance_m": 0.125}),
+    (45.0, "traffic_jam", {"robots": ["r_0", "r_1"], "position": [1.0, 2.0], "since_s": 40.0}),
 )
 
 

@@ -211,7 +211,7 @@ def test_events_are_listed_and_lead_to_their_time(browser, page, recorded):
     assert alarms == [
         "robot fails: robot r_5",
         "lost: task late <b>, reason capacity",
-        "contact: robots r_0 r_1, distance_m 0.12",
+        "traffic jam: r_0, r_1 hold each other up at 1.00, 2.00 since 40.0 s",
     ]
     browser.evaluate("document.querySelector('#events .alarm').closest('button').click()")
     assert time_of(browser) == 20

@@ -62,8 +62,8 @@ class Processes:
         return {"a": SimpleNamespace(stage=Stage(3, b"base"))}
 
 
-def did(*events, usages=()):
-    return WorkReport(events=events, used=1.0, usages=dict(usages), idle=True, settled=True, heard=0)
+def did(*events):
+    return WorkReport(events=events, used=1.0, idle=True, settled=True, heard=0)
 
 
 def bodies_of(events, tmp_path, last_words=(), noise=NO_NOISE):
@@ -77,21 +77,25 @@ def bodies_of(events, tmp_path, last_words=(), noise=NO_NOISE):
 
 
 def test_what_a_robot_began_just_before_it_failed_another_does_not_begin_twice(tmp_path):
-    words = did((0.0, "arrives", {"task": "t"}), (0.0, "starts", {"task": "t"}))
+    words = did((0.0, "arrives", {"task": "t", "robot": "a"}), (0.0, "starts", {"task": "t", "robot": "a"}))
     robot_bodies, log = bodies_of([Event(at_s=0, robot_fails="a")], tmp_path, [words])
     robot_bodies.step(1.0)
-    robot_bodies.take_report("b", did((1.0, "arrives", {"task": "t"}), (1.0, "starts", {"task": "t"})))
+    robot_bodies.take_report(
+        "b", did((1.0, "arrives", {"task": "t", "robot": "b"}), (1.0, "starts", {"task": "t", "robot": "b"}))
+    )
     assert "twice" not in {event.kind for event in log.events}
-    assert log.ledger.starts_s == {"t": 1.0}
+    assert log.state.ledger.starts_s == {"t": 1.0}
 
 
 def test_what_a_robot_has_done_just_before_it_failed_is_done(tmp_path):
-    words = did((0.0, "ends", {"task": "t"}), usages={"t": (1.0, 1.0)})
+    words = did((0.0, "ends", {"task": "t", "robot": "a", "usage": [1.0, 1.0]}))
     robot_bodies, log = bodies_of([Event(at_s=0, robot_fails="a")], tmp_path, [words])
-    robot_bodies.take_report("a", did((0.0, "arrives", {"task": "t"}), (0.0, "starts", {"task": "t"})))
+    robot_bodies.take_report(
+        "a", did((0.0, "arrives", {"task": "t", "robot": "a"}), (0.0, "starts", {"task": "t", "robot": "a"}))
+    )
     robot_bodies.step(1.0)
-    assert log.ledger.done_by == {"t": "a"}
-    assert log.ledger.starts_s == {"t": 0.0}
+    assert log.state.ledger.done_by == {"t": "a"}
+    assert log.state.ledger.starts_s == {"t": 0.0}
 
 
 def test_what_a_robot_was_told_that_is_gone_another_is_told_unless_it_does_not_hold_any_more(tmp_path):

@@ -10,6 +10,7 @@ from muster.mission.model import Lag, MovedTask
 from muster.negotiation.messages import Fact, Message, Stage
 from muster.negotiation.new_tasks import content_of
 from muster.negotiation.participation import plan_of
+from muster.state import OtherEvent
 
 LONG_S = 600.0
 
@@ -281,7 +282,7 @@ def test_a_robot_that_is_out_asks_for_no_new_epoch_whenever_it_hears_of_somethin
     ends(team)
     assert "robot_stuck" in {kind for _, _, kind, _ in team.told}
     before = team.net.nodes["r_1"].stage.epoch
-    team.controls["r_0"]._executor.plan_again("heard", {})
+    team.controls["r_0"]._executor.plan_again(OtherEvent(kind="heard"))
     team.run(team.world.time_s + 2.0)
     assert team.net.nodes["r_1"].stage.epoch == before
 

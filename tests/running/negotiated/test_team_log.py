@@ -23,9 +23,8 @@ def log():
 def take(log, robot, came=None, began=None, ended=None):
     for kind, at_s in (("arrives", came), ("starts", began), ("ends", ended)):
         if at_s is not None:
-            log.take(robot, at_s, kind, {"task": "t", "robot": robot}, used=at_s)
-    if ended is not None:
-        log.note_usage(robot, "t", (1.0, 1.0))
+            usage = {"usage": [1.0, 1.0]} if kind == "ends" else {}
+            log.take(robot, at_s, kind, {"task": "t", "robot": robot, **usage}, used=at_s)
 
 
 def report(log):
@@ -78,19 +77,18 @@ def test_what_all_of_a_team_tell_is_told_once_and_work_that_is_broken_off_is_ope
     told("work_broken_off", 5.0)
     assert report(log).starts_s == {}
     told("starts", 6.0)
-    told("ends", 8.0)
-    for robot in ("a", "b"):
-        log.note_usage(robot, "t", (1.0, 2.0))
+    told("ends", 8.0, usage=[1.0, 2.0])
     assert [event.kind for event in log.events if event.kind != "arrives"] == [
         "starts",
         "work_broken_off",
         "starts",
         "ends",
+        "part_ends",
     ]
     (task,) = report(log).tasks
     assert (task.robot, report(log).starts_s, report(log).ends_s) == ("a", {"t": 6.0}, {"t": 8.0})
-    assert log.ledger.usage["t"] == (2.0, 4.0)
-    assert log.ledger.team_waits_s["t"] == 8.0
+    assert log.state.ledger.usage["t"] == (2.0, 4.0)
+    assert log.state.ledger.team_waits_s["t"] == 8.0
 
 
 def agree(log, now_s):

@@ -134,13 +134,15 @@ class RobotControl:
         wanted = self._wanted
         if not self._hand.out and (wanted != self._hand.route or any(map(self._too_late_for, wanted))):
             self._executor.plan_again(OtherEvent(kind="agreed"))
+        routed = {*wanted, *self._hand.route}
         for event in self._executor.tick(now):
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
             elif _is_back(event):
                 self._negotiator.come_back()
         self._negotiator.joint.leave_all_but(self._at)
-        return [event for event in self._news if event.kind in _ITS_OWN or _is_back(event)]
+        news = [event for event in self._news if event.kind in _ITS_OWN or _is_back(event)]
+        return [event for event in news if event.kind not in _MISSED or event.data["task"] in routed]
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
