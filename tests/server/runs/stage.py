@@ -1,6 +1,7 @@
 """A run without processes: what users ask for comes at moments of the mission's clock, what is told is collected."""
 
 from collections import Counter
+from collections.abc import Callable
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -31,6 +32,7 @@ class Kept:
     checkpoint: dict | None = None
     tick: list = field(default_factory=list)
     full = False
+    on_tick: Callable = lambda: None
 
     def entry(self, message):
         if len(self.log) + len(self.tick) == self.most:
@@ -45,6 +47,7 @@ class Kept:
             self.log += self.tick
             self.tick = []
             self.bodies = message["bodies"]
+            self.on_tick()
         elif message["type"] == "checkpoint":
             self.checkpoint = message
         else:
@@ -82,9 +85,11 @@ def performed(
     killed_after=None,
     paused=False,
     cancelled=False,
+    on_tick=lambda state: None,
 ):
     """Carry a plan out to its end, or until it is killed, after what is `Kept` of `before`; returns what was told."""
     kept, before = Kept(most=killed_after), before or Kept()
+    kept.on_tick = lambda: on_tick(recorder.state)
     begin = {
         "world": world,
         "settings": settings or {},
