@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test test-all quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-auction campaign-goods campaign-server campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: standing demo test test-all quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-goods campaign-server campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -65,6 +65,9 @@ campaign-carry: $(VENV)/developed
 campaign-mixed: $(VENV)/developed
 	$(BIN)/python -m tests.mixed_missions $(CAMPAIGN_FLAGS)
 
+campaign-state: $(VENV)/developed
+	$(BIN)/python -m tests.state.campaign $(CAMPAIGN_FLAGS)
+
 campaign-auction: $(VENV)/developed
 	$(BIN)/python -m tests.negotiation.campaign $(CAMPAIGN_FLAGS)
 
@@ -110,6 +113,7 @@ help:
 	@echo "make campaign   plan and judge 10,000 random missions (CAMPAIGN_FLAGS='1000 --first 5000')"
 	@echo "make campaign-times  5,000 small missions with windows, lags, teams and relations, against every plan of each"
 	@echo "make campaign-carry  3,000 small missions with goods and energy, against every plan of each"
+	@echo "make campaign-state  10,000 runs that are killed at random moments, and know afterwards what they knew before"
 	@echo "make campaign-mixed  10,000 tiny missions in which rules of every kind meet, against every plan of each"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
 	@echo "                       (CAMPAIGN_FLAGS='--timed 2000': of missions with rules of time)"

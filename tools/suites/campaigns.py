@@ -40,6 +40,7 @@ CAMPAIGNS = [
     Campaign(5, "disturbances", 1_000, 10_000),
     Campaign(6, "disturbances-timed", 200, 2_000),
     Campaign(7, "disturbances-traffic", 100, 2_000),
+    Campaign(7, "campaign-state", 300, 10_000),
     Campaign(8, "campaign-goods", 200, 2_000),
     Campaign(9, "campaign-server", 10, 50, "{seeds} --seed {first}"),
     Campaign(4, "campaign-coverage", 200, 200, "{seeds}"),

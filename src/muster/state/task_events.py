@@ -226,7 +226,9 @@ class LoadLies(ExecutionEvent):
     load: Mapping[str, float]
 
     def change(self, state: MissionState) -> None:
-        state.ledger.reopen(lying(state.ledger.tasks[self.task], self.position, self.load))
+        if self.task not in state.tasks:
+            return
+        state.ledger.reopen(lying(state.tasks[self.task], self.position, self.load))
         if (robot := state.robots.get(self.robot)) is not None:
             robot.done = [name for name in robot.done if name != self.task]
             robot.stops = [name for name in robot.stops if name != self.task]

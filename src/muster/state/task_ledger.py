@@ -383,7 +383,7 @@ class Ledger:
         elif task in self.cancelled:
             sums.cancelled += 1
         else:
-            sums.lose(task, self.expired[task])
+            sums.lose(task, self.told_lost[task])
 
 
 def _referred_to(task: Task) -> tuple[str, ...]:
