@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.server.runs.stage import performed
-from tests.state.test_recovery import site
+from tests.state.played import site
 
 import muster
 from muster.mission.model import Mission, Robot, Station, Task

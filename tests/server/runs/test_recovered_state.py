@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 from tests.server.runs.stage import performed
-from tests.state.test_recovery import SAMPLES, known, site
+from tests.state.played import SAMPLES, known, site
 
 import muster
 from muster.mission.yaml_writer import plain
