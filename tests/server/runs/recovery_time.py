@@ -89,28 +89,32 @@ def memory_mb(pid):
     return int(status.partition("VmRSS:")[2].split()[0]) / 1024
 
 
+def told(file, run, entries, orders):
+    """The seconds until the server answers, and the run goes on; and the memory of both, MB."""
+    begun = time.monotonic()
+    with serving(f"sqlite:///{file}") as server:
+        started = time.monotonic()
+        until(lambda: server.http.get(f"/runs/{run}").json()["state"] == "running", 600.0)
+        ended = time.monotonic()
+        sizes = [memory_mb(pid) for pid in (server.process.pid, *server.children(RUNNER))]
+        until(
+            lambda: "resumed" in {one["kind"] for one in server.http.get(f"/runs/{run}/events?after={entries}").json()}
+        )
+        assert server.http.get(f"/runs/{run}").json()["time_s"] >= orders * APART_S
+    return (started - begun, ended - started), sizes
+
+
 def main(orders=100_000):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "muster.db"
         store = Store.open(f"sqlite:///{file}")
         run, entries, checkpoint = filled(store, orders)
         store.close()
-        told = f"{orders} orders: {entries} entries, a database of {file.stat().st_size / 2**20:.0f} MB"
-        sys.stdout.write(f"{told}, the last checkpoint {checkpoint / 1024:.0f} kB\n")
-        begun = time.monotonic()
-        with serving(f"sqlite:///{file}") as server:
-            started = time.monotonic()
-            until(lambda: server.http.get(f"/runs/{run}").json()["state"] == "running", 600.0)
-            ended = time.monotonic()
-            sizes = [memory_mb(pid) for pid in (server.process.pid, *server.children(RUNNER))]
-            found = server.http.get(f"/runs/{run}").json()
-            log = server.http.get(f"/runs/{run}/events", params={"after": entries}).json()
-        assert any(entry["kind"] == "resumed" for entry in log), log
-        assert found["time_s"] >= orders * APART_S
-        sys.stdout.write(
-            f"the server answers after {started - begun:.1f} s, the run goes on {ended - started:.1f} s later\n"
-        )
-        sys.stdout.write(f"memory: server {sizes[0]:.0f} MB, runner {sizes[1]:.0f} MB\n")
+        size = f"{entries} entries, a database of {file.stat().st_size / 2**20:.0f} MB"
+        sys.stdout.write(f"{orders} orders: {size}, the last checkpoint {checkpoint / 1024:.0f} kB\n")
+        seconds, sizes = told(file, run, entries, orders)
+        sys.stdout.write("the server answers after {:.1f} s, the run goes on {:.1f} s later\n".format(*seconds))
+        sys.stdout.write("memory: server {:.0f} MB, runner {:.0f} MB\n".format(*sizes))
 
 
 if __name__ == "__main__":

@@ -59,7 +59,7 @@ class RunSession:
         self._noted_at = -NOTED_S
         self._closing = self._cancelled = self._reported = False
         self._failed = self._trouble = ""
-        self._share: float | None = None  # of going on after a crash, while that lasts
+        self._share = None if run.state == "starting" else 0.0  # of going on after a crash, while that lasts
         self._checkpoint: tuple[int, bytes] | None = None  # of an entry that is not written yet
         self._ended_at: datetime | None = None
         self._texts: dict[int, str] = {}
