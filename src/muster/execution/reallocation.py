@@ -236,6 +236,8 @@ def first_ahead(
     rest: RemainingMission, travel: Travel, planned: Mapping[str, Sequence[RouteStop]]
 ) -> dict[str, RouteAhead]:
     """What lies ahead of each robot by the routes as they are, with the stations of a plan between their tasks."""
+    if not rest.crew:
+        return {}
     problem = remaining_problem(rest, travel).problem
     routes = routes_before(problem, rest)
     return {
