@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test test-all quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-goods campaign-server campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: standing demo test test-all quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-goods campaign-server campaign-faults campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -74,6 +74,9 @@ campaign-auction: $(VENV)/developed
 campaign-server: $(VENV)/developed
 	$(BIN)/python -m tests.server.runs.campaign $(CAMPAIGN_FLAGS)
 
+campaign-faults: $(VENV)/developed
+	$(BIN)/python -m tests.server.runs.double_faults $(CAMPAIGN_FLAGS)
+
 campaign-coverage: $(VENV)/developed
 	MUSTER_AREAS=$(or $(CAMPAIGN_FLAGS),200) $(BIN)/python -m pytest tests/motion/areas/test_coverage_path.py
 
@@ -119,6 +122,7 @@ help:
 	@echo "                       (CAMPAIGN_FLAGS='--timed 2000': of missions with rules of time)"
 	@echo "make campaign-goods  carry out 2,000 missions with goods and batteries in which robots and stations fail"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
+	@echo "make campaign-faults  kill a server of mission control 100 times while its database is away; no order is lost"
 	@echo "make campaign-coverage  cover 200 random areas with holes; Shapely says whether every place is seen"
 	@echo "make campaign-api  many more requests, made from the description of mission control's API, than the tests make"
 	@echo "make network-figures  time robots in network namespaces, through loss and a cut (root; NETWORK_FLAGS='--robots 20')"

@@ -9,6 +9,7 @@ import pytest
 
 from muster.exchange.mission_control import User
 from muster.server.store import Store
+from muster.server.store.schema import HEAD
 
 SUMMARY = {"name": "Yard", "robots": 2, "tasks": 3, "dimensions": 2}
 
@@ -59,7 +60,7 @@ def test_the_database_that_the_environment_names(url, muster, monkeypatch, tmp_p
 def test_info_as_a_table(url, muster, tmp_path):
     code, out, err = muster("db", "info")
     assert (code, err) == (0, "")
-    assert out.startswith(f"{tmp_path}/data/muster/muster.db: tables 0002, ")
+    assert out.startswith(f"{tmp_path}/data/muster/muster.db: tables {HEAD}, ")
     assert [line.split() for line in out.splitlines() if "versions" in line] == [["mission", "versions", "1"]]
 
 

@@ -6,11 +6,14 @@ A `conftest.py` or test takes the fixtures by `from tests.server.databases impor
 import itertools
 import os
 import shutil
+import signal
 import subprocess
+from contextlib import suppress
 from pathlib import Path
 from tempfile import mkdtemp
 
 import pytest
+from tests.server.runs.process import children
 
 __all__ = ["database_url", "postgresql", "postgresql_url"]
 
@@ -53,6 +56,20 @@ class PostgreSQL:
     def stop(self):
         self.call("pg_ctl", "-D", self._data, "-w", "-m", "fast", "stop")
 
+    def freeze(self):
+        """Let all processes stand: nothing is answered, and no connection breaks."""
+        self._signal(signal.SIGSTOP)
+
+    def thaw(self):
+        """Let them go on."""
+        self._signal(signal.SIGCONT)
+
+    def _signal(self, what):
+        postmaster = int((self._data / "postmaster.pid").read_text().split()[0])
+        for pid in (postmaster, *(pid for pid, _ in children(postmaster))):
+            with suppress(ProcessLookupError):
+                os.kill(pid, what)
+
     def new(self):
         """The URL of a new, empty database."""
         name = f"test_{next(_numbers)}"
@@ -69,7 +86,8 @@ class PostgreSQL:
             shutil.rmtree(self.folder, ignore_errors=True)
 
 
-def _programs():
+def postgresql_programs():
+    """The folder of PostgreSQL's programs; None if it is not installed."""
     on_path = shutil.which("initdb")
     if on_path:
         return Path(on_path).resolve().parent
@@ -80,7 +98,7 @@ def _programs():
 @pytest.fixture(scope="session")
 def postgresql():
     """A PostgreSQL server; tests that need it are skipped where there is none."""
-    programs = _programs()
+    programs = postgresql_programs()
     if programs is None:
         pytest.skip("no PostgreSQL here; tools/test_packages.sh installs it")
     try:
@@ -92,8 +110,9 @@ def postgresql():
 
 
 @pytest.fixture
-def postgresql_url(postgresql):
-    """The URL of a new database of PostgreSQL."""
+def postgresql_url(postgresql, tmp_path, monkeypatch):
+    """The URL of a new database of PostgreSQL; what a server keeps beside it is the test's own."""
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
     return postgresql.new()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -248,21 +248,17 @@ def _collecting_later() -> Iterator[Callable[[], None]]:
 
 async def _mission_page(app: FastAPI, mission: str) -> str:
     """The id of the mission's page: of one that ships, or of a file, which is uploaded unless it is there already."""
-    from muster.exchange.mission_control import NotFoundError, User
+    from muster.exchange.mission_control import MOST_ROWS, NotFoundError, User
     from muster.mission.near_matches import did_you_mean
 
-    services, who = app.state.services, User("local", "command")
-    file = Path(mission)
-    known = {entry.id: entry for entry in await services.missions.list()}
-    if mission in known:
-        return mission
+    missions, who, file = app.state.services.missions, User("local", "command"), Path(mission)
+    with suppress(NotFoundError):
+        return str((await missions.get(mission)).mission)
     if not file.is_file():
+        known = [entry.id for entry in await missions.list(MOST_ROWS)]
         raise NotFoundError(f"{mission}: no file, and no mission of that name{did_you_mean(mission, known)}")
-    text = file.read_text(encoding="utf-8", errors="replace")
-    for entry in known.values():
-        if entry.version and (await services.missions.get(entry.id)).text == text:
-            return str(entry.id)
-    return str((await services.missions.upload(who, file.name, file.read_bytes())).mission)
+    there = await missions.with_text(file.read_text(encoding="utf-8", errors="replace"))
+    return there or str((await missions.upload(who, file.name, file.read_bytes())).mission)
 
 
 def _address(settings: Settings, port: int) -> str:

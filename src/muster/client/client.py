@@ -138,9 +138,9 @@ class Client:
         """A job by its number."""
         return RunningJob(self._connection, read(Job, self._connection.get(f"/jobs/{job}")))
 
-    def jobs(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
-        """The newest jobs first: all, or those of one state or mission."""
-        found = self._connection.get("/jobs", state=state, mission=mission, limit=limit)
+    def jobs(self, state: JobState | None = None, mission: str | None = None, limit: int | None = 200) -> list[Job]:
+        """The newest jobs first, at most `limit` (None: all), of one state or mission, if given."""
+        found = self._connection.pages("/jobs", limit, state=state, mission=mission)
         return [read(Job, job) for job in found]
 
     def start(
@@ -166,8 +166,8 @@ class Client:
 
     def runs(self) -> list[Run]:
         """All runs, the newest first."""
-        return [read(Run, run) for run in self._connection.get("/runs")]
+        return [read(Run, run) for run in self._connection.pages("/runs")]
 
-    def actions(self, run: int | None = None) -> list[Action]:
-        """The audit log, or the actions of one run; the newest first."""
-        return [read(Action, action) for action in self._connection.get("/actions", run=run)]
+    def actions(self, run: int | None = None, limit: int | None = 200) -> list[Action]:
+        """The audit log, or the actions of one run; the newest first, at most `limit` (None: all)."""
+        return [read(Action, action) for action in self._connection.pages("/actions", limit, run=run)]

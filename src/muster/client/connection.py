@@ -11,7 +11,14 @@ from typing import Any
 from urllib.parse import urlsplit
 from uuid import uuid4
 
-from muster.exchange.mission_control import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
+from muster.exchange.mission_control import (
+    MOST_ROWS,
+    BusyError,
+    ConflictError,
+    ForbiddenError,
+    NotFoundError,
+    StoreError,
+)
 from muster.mission.errors import (
     Finding,
     InputError,
@@ -74,6 +81,20 @@ class Connection:
         """The resource as plain data."""
         return self._json("GET", path, params=_without_none(query))
 
+    def pages(self, path: str, limit: int | None = None, **query: Any) -> Iterator[Any]:
+        """The rows of a list, read page by page; at most `limit`, if given."""
+        size = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
+        answer = self._answer("GET", path, params=_without_none({**query, "limit": size}))
+        left = limit
+        while True:
+            rows = self._read(answer)
+            yield from rows[:left]
+            left = None if left is None else left - len(rows)
+            following = answer.links.get("next")
+            if following is None or (left is not None and left <= 0):
+                return
+            answer = self._answer("GET", str(answer.url.join(following["url"])))
+
     def post(self, path: str, body: Mapping[str, Any]) -> Any:
         return self._json("POST", path, json=body)
 
@@ -135,7 +156,9 @@ class Connection:
         return NetworkError(f"{self._url}: cannot be reached: {_line(error)}; {expected}")
 
     def _json(self, method: str, path: str, **how: Any) -> Any:
-        answer = self._answer(method, path, **how)
+        return self._read(self._answer(method, path, **how))
+
+    def _read(self, answer: Any) -> Any:
         if not answer.content:
             return None
         try:

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from muster.execution import Report
 
 _FIRST_LOOK_S, _LONGEST_LOOK_S = 0.02, 0.5
-_AT_ONCE = 1000
 
 
 class RunningJob:
@@ -127,12 +126,8 @@ class RunningRun:
 
     def events(self, after: int = 0) -> Iterator[Entry]:
         """Yield the entries of its log so far."""
-        while True:
-            found = self._connection.get(f"/runs/{self.id}/events", after=after, limit=_AT_ONCE)
-            yield from (read(Entry, entry) for entry in found)
-            if len(found) < _AT_ONCE:
-                return
-            after = found[-1]["seq"]
+        for entry in self._connection.pages(f"/runs/{self.id}/events", after=after):
+            yield read(Entry, entry)
 
     def act(self, verb: str, **data: Any) -> Action:
         """Send a command: pause, resume, speed, cancel, event, orders."""

@@ -22,6 +22,8 @@ from muster.mission.plan_reader import read_plan
 if TYPE_CHECKING:
     from muster.verification import Verdict
 
+_LONGEST_SEARCH = 200
+
 
 @dataclass(frozen=True, kw_only=True)
 class MissionText:
@@ -42,9 +44,15 @@ class Missions:
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
-    def list(self) -> Sequence[MissionEntry]:
-        """The shipped missions, and those created on the server."""
-        return [read(MissionEntry, entry) for entry in self._connection.get("/missions")]
+    def list(self, search: str | None = None) -> Sequence[MissionEntry]:
+        """The missions created on the server, last changed first, and the shipped ones; all, or those that are found.
+
+        Parameters
+        ----------
+        search
+            words that all stand in the name or id of a mission.
+        """
+        return [read(MissionEntry, entry) for entry in self._connection.pages("/missions", search=search)]
 
     def get(self, mission: str, version: int | None = None) -> MissionText:
         """A version of a mission, by default the newest."""
@@ -66,7 +74,11 @@ class Missions:
         version. Otherwise it is a new mission: those of other users are not changed.
         """
         text, files = packed_mission(mission)
-        same_name = [entry.id for entry in self.list() if mission.name in (entry.id, entry.name)]
+        same_name = [
+            entry.id
+            for entry in self.list(search=" ".join(mission.name.split())[:_LONGEST_SEARCH])
+            if mission.name in (entry.id, entry.name)
+        ]
         there = [self.get(mission_id) for mission_id in same_name]
         found = next((old for old in there if old.text == text and self._has_files(old, files)), None)
         if found is not None:
@@ -121,9 +133,14 @@ class Plans:
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
-    def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> Sequence[PlanEntry]:
-        """Plans without routes, the newest first: of one mission or of all, with ids below `before`, if given."""
-        found = self._connection.get("/plans", mission=mission, limit=limit, before=before)
+    def list(
+        self, mission: str | None = None, limit: int | None = 200, before: int | None = None
+    ) -> Sequence[PlanEntry]:
+        """Plans without routes, the newest first: of one mission or of all, with ids below `before`, if given.
+
+        At most `limit`; None: all.
+        """
+        found = self._connection.pages("/plans", limit, mission=mission, before=before)
         return [read(PlanEntry, entry) for entry in found]
 
     def get(self, plan: int) -> ServerPlan:
@@ -171,7 +188,7 @@ class Records:
 
     def list(self) -> Sequence[Run]:
         """The runs that have ended, the newest first."""
-        return [read(Run, run) for run in self._connection.get("/records")]
+        return [read(Run, run) for run in self._connection.pages("/records")]
 
     def page(self, run: int) -> str:
         """A page for a browser, which needs no network."""

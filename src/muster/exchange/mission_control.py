@@ -6,7 +6,7 @@ Times of the wall clock are aware datetimes in UTC; times of a mission's clock a
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Any, Literal
 
@@ -23,6 +23,8 @@ OVER = ("ended", "cancelled", "failed")
 """States of a run after which nothing more happens in it."""
 JOB_OVER = ("done", "failed", "cancelled")
 """States of a job after which nothing more happens in it."""
+PAGE_ROWS, MOST_ROWS = 50, 500
+"""Rows of one page of a list: by default, and at most."""
 
 
 class NotFoundError(MusterError):
@@ -260,8 +262,8 @@ class Action:
     outcome
         empty until it is known; `done`, or why the action was refused.
     kept
-        whether the database has it. What a run is told while the database is away takes effect, and is held by the
-        server's memory alone: it is lost if the server ends before the database is back.
+        whether the database has it. What a run is told while the database is away takes effect, and is kept in the
+        server's journal until the database is back.
     """
 
     id: int
@@ -275,3 +277,7 @@ class Action:
     applied_s: float | None = None
     outcome: str = ""
     kept: bool = True
+
+    def as_kept(self) -> Action:
+        """The same action as one that the database has."""
+        return replace(self, kept=True)

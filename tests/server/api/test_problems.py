@@ -61,7 +61,7 @@ def test_an_unknown_parameter_names_the_known_ones(http):
     found = require_problem(http.get("/jobs?misson=a&limit=1"), 422)
     (finding,) = found["findings"]
     assert (finding["file"], finding["field"], finding["value"]) == ("query", "misson", '"a"')
-    assert finding["expected"].startswith("one of state, mission, limit")
+    assert finding["expected"].startswith("one of state, mission, before, limit")
     assert "did you mean 'mission'?" in finding["expected"]
 
 

@@ -133,9 +133,9 @@ def test_two_missions_are_duplicated_at_once_and_the_list_is_shown_once(watched,
     """It is made anew by whichever is first, while the other is under way."""
     read, page = Missions.list, watched.page
 
-    async def slowly(self):
+    async def slowly(self, *which):
         await asyncio.sleep(0.5)
-        return await read(self)
+        return await read(self, *which)
 
     monkeypatch.setattr(Missions, "list", slowly)
     watched.open("/")

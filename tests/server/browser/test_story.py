@@ -178,7 +178,7 @@ def test_commands_that_only_memory_holds_are_marked_until_the_database_has_them(
     lock = sqlite3.connect(served_in / "muster.db", isolation_level=None)
     lock.execute("BEGIN IMMEDIATE")
     page.keyboard.press(" ")
-    mark = page.locator(".notices .unkept", has_text="not kept")
+    mark = page.locator(".notices .unkept", has_text="in the journal")
     mark.wait_for()
     lock.execute("COMMIT")
     lock.close()

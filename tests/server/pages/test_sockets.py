@@ -14,6 +14,7 @@ from websockets.sync.client import connect
 from muster.server.security.tokens import line_of, new_token
 
 _PATIENCE_S = 60
+_YARD = {"act": "duplicate", "mission": "yard", "name": "yard"}
 _CHIEF = new_token()  # who is in command until the file of tokens says otherwise
 
 
@@ -40,16 +41,20 @@ class Page:
         html = httpx.get(site.url + path, headers=bearer(token), timeout=_PATIENCE_S).text
         self._site = site
         self.client = re.search(r"'client_id': '([^']+)'", html)[1]
-        found = re.search(
-            r'"(\d+)":\{"tag":"q-btn","props":\{[^}]*"Duplicate yard"[^}]*\},"events":\[\{"listener_id":"([^"]+)"', html
-        )
-        self.button, self.listener = found.groups() if found else (None, None)
+        found = re.search(r'"listener_id":"([^"]+)","type":"click"[^}]*closest\(\\"button\[data-act', html)
+        self.listener = found and found[1]
+        self.list = found and re.findall(r'"(\d+)":\{"', html[: found.start()])[-1]
 
     def pressed(self, token):
         """Press "Duplicate" over a socket of whoever has the token; how many copies there are afterwards."""
         address = self._site.url.replace("http", "ws", 1) + "/_nicegui_ws/socket.io/?EIO=4&transport=websocket"
         said = {"client_id": self.client, "tab_id": "1", "document_id": "1", "next_message_id": 0}
-        click = {"id": int(self.button), "client_id": self.client, "listener_id": self.listener, "args": []}
+        click = {
+            "id": int(self.list),
+            "client_id": self.client,
+            "listener_id": self.listener,
+            "args": [json.dumps(_YARD)],
+        }
         with connect(address, additional_headers=bearer(token)) as socket:
             assert socket.recv().startswith("0")
             socket.send("40")
@@ -107,7 +112,7 @@ def test_a_role_that_was_taken_away_is_gone_from_open_pages(site):
 
 
 def test_who_only_watches_has_no_button_and_may_not_send_files_to_another_s_page(site):
-    assert Page(site, WATCHER).button is None
+    assert Page(site, WATCHER).list is None
     page = Page(site, COMMANDER)
     for token, status in ((WATCHER, 404), (COMMANDER, 404)):  # of the latter's page, that it takes no file
         where = f"{site.url}/_nicegui/client/{page.client}/upload/9"

@@ -11,7 +11,7 @@ from contextlib import closing
 from tests.server.runs.recovery_time import ROBOTS, mission
 
 import muster
-from muster.mission.clock import SystemClock
+from muster.mission.clock import VirtualClock
 from muster.report.record.json_messages import json_bytes
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import RunLoop
@@ -69,7 +69,7 @@ def sizes_of(orders):
     recorder = LogRecorder(there, sizes, MissionState(there))
     settings = {"stay": True, "until_s": orders * APART_S}
     with closing(SimulatedRun(there, plan, "kinematic", settings, recorder)) as inbox.world_run:
-        how = {"speed": None, "starts_at": None, "ended": lambda: False, "clock": SystemClock()}
+        how = {"speed": None, "starts_at": None, "ended": lambda: False, "clock": VirtualClock(step_s=1.0)}
         RunLoop(inbox.world_run, recorder, inbox, sizes, **how).run()
     assert sizes.done == orders
     return sizes

@@ -42,7 +42,7 @@ class Serving:
 
     def children(self, module):
         """The processes that it has started which run a module, the oldest first."""
-        return [pid for pid, command in _children(self.process.pid) if module in command]
+        return [pid for pid, command in children(self.process.pid) if module in command]
 
     def _gone(self):
         self.process.wait()
@@ -88,7 +88,8 @@ def until(holds, within_s=WITHIN_S):
     return found
 
 
-def _children(parent):
+def children(parent):
+    """The processes that a process has started, with their commands, the oldest first."""
     found = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):

@@ -82,7 +82,7 @@ def test_a_run_and_a_job_outlive_the_databases_server(postgresql, postgresql_url
 
     during, messages, job, plans, asked = asyncio.run(story())
     assert during.state == "paused"
-    assert during.remark.startswith("this run is not being kept: PostgreSQL")
+    assert during.remark.startswith("not all of this run is in the database yet: PostgreSQL")
     assert "start it" in during.remark
     assert [said["seq"] for said in messages if said["type"] == "entry"][-1] > 100
     assert (job.state, [job.result["plan"]]) == ("done", plans)

@@ -10,6 +10,7 @@ from tests.server.runs.store import planned
 import muster
 from muster.exchange.mission_control import StoreError
 from muster.server.runs import log_writer as module
+from muster.server.runs.journal import Journal
 from muster.server.runs.log_writer import LogWriter
 
 PIECE = b"x" * 100
@@ -30,9 +31,13 @@ def journalled(store, run, story):
     """Run a story with a log writer, to the end of both; returns whether all was written."""
 
     async def whole():
-        log_writer = LogWriter(store, run, on_entries=len, on_trouble=len, on_lost=pytest.fail)
+        journal = Journal(store.database.file.with_name("journal"))
+        told = {"on_entries": len, "on_actions": len, "on_trouble": len, "on_lost": pytest.fail}
+        log_writer = LogWriter(store, run, journal, **told)
         await story(log_writer)
-        return await log_writer.close()
+        written = await log_writer.close()
+        await journal.close()
+        return written
 
     return asyncio.run(asyncio.wait_for(whole(), 60))
 

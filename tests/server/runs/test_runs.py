@@ -7,7 +7,6 @@ import signal
 import sqlite3
 from contextlib import asynccontextmanager, closing
 from dataclasses import replace
-from datetime import UTC, datetime
 from itertools import pairwise
 from threading import Event
 from types import SimpleNamespace
@@ -15,23 +14,21 @@ from types import SimpleNamespace
 import pytest
 from sqlalchemy import create_engine, event
 from tests.server.runs.stage import performed
-from tests.server.runs.store import ADA, EVE, planned
+from tests.server.runs.store import ADA, EVE, planned, settings_of
 
 import muster
 from muster.exchange.mission_control import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import yaml_text
-from muster.server.runs.unsaved_actions import number_at
 from muster.server.services.records import Records
 from muster.server.services.runs import Runs
-from muster.server.settings import Settings
 from muster.server.work.pool import Pool
 
 
 @asynccontextmanager
 async def opened(store, **settings):
-    runs = Runs(store, Settings(**settings))
+    runs = Runs(store, settings_of(store, **settings))
     await runs.start_up()
     try:
         yield runs
@@ -64,7 +61,7 @@ def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
             one, other = await asyncio.gather(watched(runs, run.id), watched(runs, run.id))
             pool = Pool(workers=1, memory_mb=2048)
             records = Records(store, pool, runs)
-            assert [one.id for one in await records.list()] == [run.id]  # as soon as watchers know that it is over
+            assert [one.id for one in await runs.over()] == [run.id]  # as soon as watchers know that it is over
             made = [await records.flown(run.id), await records.page(run.id), await records.mcap(run.id)]
             made += [await records.export(run.id, "csv"), await records.export(run.id, "json")]
             await pool.close()
@@ -106,17 +103,17 @@ def test_a_record_that_is_refused_reads_nothing(store, monkeypatch):
         raise BusyError("64 requests wait")
 
     with pytest.raises(BusyError):
-        asyncio.run(Records(store, SimpleNamespace(run=busy), Runs(store, Settings())).page(run))
+        asyncio.run(Records(store, SimpleNamespace(run=busy), Runs(store, settings_of(store))).page(run))
 
 
 def test_a_record_is_found_behind_many_runs(store):
     plan = planned(store, muster.load("6T-2R"))
     first, *others = (store.runs.add("6T-2R", 1, plan, "kinematic", {}, 1.0, "ada").id for _ in range(3))
     store.runs.set(first, state="ended")
-    records = Records(store, None, Runs(store, Settings()))
-    assert [run.id for run in asyncio.run(records.list(limit=1))] == [first]
+    runs = Runs(store, settings_of(store))
+    assert [run.id for run in asyncio.run(runs.over(limit=1))] == [first]
     store.runs.set(others[0], state="failed")
-    assert [run.id for run in asyncio.run(records.list())] == [others[0], first]
+    assert [run.id for run in asyncio.run(runs.over())] == [others[0], first]
 
 
 def test_a_runner_that_is_killed_goes_on_where_it_was(store):
@@ -201,15 +198,14 @@ def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_lat
 
     run, messages, (during, said, kept), action = asyncio.run(story())
     assert during.state == "ended"
-    assert during.remark.startswith("this run is not being kept: ")
+    assert during.remark.startswith("not all of this run is in the database yet: ")
     assert why in during.remark
     assert any(m["type"] == "run" and m["remark"] == during.remark for m in messages)
     assert kept < 60 < 100 < said
     assert [e.seq for e in store.log.entries(run)] == [m["seq"] for m in messages if m["type"] == "entry"]
     assert (store.runs.get(run).state, store.runs.get(run).remark) == ("ended", "")
     assert store.log.last_stretch(run) > 50
-    assert action.id < 0 or refuses is FULL  # which may have room for a few bytes
-    assert action.kept == (action.id > 0)
+    assert not action.kept or refuses is FULL  # which may have room for a few bytes
     asked = {action.verb: (action.outcome, action.who) for action in store.actions.list(run=run)}
     assert asked == dict.fromkeys(("run.start", "run.pause", "run.speed", "run.resume"), ("done", "ada"))
 
@@ -217,19 +213,19 @@ def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_lat
 def test_commands_take_effect_in_the_order_in_which_they_were_given(store, monkeypatch):
     """The database writes the first one after it was asked for the second; robots that were paused last stay paused."""
     plan = planned(store, muster.load("31T-6R50"))
-    add, second = store.actions.add, Event()
+    keep, second = store.actions.keep, Event()
 
-    def slowly(who, verb, *rest):
-        if verb == "run.resume":
+    def slowly(actions):
+        if actions[0].verb == "run.resume":
             second.wait(0.3)
         else:
             second.set()
-        return add(who, verb, *rest)
+        return keep(actions)
 
     async def story():
         async with opened(store) as runs:
             run = (await runs.start(ADA, plan, speed=10.0)).id
-            monkeypatch.setattr(store.actions, "add", slowly)
+            monkeypatch.setattr(store.actions, "keep", slowly)
             actions = await asyncio.gather(runs.act(ADA, run, "resume"), runs.act(ADA, run, "pause"))
             told = await watched(runs, run, lambda m: m.get("id") == actions[-1].id)
             await runs.act(ADA, run, "cancel")
@@ -264,25 +260,25 @@ def test_a_pause_does_not_wait_for_a_locked_database_and_is_written_once(store):
             await gone(runs, run)
             return run, (took, told), (paused, again)
 
-    run, took, unsaved_action = asyncio.run(story())
+    run, took, unsaved = asyncio.run(story())
     assert 0.5 < took[0] < took[1] < 8  # of the database's own patience of 10 s
-    assert all(action.id < 0 and not action.kept for action in unsaved_action)
+    assert not any(action.kept for action in unsaved)
     asked = [(action.verb, action.outcome) for action in store.actions.list(run=run)]
     assert asked == [(f"run.{verb}", "done") for verb in ("speed", "resume", "pause", "start")]
-    at = {action.verb: action.at for action in store.actions.list(run=run)}
-    assert (at["run.pause"], at["run.resume"]) == tuple(action.at for action in unsaved_action)
+    ids = {action.verb: action.id for action in store.actions.list(run=run)}
+    assert (ids["run.pause"], ids["run.resume"]) == tuple(action.id for action in unsaved)
     commands = [entry.data["verb"] for entry in store.log.entries(run) if entry.kind == "command"]
     assert commands == ["pause", "resume", "speed"]
 
 
 @pytest.mark.long
 def test_what_the_database_took_late_is_not_done_again_after_a_crash(store):
+    """Logs of older Musters name such an action by the negative moment of its request."""
     plan = store.plans.get(planned(store, muster.load("31T-6R50")))
     run = store.runs.add(plan.mission, plan.mission_version, plan.id, "kinematic", {}, None, "ada").id
-    at = datetime.now(UTC)
-    late = store.actions.add(ADA, "run.pause", {}, run, at)
-    assert store.actions.add(ADA, "run.pause", {}, run, at) == late
-    data = {"action": number_at(at), "verb": "pause", "data": {}, "who": "ada", "outcome": "done"}
+    late = store.actions.add(ADA, "run.pause", {}, run)
+    store.actions.keep([late])  # once is enough
+    data = {"action": -late.id, "verb": "pause", "data": {}, "who": "ada", "outcome": "done"}
     asked = ((0.0, "pause", {}), (9e9, "resume", {}))
     job = muster.load("31T-6R50"), plan_from(plan.plan, "plan"), asked
     pause, resume = (k for k, one in enumerate(performed(*job).log) if one["kind"] == "command")
@@ -298,7 +294,7 @@ def test_what_the_database_took_late_is_not_done_again_after_a_crash(store):
 
     asyncio.run(story())
     commands = [entry.data["action"] for entry in store.log.entries(run) if entry.kind == "command"]
-    assert commands[0] == number_at(at)
+    assert commands[0] == -late.id
     assert len(commands) == 2
     assert [action.outcome for action in store.actions.list(run=run)] == ["done", "done"]
 
@@ -320,7 +316,7 @@ def test_a_runner_is_started_again_while_the_database_is_gone(store, monkeypatch
             return run, messages[-1]
 
     run, last = asyncio.run(story())
-    assert last["remark"].startswith("this run is not being kept: ")
+    assert last["remark"].startswith("not all of this run is in the database yet: ")
     log, found = store.log.entries(run), store.runs.get(run)
     assert (found.state, found.resumed, found.remark) == ("ended", 1, "")
     assert [entry.seq for entry in log] == list(range(1, len(log) + 1))
@@ -365,7 +361,7 @@ def test_what_is_refused_is_written_down(store):
     plan, told = planned(store, muster.load("31T-6R50")), []
 
     async def story():
-        runs = Runs(store, Settings(), lambda *what: told.append(what))
+        runs = Runs(store, settings_of(store), lambda *what: told.append(what))
         for start in ({"world": "mavlink"}, {"speed": float("inf")}, {"plan": 99}):
             with pytest.raises((ParameterError, NotFoundError)):
                 await runs.start(ADA, **{"plan": plan, **start})
@@ -392,7 +388,7 @@ def test_what_is_refused_is_written_down(store):
 
 def test_who_is_refused_does_not_wait_for_a_locked_database(store):
     async def story():
-        runs = Runs(store, Settings())
+        runs = Runs(store, settings_of(store))
         with closing(sqlite3.connect(store.database.file, isolation_level=None)) as lock:
             lock.execute("BEGIN IMMEDIATE")
             begun = asyncio.get_running_loop().time()

@@ -6,15 +6,16 @@ from fastapi import APIRouter
 
 from muster.exchange.mission_control import Action
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheServices
-from muster.server.api.parameter_types import Before, Limit, RunQuery
+from muster.server.api.dependencies import ThePage, TheServices
+from muster.server.api.parameter_types import BeforeAction, RunQuery
+from muster.server.api.responses import PAGED
 
 router = APIRouter(prefix="/actions", tags=["actions"], route_class=BoundedRoute)
 
 
-@router.get("", summary="Read the audit log")
+@router.get("", summary="Read the audit log", responses=PAGED)
 async def actions(
-    services: TheServices, run: RunQuery = None, limit: Limit = 200, before: Before = None
+    services: TheServices, page: ThePage, run: RunQuery = None, before: BeforeAction = None
 ) -> list[Action]:
     """Newest first; `before` the last `id` gives the next ones."""
-    return list(await services.actions.list(run=run, limit=limit, before=before))
+    return page.of(await services.actions.list(run, page.rows, before), before=lambda action: action.id)

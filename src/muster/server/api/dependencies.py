@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from hashlib import sha256
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
-from fastapi import Depends, Header, Request
+from fastapi import Depends, Header, Request, Response
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import User
+from muster.exchange.mission_control import PAGE_ROWS, User
 from muster.mission.near_matches import did_you_mean
+from muster.server.api.parameter_types import Limit
 from muster.server.services.services import Services
 from muster.server.store.request_keys import RequestKey
+
+T = TypeVar("T")
 
 
 def _services(connection: HTTPConnection) -> Services:
@@ -28,6 +31,22 @@ def _user(connection: HTTPConnection) -> User:
     return found
 
 
+class Page:
+    """The page of a list that a request asks for."""
+
+    def __init__(self, request: Request, response: Response, limit: Limit = PAGE_ROWS) -> None:
+        self._request, self._response, self._limit = request, response, limit
+        self.rows = limit + 1  # one more says whether there is a next page
+
+    def of(self, rows: Sequence[T], **place: Callable[[T], object]) -> list[T]:
+        """The rows of the page. If there are more, `Link` names the next page: by the `place` of the last row."""
+        page = list(rows[: self._limit])
+        if len(rows) > len(page):
+            query = self._request.url.include_query_params(**{name: of(page[-1]) for name, of in place.items()}).query
+            self._response.headers["Link"] = f'<{self._request.url.path}?{query}>; rel="next"'
+        return page
+
+
 def require_known_query(connection: HTTPConnection) -> None:
     """Refuse a query with parameters that the route does not have: a mistyped one would do nothing.
 
@@ -36,7 +55,8 @@ def require_known_query(connection: HTTPConnection) -> None:
     RequestValidationError
         naming them, and what is known.
     """
-    known = [field.alias for field in connection.scope["route"].dependant.query_params]
+    dependant = connection.scope["route"].dependant
+    known = [field.alias for part in (dependant, *dependant.dependencies) for field in part.query_params]
     _require_known("query", connection.query_params, known)
 
 
@@ -77,3 +97,4 @@ IdempotencyKey = Annotated[
 ]
 TheServices = Annotated[Services, Depends(_services)]
 TheUser = Annotated[User, Depends(_user)]
+ThePage = Annotated[Page, Depends()]

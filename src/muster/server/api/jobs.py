@@ -9,24 +9,25 @@ from fastapi import APIRouter, Query, WebSocket
 
 from muster.exchange.mission_control import Job, JobState
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheServices, TheUser
-from muster.server.api.parameter_types import JobId, Limit, MissionQuery
-from muster.server.api.responses import errors
+from muster.server.api.dependencies import ThePage, TheServices, TheUser
+from muster.server.api.parameter_types import Before, JobId, MissionQuery
+from muster.server.api.responses import PAGED, errors
 from muster.server.api.sockets import message, tell
 from muster.server.services.jobs import Jobs
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=BoundedRoute)
 
 
-@router.get("", summary="List jobs")
+@router.get("", summary="List jobs", responses=PAGED)
 async def jobs(
     services: TheServices,
+    page: ThePage,
     state: Annotated[JobState | None, Query(description="Only those.")] = None,
     mission: MissionQuery = None,
-    limit: Limit = 200,
+    before: Before = None,
 ) -> list[Job]:
-    """Newest first."""
-    return list(await services.jobs.list(state, mission, limit))
+    """Newest first; `before` the last `id` gives the next ones."""
+    return page.of(await services.jobs.list(state, mission, page.rows, before), before=lambda job: job.id)
 
 
 @router.get("/{job}", summary="See how far a job is")

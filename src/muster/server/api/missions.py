@@ -13,23 +13,32 @@ from pydantic import Field
 
 from muster.exchange.mission_control import MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheServices, TheUser, require_known_form
+from muster.server.api.dependencies import ThePage, TheServices, TheUser, require_known_form
 from muster.server.api.parameter_types import (
     LARGEST,
+    AfterMission,
     BeforeVersion,
     Body,
     FileName,
     Files,
     Ignored,
-    Limit,
     MissionId,
     Name,
     Note,
     OptionalVersion,
+    Search,
     Text,
     VersionNumber,
 )
-from muster.server.api.responses import Responses, errors, file_described, file_response, with_location
+from muster.server.api.responses import (
+    PAGED,
+    Responses,
+    errors,
+    file_described,
+    file_response,
+    with_location,
+)
+from muster.server.services.missions import place_of
 from muster.server.services.uploads import answers_of
 
 router = APIRouter(prefix="/missions", tags=["missions"], route_class=BoundedRoute)
@@ -119,10 +128,12 @@ class MissionToCheck(Body):
     )
 
 
-@router.get("", summary="List missions")
-async def missions(services: TheServices) -> list[MissionEntry]:
-    """The missions made on this server, and the shipped ones."""
-    return list(await services.missions.list())
+@router.get("", summary="List missions", responses=PAGED)
+async def missions(
+    services: TheServices, page: ThePage, search: Search = "", after: AfterMission = ""
+) -> list[MissionEntry]:
+    """The missions made on this server, last changed first, then the shipped ones."""
+    return page.of(await services.missions.list(page.rows, after, search), after=place_of)
 
 
 @router.post("", status_code=201, summary="Make a mission", responses=with_location(201, "It is kept.", etag=True))
@@ -208,12 +219,13 @@ async def delete(services: TheServices, who: TheUser, mission: MissionId) -> Non
     await services.missions.delete(who, mission)
 
 
-@router.get("/{mission}/versions", summary="List the versions of a mission")
+@router.get("/{mission}/versions", summary="List the versions of a mission", responses=PAGED)
 async def versions(
-    services: TheServices, mission: MissionId, limit: Limit = 200, before: BeforeVersion = None
+    services: TheServices, page: ThePage, mission: MissionId, before: BeforeVersion = None
 ) -> list[VersionEntry]:
     """Newest first; `before` the last `version` gives the next ones."""
-    return list(await services.missions.versions(mission, limit, before))
+    found = await services.missions.versions(mission, page.rows, before)
+    return page.of(found, before=lambda version: version.version)
 
 
 @router.get("/{mission}/versions/{number}", summary="Read a version of a mission")

@@ -10,6 +10,7 @@ from fastapi import Path, Query
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from muster.exchange.mission_control import MOST_ROWS
 from muster.mission.ignorable_rules import IGNORABLE
 from muster.server.services import uploads
 
@@ -48,12 +49,19 @@ JobId = Annotated[int, Path(ge=1, le=LARGEST, description="Of a job.", examples=
 RunId = Annotated[int, Path(ge=1, le=LARGEST, description="Of a run.", examples=[1])]
 VersionNumber = Annotated[int, Path(ge=1, le=LARGEST, description="Of a mission, counted from 1.", examples=[1])]
 
-Limit = Annotated[int, Query(ge=1, le=1000, description="At most so many.")]
+Limit = Annotated[int, Query(ge=1, le=MOST_ROWS, description="At most so many.")]
 OptionalVersion = Annotated[int | None, Query(ge=1, le=LARGEST, description="Of the mission; the newest without.")]
 After = Annotated[int, Query(ge=0, le=LARGEST, description="Only what has a greater `seq`.")]
 MissionQuery = Annotated[str | None, Query(max_length=200, pattern=_ID, description="Only those of this mission.")]
 RunQuery = Annotated[int | None, Query(ge=1, le=LARGEST, description="Only those of this run.")]
 Before = Annotated[int | None, Query(ge=1, le=LARGEST, description="Only what has a smaller `id`.")]
+BeforeAction = Annotated[int | None, Query(ge=1, le=2**53 - 1, description="Only what has a smaller `id`.")]
+AfterMission = Annotated[
+    str, Query(max_length=300, pattern=_WITHOUT_CONTROLS, description="Only what follows; the header `Link` has it.")
+]
+Search = Annotated[
+    str, Query(max_length=200, pattern=_WITHOUT_CONTROLS, description="Words that all stand in its name or id.")
+]
 BeforeVersion = Annotated[int | None, Query(ge=1, le=LARGEST, description="Only what has a smaller `version`.")]
 TaskQuery = Annotated[
     str | None, Query(min_length=1, max_length=200, pattern=_WITHOUT_CONTROLS, description="The id of a task.")

@@ -11,7 +11,7 @@ from muster.exchange.mission_control import Job, PlanEntry
 from muster.mission.model import OBJECTIVES
 from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import IdempotencyKey, TheServices, TheUser, key_of
+from muster.server.api.dependencies import IdempotencyKey, ThePage, TheServices, TheUser, key_of
 from muster.server.api.parameter_types import (
     LARGEST,
     Before,
@@ -19,7 +19,6 @@ from muster.server.api.parameter_types import (
     Count,
     Ignored,
     IgnoredQuery,
-    Limit,
     MissionId,
     MissionQuery,
     Name,
@@ -28,7 +27,14 @@ from muster.server.api.parameter_types import (
     Seed,
     TaskQuery,
 )
-from muster.server.api.responses import archive_response, errors, file_described, file_response, with_location
+from muster.server.api.responses import (
+    PAGED,
+    archive_response,
+    errors,
+    file_described,
+    file_response,
+    with_location,
+)
 from muster.traffic.names import TRAFFIC
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)
@@ -111,12 +117,12 @@ async def upload(
     return entry
 
 
-@router.get("/plans", summary="List plans")
+@router.get("/plans", summary="List plans", responses=PAGED)
 async def plans(
-    services: TheServices, mission: MissionQuery = None, limit: Limit = 200, before: Before = None
+    services: TheServices, page: ThePage, mission: MissionQuery = None, before: Before = None
 ) -> list[PlanEntry]:
     """Newest first, without routes and histories; `before` the last `id` gives the next ones."""
-    return list(await services.plans.list(mission, limit, before))
+    return page.of(await services.plans.list(mission, page.rows, before), before=lambda plan: plan.id)
 
 
 @router.get("/plans/{plan}", summary="Read a plan")

@@ -8,19 +8,21 @@ from fastapi import APIRouter, Response
 
 from muster.exchange.mission_control import Run
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import TheServices
-from muster.server.api.parameter_types import Limit, RunId
-from muster.server.api.responses import archive_response, errors, file_described, file_response
+from muster.server.api.dependencies import ThePage, TheServices
+from muster.server.api.parameter_types import Before, MissionQuery, RunId
+from muster.server.api.responses import PAGED, archive_response, errors, file_described, file_response
 
 router = APIRouter(prefix="/records", tags=["records"], route_class=BoundedRoute)
 
 ExportTo = Literal["csv", "geojson", "gpx", "kml", "json"]
 
 
-@router.get("", summary="List records")
-async def records(services: TheServices, limit: Limit = 200) -> list[Run]:
-    """Runs that are over, newest first."""
-    return list(await services.records.list(limit))
+@router.get("", summary="List records", responses=PAGED)
+async def records(
+    services: TheServices, page: ThePage, mission: MissionQuery = None, before: Before = None
+) -> list[Run]:
+    """Runs that are over, newest first; `before` the last `id` gives the next ones."""
+    return page.of(await services.runs.over(page.rows, before, mission), before=lambda run: run.id)
 
 
 @router.get(

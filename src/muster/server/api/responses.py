@@ -53,6 +53,19 @@ def with_location(status: int, what: str, *, etag: bool = False) -> Responses:
     return {status: {"description": what, "headers": headers}}
 
 
+PAGED: Responses = {
+    200: {
+        "headers": {
+            "Link": {
+                "description": 'Where there is more: the address of the next page, with `rel="next"` (RFC 8288).',
+                "schema": {"type": "string"},
+            }
+        }
+    }
+}
+"""The description of a page of a list."""
+
+
 def file_response(data: bytes, name: str, kind: str, *, shown_in_place: bool = False) -> Response:
     """A file: browsers save it, or show it in a sandbox."""
     plain = "".join(c if c.isascii() and (c.isalnum() or c in "._- ") else "_" for c in name) or "file"

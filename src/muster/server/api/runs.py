@@ -8,12 +8,12 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response, WebSocket
 from pydantic import Field
 
-from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, Run
+from muster.exchange.mission_control import MOST_ROWS, OVER, Action, ConflictError, Entry, Run
 from muster.mission.errors import ParameterError
 from muster.server.api.bodies import BoundedRoute
-from muster.server.api.dependencies import IdempotencyKey, TheServices, TheUser, key_of
-from muster.server.api.parameter_types import LARGEST, After, Body, Limit, Name, RunId
-from muster.server.api.responses import errors, with_location
+from muster.server.api.dependencies import IdempotencyKey, ThePage, TheServices, TheUser, key_of
+from muster.server.api.parameter_types import LARGEST, After, Before, Body, MissionQuery, Name, RunId
+from muster.server.api.responses import PAGED, errors, with_location
 from muster.server.api.sockets import answer, message, tell
 from muster.server.runs.log_lines import line_of
 from muster.server.runs.run_settings import MOST_ORDERS
@@ -77,10 +77,10 @@ async def start(
     return run
 
 
-@router.get("", summary="List runs")
-async def runs(services: TheServices, limit: Limit = 200) -> list[Run]:
-    """Newest first."""
-    return list(await services.runs.list(limit))
+@router.get("", summary="List runs", responses=PAGED)
+async def runs(services: TheServices, page: ThePage, mission: MissionQuery = None, before: Before = None) -> list[Run]:
+    """Newest first; `before` the last `id` gives the next ones."""
+    return page.of(await services.runs.list(page.rows, before, mission), before=lambda run: run.id)
 
 
 @router.get("/{run}", summary="See how a run is")
@@ -104,10 +104,10 @@ async def order(services: TheServices, who: TheUser, run: RunId, body: Orders) -
     return await services.runs.act(who, run, "orders", {"orders": body.orders})
 
 
-@router.get("/{run}/events", summary="Read the log of a run")
-async def events(services: TheServices, run: RunId, after: After = 0, limit: Limit = 1000) -> list[Entry]:
+@router.get("/{run}/events", summary="Read the log of a run", responses=PAGED)
+async def events(services: TheServices, page: ThePage, run: RunId, after: After = 0) -> list[Entry]:
     """In order; `after` the last `seq` gives the next ones."""
-    return list(await services.runs.entries(run, after, limit))
+    return page.of(await services.runs.entries(run, after, page.rows), after=lambda entry: entry.seq)
 
 
 @router.get("/{run}/report", summary="Read the report of a run", responses=errors(409))
@@ -145,8 +145,10 @@ async def _past(runs: Runs, run: int, after: int) -> AsyncIterator[str]:
     """The messages of a run that is over: its log, and how it ended."""
     found = await runs.get(run)
     yield message("hello", {"run": found, "mission": None, "seq": after})
-    for entry in await runs.entries(run, after):
-        told = {"seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": entry.data}
-        yield message("entry", {**told, "line": line_of(entry.kind, entry.data)})
+    while entries := await runs.entries(run, after, MOST_ROWS):
+        for entry in entries:
+            told = {"seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": entry.data}
+            yield message("entry", {**told, "line": line_of(entry.kind, entry.data)})
+        after = entries[-1].seq
     ended = {key: getattr(found, key) for key in ("state", "speed", "time_s", "remark", "share")}
     yield message("run", ended)

@@ -11,8 +11,8 @@
 | `crashes` | server | when runners have died too often |
 | `session` | server | one run: its runner, again after a crash; its log; its state |
 | `runner_input`, `packed_log` | server | what a runner is told first; the log, packed in memory |
-| `log_writer` | server | writes a run's log to the database, and keeps it in memory while that refuses |
-| `unsaved_action` | server | actions that the database has not taken in time |
+| `log_writer` | server | writes a run's log to the database, and to the journal while that refuses |
+| `journal`, `journal_replay` | server | what the database has not taken: a file; and its way into the database |
 | `subscribers` | server | tells watchers |
 | `terms` | server | what may be asked |
 | `claims` | server | which real robots a run has for itself |

@@ -1,7 +1,7 @@
-"""Writes a run to the database in small batches and in threads; keeps it in memory while the database fails.
+"""Writes a run to the database in small batches and in threads; while that fails, to the server's journal.
 
-Everything is written in order: entries and tracks in one transaction, then outcomes of actions, then fields of the run.
-Subscribers receive entries when they are written, or when the database fails.
+Everything is written in order: entries and tracks in one transaction, then actions, then fields of the run. Subscribers
+receive entries when the database has them, or while it fails the journal. Memory alone holds tracks meanwhile.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import ConflictError, Entry, Stretch
+from muster.exchange.mission_control import Action, Checkpoint, ConflictError, Entry, Stretch
 from muster.mission.errors import MusterError
 
 if TYPE_CHECKING:
+    from muster.server.runs.journal import Journal
     from muster.server.store.store import Store
 
 BATCH_S = 0.1
@@ -39,8 +40,12 @@ class LogWriter:
 
     Parameters
     ----------
+    journal
+        takes entries and actions while the database fails.
     on_entries
-        receives each entry once and in order, when it is written or the database fails.
+        receives each entry once and in order, when the database or the journal has it.
+    on_actions
+        receives actions when the database has them.
     on_trouble
         receives why the database fails, and an empty text when it works again.
     on_lost
@@ -51,33 +56,37 @@ class LogWriter:
         self,
         store: Store,
         run: int,
+        journal: Journal,
         *,
         on_entries: Callable[[Sequence[Entry]], None],
+        on_actions: Callable[[Sequence[Action]], None],
         on_trouble: Callable[[str], None],
         on_lost: Callable[[str], None],
     ) -> None:
-        self._store, self._run = store, run
-        self._on_entries, self._on_trouble, self._on_lost = on_entries, on_trouble, on_lost
+        self._store, self._run, self._journal = store, run, journal
+        self._on_entries, self._on_actions = on_entries, on_actions
+        self._on_trouble, self._on_lost = on_trouble, on_lost
         self._entries: list[Entry] = []
         self._stretches: list[Stretch] = []
         self.bodies: Mapping[str, Any] | None = None
         """Where bodies are, after an entry `seq`: written once that entry is, and with it."""
         self._fields: dict[str, Any] = {}
-        self._late: list[Callable[[], object]] = []
-        self._given = 0
+        self._actions: dict[int, Action] = {}
+        self._checkpoint: Checkpoint | None = None
+        self._given = self._saved = 0
         self._last_stretch: int | None = None
         self._dropped = 0
         self._wake, self._drained = asyncio.Event(), asyncio.Event()
         self._drained.set()
         self._closing = False
-        self.trouble, self._lost = "", False
+        self.trouble, self._unsaved, self._lost = "", "", False
         self._task = asyncio.create_task(self._go())
 
     def add(self, entry: Entry) -> None:
         """Add an entry."""
         self._entries.append(entry)
         if self.trouble:
-            self._give([entry])
+            self._save([entry])
         self._ask()
 
     def add_stretch(self, from_s: float, until_s: float, data: bytes) -> None:
@@ -92,10 +101,23 @@ class LogWriter:
         self._fields |= fields
         self._ask()
 
-    def later(self, write: Callable[[], object]) -> None:
-        """Write something after all that was added so far, such as the outcome of an action."""
-        self._late.append(write)
+    def keep_checkpoint(self, checkpoint: Checkpoint) -> None:
+        """Write a checkpoint, after all entries and actions that were added so far; of several that wait the newest."""
+        self._checkpoint = checkpoint
         self._ask()
+
+    def keep(self, action: Action) -> None:
+        """Write an action and its outcome, after all entries that were added so far."""
+        self._actions[action.id] = action
+        self._ask()
+
+    def save(self, action: Action) -> asyncio.Future[None]:
+        """Write an action now to the journal, and later to the database.
+
+        The future is done when the journal has the action. It raises StoreError if the journal cannot be written.
+        """
+        self.keep(action)  # first: the journal is emptied when nothing is to be written
+        return self._journal.append([action])
 
     @property
     def behind(self) -> bool:
@@ -113,7 +135,7 @@ class LogWriter:
 
     async def given(self) -> None:
         """Wait until all that was added is written, or the database has failed."""
-        while not self._drained.is_set() and not self.trouble:
+        while not self._drained.is_set() and (not self.trouble or self._given < self._saved):
             await asyncio.sleep(BATCH_S / 4)
 
     async def entries(self, after: int, limit: int | None = None) -> list[Entry]:
@@ -147,8 +169,10 @@ class LogWriter:
             self._wake.clear()
             begun = time.monotonic()
             works = await self._write()
-            if works and not (self._entries or self._stretches or self._fields or self._late):
+            if works and not (self._entries or self._stretches or self._fields or self._actions or self._checkpoint):
                 self._drained.set()
+                if not self._lost:
+                    self._journal.release(self._run)
             if self._closing and (self._drained.is_set() or not works):
                 self._drained.set()
                 return works
@@ -164,18 +188,14 @@ class LogWriter:
             self._forget()
             return True
         entries, stretches = self._batch(), self._stretches[:_AT_ONCE]
-        fields, late = dict(self._fields), list(self._late)
+        fields, actions, checkpoint = dict(self._fields), list(self._actions.values()), self._checkpoint
         whole = len(entries) == len(self._entries)
         trouble = ""
         try:
             if entries or stretches:
                 await self._append_patiently(entries, stretches)
-            for write in late if whole else ():
-                await self._patiently(write)
-                self._late.remove(write)
-            if fields and whole:
-                await self._patiently(partial(self._store.runs.set, self._run, **fields))
-                self._fields = {key: value for key, value in self._fields.items() if fields.get(key, self) != value}
+            if whole:
+                await self._write_rest(actions, checkpoint, fields)
         except ConflictError as error:  # another try would fail too
             self._lost = True
             self._forget()
@@ -186,11 +206,31 @@ class LogWriter:
             trouble = str(error) if known else f"an error of mission control: {type(error).__name__}: {error}"
             if trouble != self.trouble and not known:
                 _log.exception("run %d", self._run)
-        self._give(entries if not trouble else list(self._entries))
+        if trouble:
+            self._save(self._entries)
+        else:
+            self._give(entries)
         self._be_troubled(trouble)
         if self._entries or self._stretches:
             self._wake.set()
         return not trouble
+
+    async def _write_rest(
+        self, actions: Sequence[Action], checkpoint: Checkpoint | None, fields: Mapping[str, Any]
+    ) -> None:
+        """Write what comes after entries: actions, then a checkpoint, then fields of the run."""
+        if actions:
+            await self._patiently(self._store.actions.keep, actions)
+            for one in actions:
+                if self._actions[one.id] is one:  # no outcome came meanwhile
+                    del self._actions[one.id]
+            self._on_actions(actions)
+        if checkpoint is not None:
+            await self._patiently(self._store.log.add_checkpoint, checkpoint)
+            self._checkpoint = None if self._checkpoint is checkpoint else self._checkpoint
+        if fields:
+            await self._patiently(partial(self._store.runs.set, self._run, **fields))
+            self._fields = {key: value for key, value in self._fields.items() if fields.get(key, self) != value}
 
     def _batch(self) -> list[Entry]:
         """The first entries that wait, cut where the mission's time changes: what happens at once is kept as one."""
@@ -210,16 +250,34 @@ class LogWriter:
         del self._entries[: len(entries)]
 
     async def _patiently(self, write: Callable[..., object], *arguments: Any) -> None:
-        """Write in a thread; if it is slow, subscribers receive the waiting entries meanwhile."""
+        """Write in a thread; if it is slow, the journal takes the waiting entries meanwhile."""
         writing = asyncio.create_task(asyncio.to_thread(write, *arguments))
         done, _ = await asyncio.wait([writing], timeout=PATIENCE_S)
         if not done:
             self._be_troubled(self.trouble or "the database takes its time")
-            self._give(list(self._entries))
+            self._save(self._entries)
         await writing
 
+    def _save(self, entries: Sequence[Entry]) -> None:
+        """Write entries to the journal that it has not yet, and give them to subscribers then."""
+        new = [entry for entry in entries if entry.seq > self._saved]
+        if new:
+            self._saved = new[-1].seq
+            self._journal.append(new).add_done_callback(partial(self._on_saved, new))
+
+    def _on_saved(self, entries: Sequence[Entry], saved: asyncio.Future[None]) -> None:
+        """Give entries to subscribers; also if the journal could not be written, since the run goes on."""
+        error = saved.exception()
+        if error is not None and not self._unsaved:
+            self._unsaved = str(error)
+            self._be_troubled(self.trouble)
+        self._give(entries)
+
     def _be_troubled(self, why: str) -> None:
-        """Report why the database fails; empty if it works."""
+        """Report why the database fails, and the journal if that does, too; empty if the database works."""
+        self._unsaved = self._unsaved if why else ""
+        if self._unsaved and self._unsaved not in why:
+            why = f"{why}; {self._unsaved}"
         if why != self.trouble:
             self.trouble = why
             _log.warning("run %d: %s", self._run, why or f"the database works again; {self._kept()}")
@@ -238,7 +296,7 @@ class LogWriter:
 
     def _forget(self) -> None:
         """Drop all that is not written."""
-        for waiting in (self._entries, self._stretches, self._late, self._fields):
+        for waiting in (self._entries, self._stretches, self._actions, self._fields):
             waiting.clear()
 
     def _append(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:

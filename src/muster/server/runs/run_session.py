@@ -10,24 +10,23 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from datetime import UTC, datetime
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.mission_control import OVER, Action, Checkpoint, Entry, Run, RunState, StoreError
 from muster.running.worlds import WORLDS
 from muster.server.runs.crash_history import CrashHistory
+from muster.server.runs.journal import Journal
+from muster.server.runs.journal_replay import TOO_LATE
 from muster.server.runs.log_lines import line_of
 from muster.server.runs.log_writer import LogWriter
 from muster.server.runs.runner_input import RunnerInput
 from muster.server.runs.runner_process import RunnerProcess
 from muster.server.runs.subscribers import Subscribers
-from muster.server.runs.unsaved_actions import number_at
+from muster.server.store.actions import id_at
 
 if TYPE_CHECKING:
     from muster.server.store.store import Store
 
-TOO_LATE = "the run was over before"
-"""The outcome of an action that came too late."""
 NOTED_S = 1.0
 """Seconds of the wall clock between two writes of the mission time while nothing happens."""
 _AGAIN_S = 0.2
@@ -43,13 +42,15 @@ class RunSession:
     ----------
     run
         as stored in the database.
+    journal
+        takes what the database cannot be told.
     lock
         a file that a runner of real robots locks, so that two runners never command them.
     memory_mb
         the memory of a runner of a simulated world.
     """
 
-    def __init__(self, store: Store, run: Run, lock: str, memory_mb: int) -> None:
+    def __init__(self, store: Store, run: Run, journal: Journal, lock: str, memory_mb: int) -> None:
         self._store, self.run, self._runner_input = store, run, RunnerInput(store, run, lock)
         self._memory_mb = memory_mb
         self._pending: dict[int, Action] = {}
@@ -65,7 +66,13 @@ class RunSession:
         self._texts: dict[int, str] = {}
         self._tick: list[tuple[Mapping[str, Any], str]] = []  # entries of the tick that has not ended yet
         self.log_writer = LogWriter(
-            store, run.id, on_entries=self._on_written, on_trouble=self._on_trouble, on_lost=self._give_up
+            store,
+            run.id,
+            journal,
+            on_entries=self._on_written,
+            on_actions=self._on_kept,
+            on_trouble=self._on_trouble,
+            on_lost=self._give_up,
         )
         self.subscribers = Subscribers(self._hello, self._read_texts)
 
@@ -172,7 +179,7 @@ class RunSession:
             return None
         if self._runner_input.goes_on:
             self._resume(0.0)
-        return await asyncio.to_thread(partial(self._runner_input.line, self.run, cancelled=self._cancelled))
+        return await asyncio.to_thread(self._runner_input.line, self.run, self._cancelled)
 
     def _resume(self, share: float | None) -> None:
         """Publish how far the run is with going on; None: it goes on."""
@@ -190,11 +197,11 @@ class RunSession:
             self.subscribers.publish([(entry.seq, _entry_text(entry)) for entry in log[-100:]])
         applied = {entry.data["action"]: entry for entry in log if entry.kind == "command"}
         for action in unsettled:
-            said = applied.get(action.id) or applied.get(number_at(action.at))
+            said = applied.get(action.id) or applied.get(-id_at(action.at))  # as logs of older Musters have it
             if said is None:
                 self._pending.setdefault(action.id, action)
             else:
-                self._write_outcome(action.id, action, said.data["outcome"], said.time_s)
+                self._write_outcome(action, said.data["outcome"], said.time_s)
         self._pending = {action.id: action for action in sorted(self._pending.values(), key=lambda action: action.at)}
 
     async def _handle(self, text: str) -> None:
@@ -274,21 +281,14 @@ class RunSession:
         self._keep_checkpoint()
 
     def _keep_checkpoint(self) -> None:
-        """Keep a checkpoint once all entries before it are published, and their actions are settled.
-
-        While the database is away the newest takes the place of those that wait.
-        """
+        """Keep a checkpoint once all entries before it are published, and their actions are settled."""
         if self._checkpoint is None or self._checkpoint[0] > self.subscribers.seq:
             return
         (seq, data), self._checkpoint = self._checkpoint, None
         facts = {key: getattr(self.run, key) for key in ("state", "speed", "resumed")}
         checkpoint = Checkpoint(run=self.run.id, seq=seq, data=data, facts=facts)
         self._runner_input.replace_log(checkpoint)
-        self.log_writer.later(partial(self._write_checkpoint, checkpoint))
-
-    def _write_checkpoint(self, checkpoint: Checkpoint) -> None:
-        if self._runner_input.checkpoint is checkpoint:
-            self._store.log.add_checkpoint(checkpoint)
+        self.log_writer.keep_checkpoint(checkpoint)
 
     def _apply(self, entry: Entry) -> None:
         """Apply an entry to the state of the run."""
@@ -313,33 +313,32 @@ class RunSession:
 
     def _settle(self, entry: Entry) -> None:
         """Write the outcome of an action."""
-        number = entry.data["action"]
-        self._write_outcome(number, self._pending.pop(number, None), entry.data["outcome"], entry.time_s)
+        action = self._pending.pop(entry.data["action"], None)
+        if action is not None:
+            self._write_outcome(action, entry.data["outcome"], entry.time_s)
 
-    def _write_outcome(self, number: int, action: Action | None, outcome: str, applied_s: float | None = None) -> None:
-        if number > 0:
-            self.log_writer.later(partial(self._store.actions.settle, number, outcome, applied_s))
-        elif action is not None:  # it could not be written when it was requested
-            action = replace(action, outcome=outcome, applied_s=applied_s)
-            self.log_writer.later(partial(self._keep, action, asyncio.get_running_loop()))
-        self.subscribers.publish_action({"id": number, "outcome": outcome, "kept": number > 0})
+    def _write_outcome(self, action: Action, outcome: str, applied_s: float | None = None) -> None:
+        self.log_writer.keep(replace(action, outcome=outcome, applied_s=applied_s))
+        self.subscribers.publish_action({"id": action.id, "outcome": outcome, "kept": action.kept})
 
-    def _keep(self, action: Action, loop: asyncio.AbstractEventLoop) -> None:
-        """Write an action that only memory held, in the thread of the log's writer, and publish that it is kept."""
-        self._store.actions.keep(action)
-        kept = {"id": action.id, "outcome": action.outcome, "kept": True}
-        loop.call_soon_threadsafe(self.subscribers.publish_action, kept)
+    def _on_kept(self, actions: Sequence[Action]) -> None:
+        """Publish that the database has actions that only the journal had."""
+        for action in actions:
+            if action.id in self._pending:
+                self._pending[action.id] = action.as_kept()
+            if not action.kept and action.outcome:
+                self.subscribers.publish_action({"id": action.id, "outcome": action.outcome, "kept": True})
 
     def _finish(self) -> None:
         state: RunState = "failed" if self._failed else "cancelled" if self._cancelled else "ended"
         for action in self._pending.values():
-            self._write_outcome(action.id, action, TOO_LATE)
+            self._write_outcome(action, TOO_LATE)
         self._pending.clear()
         self._share = None
         self._change(state=state, ended_at=self._ended_at or datetime.now(UTC))
 
     def _on_trouble(self, why: str) -> None:
-        self._trouble = f"this run is not being kept: {why}" if why else ""
+        self._trouble = f"not all of this run is in the database yet: {why}" if why else ""
         self._change()
 
     def _give_up(self, why: str) -> None:

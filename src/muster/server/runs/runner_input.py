@@ -67,7 +67,7 @@ class RunnerInput:
         """Note up to when the runner has sent tracks."""
         self._tracked_s = max(self._tracked_s, until_s)
 
-    def line(self, run: Run, *, cancelled: bool) -> bytes:
+    def line(self, run: Run, cancelled: bool) -> bytes:
         """The message for a run as it is now, including the mission time that subscribers have seen."""
         assert self._work is not None
         checkpoint = self.checkpoint

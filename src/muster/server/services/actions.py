@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from typing import Any
 
-from muster.exchange.mission_control import Action, ForbiddenError, StoreError, User
+from muster.exchange.mission_control import PAGE_ROWS, Action, ForbiddenError, StoreError, User
 from muster.mission.errors import MusterError
 from muster.server.store import Store
 
@@ -69,7 +69,7 @@ class Actions:
             raise
         await self._settle(action.id, "done")
 
-    async def list(self, run: int | None = None, limit: int = 200, before: int | None = None) -> list[Action]:
+    async def list(self, run: int | None = None, limit: int = PAGE_ROWS, before: int | None = None) -> list[Action]:
         """Actions of one run or of all, newest first; only ids below `before`, if given."""
         return await asyncio.to_thread(self._table.list, run, limit, before)
 

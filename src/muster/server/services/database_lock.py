@@ -116,15 +116,24 @@ def _file_locked(file: Path) -> Iterator[None]:
 def lock_of_runs(settings: Settings) -> Path:
     """The file that runners of real robots lock, the same for all servers of this database on this machine.
 
-    With SQLite it is beside the database. With PostgreSQL it is in the data folder of this user (`XDG_DATA_HOME`), so
-    runners of another machine or user are not waited for; they stop their robots when their server ends.
+    Runners of another machine or user are not waited for: they stop their robots when their server ends.
     """
+    return _local_file(settings, ".runs.lock")
+
+
+def journal_of(settings: Settings) -> Path:
+    """The file of the journal, the same for all servers of this database on this machine."""
+    return _local_file(settings, ".journal")
+
+
+def _local_file(settings: Settings, ending: str) -> Path:
+    """A file of this machine for a database: beside that of SQLite, else in the data folder (`XDG_DATA_HOME`)."""
     address = database_url(settings.database)
     file = sqlite_file(address)
     if file is not None:
-        return _beside(file, ".runs.lock")
+        return _beside(file, ending)
     key = sha256(whereabouts(address).encode()).hexdigest()[:16]
-    return settings.folder / f"{key}.runs.lock"
+    return settings.folder / f"{key}{ending}"
 
 
 def _beside(file: Path, ending: str) -> Path:

@@ -12,6 +12,7 @@ from typing import Any
 
 from muster.exchange.mission_control import (
     JOB_OVER,
+    PAGE_ROWS,
     BusyError,
     ConflictError,
     Job,
@@ -71,9 +72,15 @@ class Jobs:
             task.cancel()
         await asyncio.gather(*self._hands, *self._tasks, return_exceptions=True)
 
-    async def list(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
+    async def list(
+        self,
+        state: JobState | None = None,
+        mission: str | None = None,
+        limit: int = PAGE_ROWS,
+        before: int | None = None,
+    ) -> list[Job]:
         """Jobs of one state and mission or of all, newest first."""
-        found = await asyncio.to_thread(self._store.jobs.list, state, mission, limit)
+        found = await asyncio.to_thread(self._store.jobs.list, state, mission, limit, before)
         return [self._newest.get(job.id, job) for job in found]
 
     async def get(self, job: int) -> Job:

@@ -9,10 +9,12 @@ import asyncio
 import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from datetime import datetime
 from pathlib import PurePath
 from typing import Any, Protocol
 
 from muster.exchange.mission_control import (
+    PAGE_ROWS,
     ConflictError,
     MissionEntry,
     MissionVersion,
@@ -36,6 +38,7 @@ from muster.server.services.uploads import (
     site_files,
 )
 from muster.server.store import Store
+from muster.server.store.missions import words_of
 
 _CONVERTED = (*(f".{name}" for name in READERS), *CONVERTED)
 
@@ -74,7 +77,7 @@ class Missions:
         """
         return await asyncio.to_thread(self._stored, mission)
 
-    async def versions(self, mission: str, limit: int = 200, before: int | None = None) -> list[VersionEntry]:
+    async def versions(self, mission: str, limit: int = PAGE_ROWS, before: int | None = None) -> list[VersionEntry]:
         """Versions, newest first; only those below `before`, if given.
 
         Raises
@@ -310,10 +313,69 @@ class Missions:
                 raise
             return [VersionEntry(mission=mission, version=0, author=AUTHOR, at=None)]
 
-    async def list(self) -> list[MissionEntry]:
-        """Missions made on this server, last changed first, then the shipped ones."""
-        stored = {entry.id: entry for entry in await asyncio.to_thread(self._table.list)}
-        shipped = await asyncio.to_thread(shipped_entries)
-        own = [entry for entry in stored.values() if not entry.shipped]
-        own.sort(key=lambda entry: (entry.changed_at is not None, entry.changed_at), reverse=True)
-        return [*own, *(stored.get(name, entry) for name, entry in shipped.items())]
+    async def list(self, limit: int = PAGE_ROWS, after: str = "", search: str = "") -> Sequence[MissionEntry]:
+        """Missions made on this server, last changed first, then the shipped ones.
+
+        Parameters
+        ----------
+        limit
+            the greatest number of missions.
+        after
+            `place_of` the last mission of the page before.
+        search
+            words that all stand in the name or id of the mission.
+
+        Raises
+        ------
+        ParameterError
+            if `after` is no such place.
+        """
+        return await asyncio.to_thread(self._list, limit, _place(after), search.casefold().split())
+
+    async def with_text(self, text: str) -> str | None:
+        """The id of a mission whose newest version has this text; None if there is none."""
+        return await asyncio.to_thread(self._table.with_text, text)
+
+    async def count(self, search: str = "") -> int:
+        """How many of the missions made on this server `list` has in all."""
+        return await asyncio.to_thread(self._table.count, search.casefold().split())
+
+    async def dimensions(self, mission: str) -> int:
+        """How many dimensions the newest version of a mission has; 2 of one that was deleted."""
+        known = [*await asyncio.to_thread(self._table.named, [mission]), shipped_entries().get(mission)]
+        return next((entry.dimensions for entry in known if entry is not None), 2)
+
+    def _list(
+        self, limit: int, after: tuple[datetime | None, str] | None, words: Sequence[str]
+    ) -> Sequence[MissionEntry]:
+        changed_at, last = after or (None, "")
+        own = list[MissionEntry]()
+        if changed_at is not None or not last:
+            own += self._table.list(limit, words, None if changed_at is None else (changed_at, last))
+            if len(own) == limit:
+                return own
+            last = ""
+        shipped = list(shipped_entries().values())
+        behind = next((k for k, entry in enumerate(shipped, start=1) if entry.id == last), 0)
+        found = [one for one in shipped[behind:] if all(word in words_of(one.id, one.name) for word in words)]
+        stored = {entry.id: entry for entry in self._table.named([one.id for one in found])}
+        return [*own, *(stored.get(one.id, one) for one in found[: limit - len(own)])]
+
+
+def place_of(entry: MissionEntry) -> str:
+    """The place of a mission in the list of missions, from which the next page goes on."""
+    return f"{'' if entry.shipped or entry.changed_at is None else entry.changed_at.isoformat()}~{entry.id}"
+
+
+def _place(text: str) -> tuple[datetime | None, str] | None:
+    """When the mission at a place was changed, None for a shipped one, and its id; None for the beginning."""
+    if not text:
+        return None
+    moment, tilde, mission = text.partition("~")
+    try:
+        changed_at = datetime.fromisoformat(moment) if moment else None
+    except ValueError:
+        tilde = ""
+    if not tilde or (changed_at is not None and changed_at.tzinfo is None):
+        raise ParameterError(f"after: {text}; expected what the address of the next page has")
+    return changed_at, mission

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from muster.exchange.mission_control import PlanEntry, User
+from muster.exchange.mission_control import PAGE_ROWS, PlanEntry, User
 from muster.mission.errors import ParameterError
 from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.comparison import compared
@@ -144,7 +144,13 @@ class Plans:
             raise ParameterError(f"plan {b} is of {second.mission}; expected one of {first.mission}, as plan {a}")
         return compared(first, await self.verdict(a), second, await self.verdict(b))
 
-    async def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> list[PlanEntry]:
+    async def missions(self) -> list[str]:
+        """The missions of the newest plans, the one that was planned last first."""
+        return await asyncio.to_thread(self._store.plans.missions)
+
+    async def list(
+        self, mission: str | None = None, limit: int = PAGE_ROWS, before: int | None = None
+    ) -> list[PlanEntry]:
         """Plans of one mission or of all, newest first, without their routes and histories; ids below `before`."""
         return await asyncio.to_thread(self._store.plans.list, mission, limit, before)
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 import base64
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import OVER, ConflictError, Run
+from muster.exchange.mission_control import OVER, ConflictError
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.server.runs.record_files import LOG, TRACKS
@@ -33,10 +33,6 @@ class Records:
 
     def __init__(self, store: Store, pool: Pool, runs: Runs) -> None:
         self._store, self._pool, self._runs = store, pool, runs
-
-    async def list(self, limit: int = 200) -> Sequence[Run]:
-        """Runs that are over, newest first."""
-        return await self._runs.over(limit)
 
     async def page(self, run: int) -> str:
         """The page that `muster replay --html` writes.

@@ -7,22 +7,23 @@ import logging
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import Action, BusyError, ConflictError, Entry, Run, StoreError, User
+from muster.exchange.mission_control import PAGE_ROWS, Action, BusyError, ConflictError, Entry, Run, StoreError, User
 from muster.mission.errors import MusterError, ParameterError
 from muster.running.robot_claims import claims_as_far_as_known, claims_of
 from muster.running.worlds import WORLDS
-from muster.server.runs.run_session import TOO_LATE, RunSession
+from muster.server.runs.journal import Journal
+from muster.server.runs.journal_replay import TOO_LATE, replay
+from muster.server.runs.run_session import RunSession
 from muster.server.runs.run_settings import require_action, require_speed, require_world
 from muster.server.runs.subscribers import Subscribers
-from muster.server.runs.unsaved_actions import unsaved_action
 from muster.server.services.actions import Actions, Refused, ignore_refusal, outcome_of
-from muster.server.services.database_lock import lock_of_runs
+from muster.server.services.database_lock import journal_of, lock_of_runs
 from muster.server.services.repeated_requests import made_once
 from muster.server.settings import Settings
+from muster.server.store.actions import new_action
 from muster.server.store.request_keys import RequestKey
 from muster.server.work.temporary_folders import OF_RUNS, sweep
 
@@ -30,7 +31,11 @@ if TYPE_CHECKING:
     from muster.server.store.store import Store
 
 PATIENCE_S = 0.7
-"""Seconds that a command to a run waits for the database; it takes effect then in any case."""
+"""Seconds that a command to a run waits for the database; after that the journal takes it."""
+
+_ENDS_WITHIN_S = 30.0
+"""Seconds within which a server ends that has lost the database to another one."""
+_STOPS = ("run.pause", "run.cancel")
 
 _log = logging.getLogger("muster.runs")
 
@@ -45,11 +50,20 @@ class Runs:
         self._sessions: dict[int, RunSession] = {}
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._beginning: list[frozenset[str]] = []  # robots of runs that are being started
-        self._slow: set[asyncio.Task[Action]] = set()
-        self._last = datetime.now(UTC)
+        self._slow: set[asyncio.Task[object]] = set()
+        self._journal_path = journal_of(settings)
+        self._opened_journal: Journal | None = None
 
     async def start_up(self) -> None:
-        """Resume the runs that the last server left unfinished."""
+        """Fold the journal of the last server into the database, and resume the runs that it left unfinished.
+
+        Raises
+        ------
+        StoreError
+            if the journal cannot be opened, or the database not be used.
+        """
+        self._opened_journal = await asyncio.to_thread(Journal, self._journal_path, _ENDS_WITHIN_S)
+        await asyncio.to_thread(replay, self._journal, self._store)
         await asyncio.to_thread(sweep, OF_RUNS)
         unfinished = await asyncio.to_thread(self._store.runs.unfinished)
         for k, run in enumerate(unfinished):
@@ -64,6 +78,9 @@ class Runs:
         await asyncio.gather(*(session.close() for session in self._sessions.values()))
         await asyncio.gather(*self._tasks.values())
         await asyncio.gather(*self._slow, return_exceptions=True)
+        journal, self._opened_journal = self._opened_journal, None
+        if journal is not None:
+            await journal.close()
 
     async def start(
         self,
@@ -116,9 +133,11 @@ class Runs:
             finally:
                 self._beginning.remove(claims)
 
-    async def list(self, limit: int = 200) -> Sequence[Run]:
-        """Runs, newest first."""
-        runs = await asyncio.to_thread(self._store.runs.list, limit)
+    async def list(
+        self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None
+    ) -> Sequence[Run]:
+        """Runs, of one mission or all, newest first; ids below `before`, if given."""
+        runs = await asyncio.to_thread(self._store.runs.list, limit, before, mission)
         return [self._newest(run) for run in runs]
 
     def present(self) -> Sequence[Run]:
@@ -127,10 +146,16 @@ class Runs:
             self._sessions[run].shown for run in sorted(self._sessions, reverse=True) if not self._sessions[run].over
         ]
 
-    async def over(self, limit: int = 200) -> Sequence[Run]:
-        """Runs that are over, newest first, including those whose end is not written yet."""
-        ended = {run: session.run for run, session in self._sessions.items() if session.over}
-        kept = await asyncio.to_thread(partial(self._store.runs.list, limit, over=True))
+    async def over(
+        self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None
+    ) -> Sequence[Run]:
+        """Runs that are over, as `list`, including those whose end is not written yet."""
+        ended = {
+            run: session.run
+            for run, session in self._sessions.items()
+            if session.over and (before is None or run < before) and mission in (None, session.run.mission)
+        }
+        kept = await asyncio.to_thread(partial(self._store.runs.list, limit, before, mission, over=True))
         found = {run.id: run for run in kept} | ended
         return [found[run] for run in sorted(found, reverse=True)[:limit]]
 
@@ -148,26 +173,41 @@ class Runs:
         """Command a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {one without at_s}, `orders` {orders}.
 
         Subscribers receive the outcome, and the action has it later. The action is written before the command takes
-        effect. If the database fails or is slow, the command takes effect anyway: robots may have to be stopped.
-        Commands of one run take effect in the order in which they were given.
+        effect: to the database, or if that fails or is slow to the journal, as robots may have to be stopped. Commands
+        of one run take effect in the order in which they were given.
 
         Raises
         ------
         ForbiddenError, NotFoundError, ParameterError
         ConflictError
             if the run is over.
+        StoreError
+            if neither the database nor the journal can be written; `pause` and `cancel` take effect all the same.
         """
         async with self._written_if_refused(who, f"run.{verb}", {"run": run, "data": dict(data or {})}):
             said = require_action(verb, data or {})
             await self.require_under_way(run)
             session = self._sessions[run]
-        unsaved = unsaved_action(who, f"run.{verb}", said, run, self._moment())
+        # to its end also if the client leaves meanwhile: what is written is to be done now, not at the next start
+        return await asyncio.shield(self._taken(new_action(who, f"run.{verb}", said, run), session))
+
+    async def _taken(self, action: Action, session: RunSession) -> Action:
+        """Write an action, and pass it to the runner; see `act`."""
         async with session.in_order:  # a lock is acquired in the order of the calls
-            action = await self._added(unsaved, who, session)
+            if await self._is_added(action, session):
+                action = action.as_kept()
+                asked = session.ask(action)
+            else:
+                saved = session.log_writer.save(action)  # further actions may follow before it is synced
+        if not action.kept:
+            await self._saved(saved, action, session)
             asked = session.ask(action)
         if not asked:
-            await self._patiently(self._store.actions.keep, replace(action, outcome=TOO_LATE))
-            raise ConflictError(f"run {run} is over: {session.run.state}; expected one that is under way")
+            late = replace(action, outcome=TOO_LATE)
+            session.log_writer.keep(late)
+            if await self._patiently(self._store.actions.keep, [late]) and session.run.id not in self._sessions:
+                self._journal.release(session.run.id)  # the log's writer has ended with the run
+            raise ConflictError(f"run {action.run} is over: {session.run.state}; expected one that is under way")
         return action
 
     async def require_under_way(self, run: int) -> None:
@@ -250,7 +290,7 @@ class Runs:
             yield
         except MusterError as error:
             with suppress(MusterError):  # `_written` logs it
-                await self._patiently(self._store.actions.refused, who, verb, asked, outcome_of(error))
+                await self._patiently(self._store.actions.add, who, verb, asked, None, outcome_of(error))
             raise
 
     def _require_unclaimed(self, claims: frozenset[str]) -> None:
@@ -286,7 +326,9 @@ class Runs:
         )
 
     def _open_session(self, run: Run) -> RunSession:
-        session = self._sessions[run.id] = RunSession(self._store, run, str(self._lock), self._settings.memory_mb)
+        session = self._sessions[run.id] = RunSession(
+            self._store, run, self._journal, str(self._lock), self._settings.memory_mb
+        )
         task = self._tasks[run.id] = asyncio.create_task(session.go())
         task.add_done_callback(lambda _: self._forget(run.id))
         return session
@@ -305,35 +347,54 @@ class Runs:
         session = self._sessions.get(run.id)
         return run if session is None else session.shown
 
-    async def _added(self, action: Action, who: User, session: RunSession) -> Action:
-        """The action as written; as given if the database fails or is slow."""
-        if session.log_writer.trouble or self._slow:  # the database fails or is slow
-            return action
-        what = (who, action.verb, action.data, action.run, action.at)
-        return await self._patiently(self._store.actions.add, *what) or action
+    @property
+    def _journal(self) -> Journal:
+        if self._opened_journal is None:
+            self._opened_journal = Journal(self._journal_path)
+        return self._opened_journal
 
-    async def _patiently(self, write: Callable[..., Action], *what: Any) -> Action | None:
-        """Write an action; None if the database fails, or takes longer than PATIENCE_S and goes on writing."""
+    async def _is_added(self, action: Action, session: RunSession) -> bool:
+        """Write an action to the database; returns False if that fails or is slow."""
+        if session.log_writer.trouble or self._slow:
+            return False
+        await self._journal.flushed()  # which has those that were asked for before
+        return await self._patiently(self._store.actions.keep, [action])
+
+    async def _saved(self, saved: asyncio.Future[None], action: Action, session: RunSession) -> None:
+        """Wait until the journal has an action.
+
+        Raises
+        ------
+        StoreError
+            if it cannot be written. What stops robots is done all the same.
+        """
+        try:
+            await saved
+        except StoreError as error:
+            why = f"neither the database nor the journal takes it: {error}"
+            if action.verb in _STOPS and session.ask(action):
+                raise StoreError(f"{why}; it takes effect, and is lost if the server ends") from None
+            session.log_writer.keep(replace(action, outcome=f"refused: {why}"))
+            raise StoreError(f"{why}; refused") from None
+
+    async def _patiently(self, write: Callable[..., object], *what: Any) -> bool:
+        """Write an action; False if the database fails, or takes longer than PATIENCE_S and goes on writing."""
         writing = asyncio.create_task(asyncio.to_thread(write, *what))
         writing.add_done_callback(self._written)
         done, _ = await asyncio.wait([writing], timeout=PATIENCE_S)
         if not done:
             self._slow.add(writing)
-            return None
+            return False
         try:
-            return writing.result()
+            writing.result()
         except StoreError:
-            return None
+            return False
+        return True
 
-    def _written(self, writing: asyncio.Task[Action]) -> None:
+    def _written(self, writing: asyncio.Task[object]) -> None:
         self._slow.discard(writing)
         if not writing.cancelled() and (error := writing.exception()) is not None:
             _log.warning("an action was not written down: %s", error)
-
-    def _moment(self) -> datetime:
-        """The present time, later than at the last call."""
-        self._last = max(datetime.now(UTC), self._last + timedelta(microseconds=1))
-        return self._last
 
 
 def _claims(run: Run) -> frozenset[str]:

@@ -14,7 +14,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from sqlalchemy import Connection, Engine, Table, create_engine, event
+from sqlalchemy import Connection, Engine, Select, Table, create_engine, event
 from sqlalchemy.exc import SQLAlchemyError
 
 from muster.exchange.mission_control import StoreError
@@ -104,13 +104,26 @@ class Database:
             raise store_error(error, self.name) from None
 
 
+def newest(query: Select[Any], table: Table, limit: int, before: int | None, **equal: object) -> Select[Any]:
+    """A page of a query: the newest rows first, with ids below `before`, and these values where they are not None."""
+    wanted = [table.c[name] == value for name, value in equal.items() if value is not None]
+    if before is not None:
+        wanted.append(table.c.id < before)
+    return query.where(*wanted).order_by(table.c.id.desc()).limit(limit)
+
+
+def insert_of(connection: Connection, table: Table) -> Any:
+    """Return the database's own `INSERT` into a table, which knows `ON CONFLICT`."""
+    if connection.dialect.name == "sqlite":
+        from sqlalchemy.dialects.sqlite import insert
+    else:
+        from sqlalchemy.dialects.postgresql import insert  # type: ignore[assignment]
+    return insert(table)
+
+
 def insert_unless_there(connection: Connection, table: Table, row: Mapping[str, Any]) -> bool:
     """Insert a row unless there is one with its key, also a concurrent one; returns whether it was inserted."""
-    if connection.dialect.name == "sqlite":
-        from sqlalchemy.dialects.sqlite import insert as insert_or_leave
-    else:
-        from sqlalchemy.dialects.postgresql import insert as insert_or_leave  # type: ignore[assignment]
-    insert = insert_or_leave(table).values(row).on_conflict_do_nothing().returning(*table.primary_key)
+    insert = insert_of(connection, table).values(row).on_conflict_do_nothing().returning(*table.primary_key)
     return connection.execute(insert).first() is not None
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import ConflictError, Job, JobState, NotFoundError
-from muster.server.store.database import Database
+from muster.exchange.mission_control import PAGE_ROWS, ConflictError, Job, JobState, NotFoundError
+from muster.server.store.database import Database, newest
 from muster.server.store.plans import add_plan
 from muster.server.store.request_keys import RequestKey, keyed
 from muster.server.store.schema import jobs
@@ -122,13 +122,15 @@ class JobTable:
         with self._database.writing() as connection:
             return _move(connection, job, states, **values)
 
-    def list(self, state: JobState | None = None, mission: str | None = None, limit: int = 200) -> list[Job]:
-        """Jobs of one state and mission or of all, newest first."""
-        query = select(jobs).order_by(jobs.c.id.desc()).limit(limit)
-        if state is not None:
-            query = query.where(jobs.c.state == state)
-        if mission is not None:
-            query = query.where(jobs.c.mission == mission)
+    def list(
+        self,
+        state: JobState | None = None,
+        mission: str | None = None,
+        limit: int = PAGE_ROWS,
+        before: int | None = None,
+    ) -> list[Job]:
+        """Jobs of one state and mission or of all, newest first; with ids below `before`, if given."""
+        query = newest(select(jobs), jobs, limit, before, state=state, mission=mission)
         with self._database.reading() as connection:
             return [Job(**row._mapping) for row in connection.execute(query)]
 

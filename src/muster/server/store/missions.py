@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import fields
 from datetime import UTC, datetime
 from hashlib import sha256
 from typing import Any
 
-from sqlalchemy import Connection, Row, and_, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Row, Select, and_, func, insert, select, tuple_, update
 
-from muster.exchange.mission_control import ConflictError, MissionEntry, MissionVersion, NotFoundError, VersionEntry
+from muster.exchange.mission_control import (
+    PAGE_ROWS,
+    ConflictError,
+    MissionEntry,
+    MissionVersion,
+    NotFoundError,
+    VersionEntry,
+)
 from muster.server.store.database import Database, insert_unless_there
 from muster.server.store.schema import blobs, mission_files, mission_versions, missions
 
@@ -34,7 +41,7 @@ class MissionTable:
         with self._database.reading() as connection:
             return _version(connection, mission, _newest(connection, mission) if version is None else version)
 
-    def versions(self, mission: str, limit: int = 200, before: int | None = None) -> list[VersionEntry]:
+    def versions(self, mission: str, limit: int = PAGE_ROWS, before: int | None = None) -> list[VersionEntry]:
         """Versions, the newest first; those below `before`, if given.
 
         Raises
@@ -78,8 +85,9 @@ class MissionTable:
                     raise ConflictError(f"mission {mission} is there already")
             else:
                 mission = _free_id(connection, name, reserved)
-            connection.execute(insert(missions).values(id=mission, newest=1, shipped=shipped, hidden=False))
-            _write(connection, mission, 1, text, files, summary, author, note)
+            listed = _listed(mission, 1, summary)
+            connection.execute(insert(missions).values(id=mission, shipped=shipped, hidden=False, **listed))
+            _write(connection, mission, listed, text, files, summary, author, note)
             return _version(connection, mission, 1)
 
     def save(
@@ -108,8 +116,9 @@ class MissionTable:
                     f"mission {mission} was changed meanwhile: its newest version is {newest}, yours was made from "
                     f"{base_version}; look at the newest, and save again"
                 )
-            connection.execute(update(missions).where(missions.c.id == mission).values(newest=newest + 1))
-            _write(connection, mission, newest + 1, text, files, summary, author, note)
+            listed = _listed(mission, newest + 1, summary)
+            connection.execute(update(missions).where(missions.c.id == mission).values(listed))
+            _write(connection, mission, listed, text, files, summary, author, note)
             return _version(connection, mission, newest + 1)
 
     def delete(self, mission: str) -> None:
@@ -137,16 +146,57 @@ class MissionTable:
                 raise NotFoundError(f"no mission {mission}")
             connection.execute(update(missions).where(missions.c.id == mission).values(hidden=False))
 
-    def list(self) -> list[MissionEntry]:
-        """Every mission that was not deleted, by its id."""
+    def list(
+        self, limit: int = PAGE_ROWS, words: Sequence[str] = (), after: tuple[datetime, str] | None = None
+    ) -> Sequence[MissionEntry]:
+        """Missions that were made here and not deleted, last changed first.
+
+        Parameters
+        ----------
+        limit
+            the greatest number of missions.
+        words
+            that all stand in the name or id of the mission.
+        after
+            when the last mission of the page before was changed, and its id.
+        """
+        query = _ENTRIES.where(*_made_here(words)).order_by(missions.c.changed_at.desc(), missions.c.id.desc())
+        if after is not None:
+            last = tuple_(*after, types=[missions.c.changed_at.type, missions.c.id.type])
+            query = query.where(tuple_(missions.c.changed_at, missions.c.id) < last)
+        return self._read(query.limit(limit))
+
+    def with_text(self, text: str) -> str | None:
+        """The id of a mission whose newest version has this text; None if there is none."""
+        if "\0" in text:  # no text that is stored has one; a file of another kind may
+            return None
+        query = select(missions.c.id).join(mission_versions, _NEWEST).where(mission_versions.c.text == text)
         with self._database.reading() as connection:
-            rows = connection.execute(_ENTRIES.where(~missions.c.hidden).order_by(missions.c.id))
-            return [_entry(row) for row in rows]
+            found: str | None = connection.execute(query.where(~missions.c.hidden).limit(1)).scalar()
+        return found
+
+    def count(self, words: Sequence[str] = ()) -> int:
+        """How many missions `list` has in all."""
+        with self._database.reading() as connection:
+            query = select(func.count()).select_from(missions).where(*_made_here(words))
+            return int(connection.execute(query).scalar_one())
+
+    def named(self, names: Collection[str]) -> Sequence[MissionEntry]:
+        """Those of these missions that are stored and were not deleted."""
+        return self._read(_ENTRIES.where(missions.c.id.in_(names), ~missions.c.hidden))
+
+    def _read(self, query: Select[Any]) -> Sequence[MissionEntry]:
+        with self._database.reading() as connection:
+            return [_entry(row) for row in connection.execute(query)]
 
 
-_ENTRIES = select(missions, mission_versions.c.summary, mission_versions.c.at).join(
-    mission_versions, and_(mission_versions.c.mission == missions.c.id, mission_versions.c.version == missions.c.newest)
-)
+def _made_here(words: Sequence[str]) -> list[ColumnElement[bool]]:
+    named = (missions.c.words.contains(word, autoescape=True) for word in words)
+    return [~missions.c.shipped, ~missions.c.hidden, *named]
+
+
+_NEWEST = and_(mission_versions.c.mission == missions.c.id, mission_versions.c.version == missions.c.newest)
+_ENTRIES = select(missions, mission_versions.c.summary).join(mission_versions, _NEWEST)
 
 _VERSIONS = select(*(mission_versions.c[each.name] for each in fields(VersionEntry))).order_by(
     mission_versions.c.version.desc()
@@ -154,14 +204,23 @@ _VERSIONS = select(*(mission_versions.c[each.name] for each in fields(VersionEnt
 
 
 def _entry(row: Row[Any]) -> MissionEntry:
-    return MissionEntry(
-        id=row.id, shipped=row.shipped, version=row.newest, changed_at=row.at, **_of_summary(row.summary, row.id)
-    )
+    shown = _of_summary(row.summary, row.id)
+    return MissionEntry(id=row.id, shipped=row.shipped, version=row.newest, changed_at=row.changed_at, **shown)
 
 
 def _of_summary(summary: Mapping[str, Any], mission: str) -> dict[str, Any]:
     counts = {key: summary.get(key, 0) for key in ("robots", "tasks", "dimensions")}
     return {"name": summary.get("name", mission), **counts}
+
+
+def _listed(mission: str, newest: int, summary: Mapping[str, Any]) -> dict[str, Any]:
+    """What the list of missions is read by."""
+    return {"newest": newest, "words": words_of(mission, summary.get("name", mission)), "changed_at": datetime.now(UTC)}
+
+
+def words_of(mission: str, name: str) -> str:
+    """The text in which words are looked for that name a mission."""
+    return f"{name} {mission}".casefold()
 
 
 def _newest(connection: Connection, mission: str, *, to_write: bool = False) -> int:
@@ -198,14 +257,15 @@ def _without_files(row: Row[Any], files: Mapping[str, bytes] | None = None) -> M
 def _write(
     connection: Connection,
     mission: str,
-    version: int,
+    listed: Mapping[str, Any],
     text: str,
     files: Mapping[str, bytes],
     summary: Mapping[str, Any],
     author: str,
     note: str,
 ) -> None:
-    row = {"text": text, "summary": dict(summary), "author": author, "note": note, "at": datetime.now(UTC)}
+    version = listed["newest"]
+    row = {"text": text, "summary": dict(summary), "author": author, "note": note, "at": listed["changed_at"]}
     connection.execute(insert(mission_versions).values(mission=mission, version=version, **row))
     for name, data in files.items():
         digest = _keep(connection, data)

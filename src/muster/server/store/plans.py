@@ -8,8 +8,8 @@ from typing import Any, Literal
 
 from sqlalchemy import Connection, Row, func, insert, select
 
-from muster.exchange.mission_control import NotFoundError, PlanEntry
-from muster.server.store.database import Database
+from muster.exchange.mission_control import MOST_ROWS, PAGE_ROWS, NotFoundError, PlanEntry
+from muster.server.store.database import Database, newest
 from muster.server.store.schema import missions, plans
 
 _BODY = frozenset({"routes", "unassigned", "history", "book"})
@@ -51,16 +51,18 @@ class PlanTable:
             raise NotFoundError(f"no plan {plan}")
         return _entry(row)
 
-    def list(self, mission: str | None = None, limit: int = 200, before: int | None = None) -> list[PlanEntry]:
+    def missions(self, plans_read: int = MOST_ROWS) -> list[str]:
+        """The missions of the newest plans, the one that was planned last first."""
+        query = select(plans.c.mission).order_by(plans.c.id.desc()).limit(plans_read)
+        with self._database.reading() as connection:
+            return list(dict.fromkeys(connection.execute(query).scalars()))
+
+    def list(self, mission: str | None = None, limit: int = PAGE_ROWS, before: int | None = None) -> list[PlanEntry]:
         """Plans, of one mission or all, the newest first; with ids below `before`, if given.
 
         Each without routes, history, unassigned and book.
         """
-        query = _HEADS.order_by(plans.c.id.desc()).limit(limit)
-        if mission is not None:
-            query = query.where(plans.c.mission == mission)
-        if before is not None:
-            query = query.where(plans.c.id < before)
+        query = newest(_HEADS, plans, limit, before, mission=mission)
         with self._database.reading() as connection:
             return [_entry(row) for row in connection.execute(query)]
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import OVER, ConflictError, NotFoundError, Run, User, World
-from muster.server.store.actions import add_action
-from muster.server.store.database import Database
+from muster.exchange.mission_control import OVER, PAGE_ROWS, ConflictError, NotFoundError, Run, User, World
+from muster.server.store.actions import keep_actions, new_action
+from muster.server.store.database import Database, newest
 from muster.server.store.request_keys import RequestKey, keyed
 from muster.server.store.schema import runs
 
@@ -58,7 +58,7 @@ class RunTable:
             run = Run(**connection.execute(insert(runs).values(row).returning(runs)).one()._mapping)
             if by is not None:
                 said = {"plan": plan, "world": world, "speed": speed, "settings": dict(settings)}
-                add_action(connection, by, "run.start", said, run.id, "done", applied_s=0.0)
+                keep_actions(connection, [new_action(by, "run.start", said, run.id, "done", applied_s=0.0)])
             settle(run.id)
             return run
 
@@ -105,9 +105,11 @@ class RunTable:
             changed = connection.execute(update(runs).where(runs.c.id == run).values(fields).returning(runs)).one()
             return Run(**changed._mapping)
 
-    def list(self, limit: int = 200, *, over: bool = False) -> list[Run]:
-        """Runs, or those alone that are over, the newest first."""
-        query = select(runs).order_by(runs.c.id.desc()).limit(limit)
+    def list(
+        self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None, *, over: bool = False
+    ) -> list[Run]:
+        """Runs, of one mission or all, or those alone that are over, the newest first; ids below `before`, if given."""
+        query = newest(select(runs), runs, limit, before, mission=mission)
         if over:
             query = query.where(runs.c.state.in_(OVER))
         with self._database.reading() as connection:

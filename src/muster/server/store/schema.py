@@ -9,6 +9,7 @@ from typing import Any
 
 from sqlalchemy import (
     JSON,
+    BigInteger,
     Boolean,
     Column,
     ForeignKey,
@@ -23,7 +24,7 @@ from sqlalchemy import (
 
 from muster.server.store.columns import Instant, Number, Text
 
-HEAD = "0003"
+HEAD = "0004"
 
 metadata = MetaData(
     naming_convention={
@@ -61,7 +62,11 @@ missions = Table(
     _always("newest", Integer),
     _always("shipped", Boolean),
     _always("hidden", Boolean),
+    _always("words", Text),
+    _always("changed_at", Instant),
+    Index(None, "shipped", "hidden", "changed_at", "id"),
 )
+"""`words` are those by which a mission is found; `changed_at` is of its newest version."""
 
 mission_versions = Table(
     "mission_versions",
@@ -104,6 +109,7 @@ plans = _numbered(
     _always("body", _json()),
     _of_a_version(),
     UniqueConstraint("mission", "version"),
+    Index(None, "mission", "id"),
 )
 
 jobs = _numbered(
@@ -122,6 +128,7 @@ jobs = _numbered(
     _always("error", Text),
     _of_a_version(),
     Index(None, "state"),
+    Index(None, "mission", "id"),
 )
 
 runs = _numbered(
@@ -142,6 +149,7 @@ runs = _numbered(
     Column("report", _json()),
     _of_a_version(),
     Index(None, "state"),
+    Index(None, "mission", "id"),
 )
 
 entries = Table(
@@ -183,17 +191,20 @@ bodies = Table(
 )
 """Where the bodies of a simulated run are, as of its last entries and tracks."""
 
-actions = _numbered(
+actions = Table(
     "actions",
+    metadata,
+    Column("id", BigInteger().with_variant(Integer, "sqlite"), primary_key=True, autoincrement=False),
     _always("at", Instant),
     _always("who", Text),
     _always("role", Text),
     _always("address", Text),
     _always("verb", Text),
     _always("data", _json()),
-    Column("run", Integer, ForeignKey("runs.id"), index=True),
+    Column("run", Integer, ForeignKey("runs.id")),
     Column("applied_s", Number),
     _always("outcome", Text),
+    Index(None, "run", "id"),
 )
 
 request_keys = Table(

@@ -16,10 +16,10 @@ def test_missions_are_found_made_deleted_and_taken_back(watched, page):
     watched.open("/")
     page.wait_for_selector("#missions")
     page.fill("#search", "31t 6r50")
-    shown = page.locator("#missions tr[data-name]:visible")
-    assert shown.count() == 3
+    page.wait_for_function("() => document.querySelectorAll('#missions tr[data-name]').length === 3")
+    assert page.url.endswith("/?search=31t%206r50")
     page.fill("#search", "no such")
-    assert page.locator(".none-found").is_visible()
+    page.locator(".none-found").wait_for()
     page.fill("#search", "")
     page.get_by_role("button", name="Duplicate 6T-2R", exact=True).dblclick()
     row = page.locator("tr[data-name='6t-2r copy 6t-2r-copy']")

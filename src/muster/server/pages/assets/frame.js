@@ -27,22 +27,6 @@
   });
 })();
 
-// Rows of a list whose `data-name` holds the words that are looked for; headings of groups without rows go, too.
-window.musterFilter = (words, table) => {
-  const wanted = words.toLowerCase().split(/\s+/);
-  let found = 0;
-  for (const group of document.querySelectorAll(`#${table} tbody`)) {
-    let shown = 0;
-    for (const row of group.querySelectorAll("tr[data-name]")) {
-      row.hidden = !wanted.every((word) => row.dataset.name.includes(word));
-      shown += !row.hidden;
-    }
-    group.hidden = shown === 0;
-    found += shown;
-  }
-  for (const none of document.querySelectorAll(".none-found")) none.hidden = found > 0;
-};
-
 // Undo, redo and save press the buttons of the page, where it has them; in a field Ctrl+Z is the field's own.
 document.addEventListener("keydown", (event) => {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import PurePath
@@ -16,6 +17,7 @@ from muster.planning.loading import CONVERTED
 from muster.server.pages.buttons import once
 from muster.server.pages.notices import end_warning, errors_shown, warn
 from muster.server.pages.visitor import the_services, the_user
+from muster.server.services.shipped import shipped_entries
 from muster.server.services.uploads import answers_of
 from muster.server.work import WorkError
 
@@ -60,13 +62,13 @@ _CSV = (  # as `mission.thesis_csv` reads them
 async def open_new_mission() -> None:
     """Open the dialog; the mission that is made is opened in Plan."""
     with errors_shown():
-        shipped = [entry.id for entry in await the_services().missions.list() if entry.shipped]
+        shipped = await asyncio.to_thread(shipped_entries)
         with ui.dialog() as dialog, ui.card().classes("making"):
             ui.label("New mission").classes("dialog-title")
             name = ui.input("Name", placeholder=_UNNAMED).classes("full")
             name.props("outlined dense autofocus stack-label hint='Left empty, a file gives its own name'")
             start = ui.select(
-                {name: words for name, (_, words) in _STARTS.items()} | {one: one for one in shipped},
+                {name: words for name, (_, words) in _STARTS.items()} | dict(zip(shipped, shipped, strict=True)),
                 value="",
                 label="Begin with",
                 with_input=True,

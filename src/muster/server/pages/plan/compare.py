@@ -14,7 +14,7 @@ from muster.server.pages.map import MissionMap
 from muster.server.pages.notices import errors_shown
 from muster.server.pages.plan.figures import LESS_IS_BETTER, figures_of, lines_of, meaning_of
 from muster.server.pages.plan.map_scene import ground_of
-from muster.server.pages.plan.plan_panel import MOST_PLANS, title_of
+from muster.server.pages.plan.plan_panel import title_of
 from muster.server.pages.visitor import PATIENCE_S, the_services
 
 
@@ -37,7 +37,7 @@ async def compare(mission: str, a: int, b: int) -> None:
 async def _build(mission: str, a: int, b: int) -> None:
     services = the_services()
     entries = [await services.plans.get(one) for one in (a, b)]
-    listed = await services.plans.list(mission, MOST_PLANS)
+    listed = await services.plans.list(mission)
     titles = {entry.id: title_of(entry) for entry in (*listed, *entries)}
     verdicts = [await services.plans.verdict(entry.id) for entry in entries]
     scenes = [await _scene(entry) for entry in entries]

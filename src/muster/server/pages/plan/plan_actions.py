@@ -110,10 +110,10 @@ class PlanActions:
         if entry is None:
             return
         with errors_shown():
-            missions = {mission.id: mission for mission in await the_services().missions.list()}
+            dimensions = await the_services().missions.dimensions(entry.mission)
             if entry is not self._answer.entry:  # another plan is chosen meanwhile
                 return
-            open_start(entry, missions[entry.mission].dimensions if entry.mission in missions else 2)
+            open_start(entry, dimensions)
 
     def _open_upload(self) -> None:
         with ui.dialog() as dialog, ui.card().classes("making"):

@@ -7,7 +7,7 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import PlanEntry
+from muster.exchange.mission_control import PAGE_ROWS, PlanEntry
 from muster.server.pages.charts import Curve, Gantt
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.map import MissionMap
@@ -18,8 +18,6 @@ from muster.server.pages.plan.figures import figures_list, figures_of, left_out,
 from muster.server.pages.plan.plan_actions import PlanActions
 from muster.server.pages.visitor import the_services
 
-MOST_PLANS = 1000  # that are listed to choose from
-
 
 class PlanPanel:
     """Shows one plan of a mission: on the map, as figures and tables, in time."""
@@ -28,6 +26,7 @@ class PlanPanel:
         self._draft = draft
         self._map = ground
         self._entries: Sequence[PlanEntry] = ()
+        self._last: int | None = None
         self._entry: PlanEntry | None = None
         self._chosen: Mapping[str, Any] | None = None
         self._gantt: Gantt
@@ -35,6 +34,7 @@ class PlanPanel:
             with ui.element("div").classes("bar"):
                 self._choice = ui.select({}, label="Plan", on_change=self._chosen_plan)
                 self._choice.props('outlined dense options-dense id="plans"').classes("plan-choice")
+                self._older = ui.button("Older plans", on_click=self._list_older).props("flat dense no-caps")
                 self._outdated = ui.label("made for another text of the mission").classes("outdated").props("hidden")
             self._none = ui.label("No plan yet.").classes("quiet")
             self.why = Explanation(self)
@@ -78,9 +78,26 @@ class PlanPanel:
 
     async def _list(self, plan: int | None) -> None:
         """List the newest plans, and one that may be older."""
-        entries = await the_services().plans.list(self._draft.id, MOST_PLANS)
+        entries = await self._page(None)
         if plan is not None and entries and plan < entries[-1].id:
             entries += await the_services().plans.list(self._draft.id, 1, before=plan + 1)
+        self._show_entries(entries)
+
+    async def _list_older(self) -> None:
+        """List the next page of plans, too; one that was asked for may be listed already."""
+        with errors_shown():
+            known = {entry.id: entry for entry in (*self._entries, *await self._page(self._last))}
+            self._show_entries([known[plan] for plan in sorted(known, reverse=True)])
+
+    async def _page(self, before: int | None) -> list[PlanEntry]:
+        """The next page of plans; the button for older ones shows whether another follows."""
+        found = await the_services().plans.list(self._draft.id, PAGE_ROWS + 1, before)
+        page = found[:PAGE_ROWS]
+        self._last = page[-1].id if page else before
+        self._older.set_visibility(len(found) > PAGE_ROWS)
+        return page
+
+    def _show_entries(self, entries: Sequence[PlanEntry]) -> None:
         self._entries = entries
         self._choice.set_options({entry.id: title_of(entry) for entry in self._entries}, value=self._choice.value)
         self._choice.set_visibility(bool(self._entries))

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import asyncio
 import difflib
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 from html import escape
 
 from nicegui import ui
 
+from muster.exchange.mission_control import PAGE_ROWS, VersionEntry
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.missions.view import ago
 from muster.server.pages.notices import errors_shown
 from muster.server.pages.visitor import the_services
 
-_MOST_VERSIONS = 1000  # that are listed
 _MOST_LINES = 20_000  # of two texts that are compared
+Act = Callable[[int], Awaitable[None]]
 _CLASSES = {"+": "added", "-": "removed", "@": "quiet"}
 
 
 async def open_versions(draft: Draft, save: Callable[[str], Awaitable[bool]]) -> None:
     """List the newest versions; one can be compared with the text as it is, and restored as a new version."""
     with errors_shown():
-        versions = await the_services().missions.versions(draft.id, _MOST_VERSIONS)
+        versions = await the_services().missions.versions(draft.id, PAGE_ROWS + 1)
         with ui.dialog() as dialog, ui.card().classes("making versions"):
             ui.label(f"Versions of {draft.id}").classes("dialog-title")
 
@@ -37,21 +38,38 @@ async def open_versions(draft: Draft, save: Callable[[str], Awaitable[bool]]) ->
                 with errors_shown():
                     await open_differences((await the_services().missions.get(draft.id, number)).text, draft.text)
 
-            with ui.element("div").classes("scrolling full"), ui.element("table").classes("plain"):
-                for version in versions:
-                    with ui.element("tr"):
-                        for text in (f"version {version.version}", version.author, version.note):
-                            with ui.element("td"):
-                                ui.label(text)
-                        with ui.element("td").classes("quiet"):
-                            ui.label(ago(version.at) if version.at else "")
-                        with ui.element("td").classes("acts"):
-                            number = version.version
-                            ui.button("Compare", on_click=lambda n=number: compare(n)).props("flat dense")
-                            ui.button("Restore", on_click=lambda n=number: restore(n)).props("flat dense")
+            def listed(found: Sequence[VersionEntry]) -> None:
+                """Add a page of versions, and the way to older ones where there are more."""
+                with rows:
+                    for version in found[:PAGE_ROWS]:
+                        _row(version, compare, restore)
+                last.set_visibility(len(found) > PAGE_ROWS)
+                shown.extend(found[:PAGE_ROWS])
+
+            async def older() -> None:
+                with errors_shown():
+                    listed(await the_services().missions.versions(draft.id, PAGE_ROWS + 1, shown[-1].version))
+
+            shown: list[VersionEntry] = []
+            with ui.element("div").classes("scrolling full"):
+                rows = ui.element("table").classes("plain")
+                last = ui.button("Older versions", on_click=older).props("flat dense no-caps")
+            listed(versions)
             with ui.element("div").classes("dialog-buttons"):
                 ui.button("Close", on_click=dialog.close).props("flat")
         dialog.open()
+
+
+def _row(version: VersionEntry, compare: Act, restore: Act) -> None:
+    with ui.element("tr"):
+        for text in (f"version {version.version}", version.author, version.note):
+            with ui.element("td"):
+                ui.label(text)
+        with ui.element("td").classes("quiet"):
+            ui.label(ago(version.at) if version.at else "")
+        with ui.element("td").classes("acts"):
+            ui.button("Compare", on_click=lambda: compare(version.version)).props("flat dense")
+            ui.button("Restore", on_click=lambda: restore(version.version)).props("flat dense")
 
 
 async def open_differences(old: str, new: str) -> None:

@@ -12,7 +12,7 @@ from muster.server.pages.editing.draft import Draft
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import errors_shown
 from muster.server.pages.plan.editors import Editors
-from muster.server.pages.plan.plan_panel import MOST_PLANS, PlanPanel
+from muster.server.pages.plan.plan_panel import PlanPanel
 from muster.server.pages.plan.planning_controls import PlanningControls
 from muster.server.pages.plan.title_bar import TitleBar
 from muster.server.pages.visitor import PATIENCE_S, may_command, on_the_wall, the_services
@@ -36,7 +36,7 @@ _KEYS = {
 async def choose() -> None:
     """Without a mission: those that were planned last, or the way to the list."""
     with frame("Plan"), errors_shown():
-        recent = list(dict.fromkeys(entry.mission for entry in await the_services().plans.list(limit=MOST_PLANS)))[:8]
+        recent = (await the_services().plans.missions())[:8]
         with ui.element("div").classes("panel narrow"):
             ui.label("Which mission?").classes("dialog-title")
             ui.label(

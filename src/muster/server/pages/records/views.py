@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import OVER, Action, Entry, Run
+from muster.exchange.mission_control import MOST_ROWS, OVER, PAGE_ROWS, Action, Entry, Run
 from muster.mission.errors import MusterError
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import errors_shown, words_of
@@ -22,7 +22,7 @@ from muster.server.pages.records.figures import (
     seconds,
     task_rows,
 )
-from muster.server.pages.tables import table
+from muster.server.pages.tables import address, pager_text, search_text, table
 from muster.server.pages.visitor import PATIENCE_S, is_seen, the_services
 from muster.server.runs.log_lines import deed_of, line_of
 
@@ -49,20 +49,35 @@ _FILES = (
 )
 _ON_EARTH = (("GeoJSON", "export?to=geojson"), ("KML", "export?to=kml"), ("GPX", "export?to=gpx"))
 """Formats that need to know where on the earth the mission is."""
-_MOST_EVENTS = 2000
 
 ui.add_css(Path(__file__).with_name("records.css"), shared=True)
 
 
 @ui.page("/records", response_timeout=PATIENCE_S)
-async def records_page() -> None:
-    """Runs that are over, the newest first."""
+async def records_page(mission: str = "", before: int | None = None) -> None:
+    """Runs that are over, of one mission or all, the newest first; ids below `before`, if given."""
     with frame("Records"), errors_shown():
-        runs = await the_services().records.list()
-        if runs:
-            table(_HEADS, [_row(run) for run in runs], label="Records", numbers=(3, 4, 5, 6))
+        runs = await the_services().runs.over(PAGE_ROWS + 1, before, mission or None)
+        shown = runs[:PAGE_ROWS]
+        _filter(mission)
+        if shown:
+            table(_HEADS, [_row(run) for run in shown], label="Records", numbers=(3, 4, 5, 6))
         else:
-            ui.label("There are no records yet: a run is one when it is over.").classes("quiet")
+            what = f"of {mission} " if mission else ""
+            ui.label(f"There are no records {what}yet: a run is one when it is over.").classes("quiet")
+        following = address("/records", mission=mission, before=shown[-1].id) if len(runs) > len(shown) else ""
+        _pager(address("/records", mission=mission) if before is not None else "", following)
+
+
+def _filter(mission: str) -> None:
+    """The field for the mission whose records alone are listed."""
+    with ui.element("form").props('method="get" action="/records" role="search"').classes("bar"):
+        field = search_text("Id of a mission, then Enter", mission, name="mission")
+        ui.html(field, sanitize=False).style("display: contents")
+
+
+def _pager(first: str, following: str) -> None:
+    ui.html(pager_text(first, following), sanitize=False)
 
 
 def _row(run: Run) -> tuple[Any, ...]:
@@ -76,8 +91,8 @@ def _row(run: Run) -> tuple[Any, ...]:
 
 
 @ui.page("/records/{run}", response_timeout=PATIENCE_S)
-async def record_page(run: int) -> None:
-    """One run that is over."""
+async def record_page(run: int, after: int = 0, before: int | None = None) -> None:
+    """One run that is over; events behind the number `after`, actions with ids below `before`."""
     services = the_services()
     try:
         found = await services.runs.get(run)
@@ -88,7 +103,7 @@ async def record_page(run: int) -> None:
     with frame("Records", title=f"{found.mission}, run {run}", keys=KEYS), errors_shown():
         if not await is_seen():
             return
-        entries = await services.runs.entries(run)
+        entries = await services.runs.entries(run, after, MOST_ROWS + 1)
         _head(found, _files_of(found, on_earth=await _is_on_earth(found)) if entries else ())
         if found.state not in OVER:
             with ui.element("p"):
@@ -97,8 +112,8 @@ async def record_page(run: int) -> None:
         if entries:  # a run that failed before it began has no record
             _replay(run)
         _compared(found)
-        _events(entries)
-        _commands(await services.actions.list(run=run))
+        _events(run, entries, after)
+        _commands(run, await services.actions.list(run, MOST_ROWS + 1, before))
 
 
 async def _is_on_earth(run: Run) -> bool:
@@ -157,15 +172,19 @@ def _compared(run: Run) -> None:
         table(TASK_HEADS, task_rows(report), label="Tasks, planned against flown", numbers=range(2, 8))
 
 
-def _events(entries: Sequence[Entry]) -> None:
-    lines = [(seconds(entry.time_s), line_of(entry.kind, entry.data)) for entry in entries[:_MOST_EVENTS]]
-    with _folded(f"Events ({len(entries)})"):
+def _events(run: int, entries: Sequence[Entry], after: int) -> None:
+    shown = entries[:MOST_ROWS]
+    lines = [(seconds(entry.time_s), line_of(entry.kind, entry.data)) for entry in shown]
+    whole = not after and len(entries) == len(shown)
+    words = f"Events ({len(shown)})" if whole or not shown else f"Events {shown[0].seq} to {shown[-1].seq}"
+    with _folded(words, is_open=after > 0):
         table(("at", "what"), lines, label="Events", numbers=(0,))
-        if len(entries) > _MOST_EVENTS:
-            ui.label(f"The first {_MOST_EVENTS}; the record (MCAP) has all.").classes("quiet")
+        following = address(f"/records/{run}", after=shown[-1].seq) if len(entries) > len(shown) else ""
+        _pager(f"/records/{run}" if after else "", following)
 
 
-def _commands(actions: list[Action]) -> None:
+def _commands(run: int, found: Sequence[Action]) -> None:
+    actions = found[:MOST_ROWS]
     if not actions:
         return
     rows = [
@@ -178,8 +197,10 @@ def _commands(actions: list[Action]) -> None:
         )
         for action in sorted(actions, key=lambda action: action.id)
     ]
-    with _folded(f"What users did ({len(rows)})"):
+    with _folded(f"What users did ({len(rows)}{'' if len(found) == len(actions) else ', the newest'})"):
         table(("when", "who", "what", "took effect", "outcome"), rows, label="What users did")
+        if len(found) > len(actions):
+            _pager("", address(f"/records/{run}", before=actions[-1].id))
 
 
 def _heading(words: str, level: int = 3) -> None:
@@ -187,9 +208,9 @@ def _heading(words: str, level: int = 3) -> None:
         ui.label(words)
 
 
-def _folded(words: str) -> ui.element:
+def _folded(words: str, *, is_open: bool = False) -> ui.element:
     """A part that is expanded by its heading."""
-    details = ui.element("details")
+    details = ui.element("details").props("open" if is_open else "")
     with details, ui.element("summary"):
         ui.label(words)
     return details

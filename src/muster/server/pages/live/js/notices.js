@@ -13,7 +13,7 @@ export class Notices {
     this.byAction = new Map(); // action id -> notice
     this.outcomes = new Map(); // action id -> outcome, which may come before its id is known
     this.undoable = []; // notices that can be undone, newest last
-    this.unkept = new Map(); // action id -> notice of a command that only the server's memory holds
+    this.unkept = new Map(); // action id -> notice of a command that only the server's journal has
     this.element = html("ul", { class: "notices", role: "status", "aria-live": "polite", "aria-label": "Commands" });
   }
 
@@ -44,8 +44,8 @@ export class Notices {
   }
 
   markUnkept(id, notice) {
-    const title = "The database is away: this command is lost if the server ends before the database is back";
-    notice.unkept = html("span", { class: "unkept", title }, "⚠ not kept");
+    const title = "The database is away: the server's journal has this command until the database is back";
+    notice.unkept = html("span", { class: "unkept", title }, "⚠ in the journal");
     notice.state.before(notice.unkept);
     this.unkept.set(id, notice);
   }
