@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from sqlalchemy import text
 
+from muster.exchange.mission_control import User
 from muster.server.store import Store
 from muster.server.store.database import Database
 from muster.server.store.migrate import MIGRATIONS, migrate, revision, upgrade
@@ -85,6 +86,34 @@ def test_an_older_database_is_brought_on(filled, tmp_path):
     with filled.store.database.reading() as connection:
         assert connection.execute(text("SELECT colour FROM runs")).scalars().all() == ["blue"]
     assert filled.store.log.append(filled.run, 1.0, [filled.entry(1), filled.entry(2)]) == 1
+
+
+OF_0002 = (
+    "INSERT INTO missions (id, newest, shipped, hidden) VALUES ('yard', 2, false, false)",
+    "INSERT INTO mission_versions VALUES ('yard', 1, 'a', '{}', 'ann', '', '2026-01-01 08:00:00')",
+    "INSERT INTO mission_versions"
+    " VALUES ('yard', 2, 'b', '{\"name\": \"Werft Süd\"}', 'ann', '', '2026-01-02 08:00:00')",
+    "INSERT INTO actions (at, who, role, address, verb, data, outcome)"
+    " VALUES ('2026-01-01 08:00:00', 'ann', 'command', '', 'login', '{}', 'done')",
+)
+"""Rows as a Muster of tables 0002 has written them."""
+
+
+def test_missions_and_actions_of_an_older_muster_are_listed(database_url):
+    database = Database(database_url)
+    with database.writing() as connection:
+        upgrade(connection, database.name, MIGRATIONS, "0002")
+        for statement in OF_0002:
+            connection.exec_driver_sql(statement)
+    database.close()
+    store = Store.open(database_url)
+    (mission,) = store.missions.list(words=["süd", "yard"])
+    assert (mission.name, mission.version, mission.changed_at.day) == ("Werft Süd", 2, 2)
+    assert store.missions.get("yard", 1).text == "a"
+    new = store.actions.add(User("bo", "command"), "login", {})
+    assert [(action.id, action.who) for action in store.actions.list()] == [(new.id, "bo"), (1, "ann")]
+    assert new.id > 2**48
+    store.close()
 
 
 def test_a_migration_that_fails_leaves_everything_as_it_was(filled, tmp_path):

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, get_args
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import OVER, PAGE_ROWS, ConflictError, NotFoundError, Run, User, World
+from muster.exchange.mission_control import OVER, PAGE_ROWS, ConflictError, NotFoundError, Run, RunState, User, World
 from muster.server.store.actions import keep_actions, new_action
 from muster.server.store.database import Database, newest
 from muster.server.store.request_keys import RequestKey, keyed
 from muster.server.store.schema import runs
 
+_UNDER_WAY = tuple(state for state in get_args(RunState) if state not in OVER)
 _CHANGEABLE = frozenset({"state", "speed", "time_s", "remark", "resumed", "ended_at"})
 
 
@@ -111,7 +112,7 @@ class RunTable:
         """Runs, of one mission or all, or those alone that are over, the newest first; ids below `before`, if given."""
         query = newest(select(runs), runs, limit, before, mission=mission)
         if over:
-            query = query.where(runs.c.state.in_(OVER))
+            query = query.where(runs.c.state.not_in(_UNDER_WAY))  # most are over: the ids are read, no index of states
         with self._database.reading() as connection:
             return [Run(**row._mapping) for row in connection.execute(query)]
 

@@ -62,11 +62,11 @@ missions = Table(
     _always("newest", Integer),
     _always("shipped", Boolean),
     _always("hidden", Boolean),
-    _always("words", Text),
-    _always("changed_at", Instant),
+    Column("words", Text),
+    Column("changed_at", Instant),
     Index(None, "shipped", "hidden", "changed_at", "id"),
 )
-"""`words` are those by which a mission is found; `changed_at` is of its newest version."""
+"""`words` are those by which a mission is found; `changed_at` is of its newest version. Both are always there."""
 
 mission_versions = Table(
     "mission_versions",

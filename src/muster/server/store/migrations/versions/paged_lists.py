@@ -21,7 +21,7 @@ def upgrade() -> None:
 
 def _missions() -> None:
     """The words by which a mission is found, and when it was changed."""
-    op.add_column("missions", sa.Column("words", sa.String, nullable=False, server_default=""))
+    op.add_column("missions", sa.Column("words", sa.String))
     op.add_column("missions", sa.Column("changed_at", sa.DateTime(timezone=True)))
     connection = op.get_bind()
     missions = sa.table("missions", *map(sa.column, ("id", "newest", "words", "changed_at")))
@@ -34,7 +34,4 @@ def _missions() -> None:
     ).all():
         values = {"words": f"{summary.get('name', mission)} {mission}".casefold(), "changed_at": at}
         connection.execute(sa.update(missions).where(missions.c.id == mission).values(values))
-    with op.batch_alter_table("missions") as table:
-        table.alter_column("words", server_default=None)
-        table.alter_column("changed_at", nullable=False, existing_type=sa.DateTime(timezone=True))
     op.create_index("ix_missions_shipped_hidden_changed_at_id", "missions", ["shipped", "hidden", "changed_at", "id"])
