@@ -12,10 +12,12 @@ from tests.server.runs.stage import Kept, performed, performed_with_crashes, req
 
 import muster
 from muster.execution import Status
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.server.runs import checkpoints
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import RunLoop
+from muster.simulation.world_base import WorldBase
 from muster.state import MissionState
 
 MOMENTS = st.floats(0, 60).map(lambda value: round(value, 2))
@@ -172,3 +174,28 @@ def test_a_pause_before_a_crash_holds_after_it():
     assert command["data"]["outcome"] == "done"
     assert command["time_s"] == pytest.approx(max(one["time_s"] for one in (*before.others, before.bodies)), abs=0.11)
     assert log[-1]["kind"] == "report"
+
+
+def test_a_world_that_gives_no_snapshot_is_carried_out_and_not_resumed(monkeypatch):
+    monkeypatch.delattr(WorldBase, "snapshot")
+    mission = muster.load("6T-2R")
+    plan = muster.solve(mission, iterations=20)
+    before = performed(mission, plan, killed_after=6)
+    assert before.bodies is None
+    with pytest.raises(
+        ParameterError, match="world kinematic: it is not known where bodies were; expected a world with"
+    ):
+        performed(mission, plan, before=before)
+    assert performed(mission, plan).log[-1]["kind"] == "report"
+
+
+def test_who_is_out_or_silent_is_so_after_a_crash():
+    mission = muster.load("6T-2R")
+    plan = muster.solve(mission, iterations=20)
+    asked = [(1.0, "event", {"robot_fails": "r_0"}), (2.0, "event", {"robot_silent": "r_1"})]
+    before = performed(mission, plan, asked, killed_after=8)
+    assert (before.bodies["failed"], before.bodies["muted"]) == (["r_0"], ["r_0", "r_1"])
+    whole = performed_with_crashes(mission, plan, [*asked, (6.0, "event", {"robot_returns": "r_0"})], [8])
+    require_whole(whole, mission)
+    assert "robot_silent" in {entry["kind"] for entry in whole.log}
+    assert whole.log[-1]["data"]["tasks_done"]
