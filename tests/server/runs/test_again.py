@@ -138,7 +138,7 @@ class Drives:
 
     real, done, time_s, next_s = True, False, 5.0, 5.0
     status = Status(robots={}, tasks={})
-    state = robots = None
+    state = None
 
     def __init__(self):
         self.told = []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Protocol
 
@@ -57,8 +57,6 @@ class LogRecorder:
         stretch_s: float = 5.0,
     ) -> None:
         self._out, self.state, self.seq = out, state, seq
-        self.robots: Collection[str] | None = None
-        """Whose positions come with each step, in this order; None: those that the state has."""
         self._routes, self._plan_changes = RouteLines(mission), PlanChanges(whole=seq == 0)
         self._track = Track(stretch_s)
         self.tracked_s = tracked_s if seq else -1.0
@@ -70,8 +68,7 @@ class LogRecorder:
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """See `Recorder`."""
         states = np.column_stack([positions, headings, velocities])
-        robots = self.state.robots if self.robots is None else self.robots
-        rows = zip(robots, states.tolist(), strict=True)
+        rows = zip(self.state.robots, states.tolist(), strict=True)
         self.rows = {name: row for name, row in rows if all(map(math.isfinite, row))}
         self.rows_s = float(now)
         self._now = max(self._now, self.rows_s)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 
 from muster.bridges.final_state import final_states_of
 from muster.bridges.fleet import Fleet
@@ -84,11 +84,6 @@ class RealRun:
     def starts_at(self) -> str | None:
         """See `run_loop.WorldRun`."""
         return self._live.start.mission.starts_at
-
-    @property
-    def robots(self) -> Collection[str]:
-        """Ids of the robots that take part, or did, in the order of their rows in records."""
-        return self._live.executor.crew.keys()
 
     @property
     def time_s(self) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import time
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 from muster.execution import Report, RobotStatus, Status
@@ -33,8 +33,6 @@ class WorldRun(Protocol):
 
     @property
     def state(self) -> MissionState: ...
-    @property
-    def robots(self) -> Collection[str] | None: ...
     @property
     def starts_at(self) -> str | None: ...
     @property
@@ -92,7 +90,7 @@ class RunLoop:
         clock: Clock | None = None,
     ) -> None:
         self._world_run, self._recorder, self._inbox, self._outbox = world_run, recorder, inbox, outbox
-        recorder.state, recorder.robots = world_run.state, world_run.robots
+        recorder.state = world_run.state
         self._clock, self._ended, self._starts_at = clock or SystemClock(), ended, starts_at
         self._pace = Pace(self._clock, speed, world_run.time_s)
         self._paused, self._cancelled, self._must_replan = paused, cancelled, False

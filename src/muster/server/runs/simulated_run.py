@@ -53,10 +53,6 @@ class SimulatedRun:
         return self._simulation.state
 
     @property
-    def robots(self) -> None:
-        """See `run_loop.WorldRun`."""
-
-    @property
     def time_s(self) -> float:
         return self._simulation.time_s
 
