@@ -56,9 +56,7 @@ def test_a_wrong_name_is_answered_in_one_line_with_the_near_match(mission, plan)
         "wrold: unknown; did you mean 'world'?": lambda: muster.simulate(mission, plan, wrold="physics"),
         "Robot: postion: unknown; did you mean 'position'?": lambda: muster.Robot(id="r", postion=(0, 0)),
         "did you mean 'population_size'?": lambda: muster.solve(mission, "genetic", populaton_size=3),
-        "world: phisics; expected kinematic, physics; did you mean 'physics'?": lambda: muster.simulate(
-            mission, plan, world="phisics"
-        ),
+        "or mavlink; did you mean 'physics'?": lambda: muster.simulate(mission, plan, world="phisics"),
     }
     for line, call in wrong.items():
         with pytest.raises(muster.ParameterError) as refusal:

@@ -5,7 +5,6 @@ from importlib.util import find_spec
 
 import pytest
 
-from muster.cli.drone_options import conditions_of
 from muster.cli.main import run as muster
 from muster.mission.errors import ParameterError
 from muster.simulation import Wind
@@ -13,34 +12,49 @@ from muster.simulation import Wind
 CALM = ("6T-2R", "--iterations", "20", "-q", "--format", "json")
 
 
-def test_options_become_arguments():
-    assert conditions_of(None, None, (), (), rotors=False) == {}
-    assert conditions_of("3,-1", 7.7, ("all=1", "r_0=0.5"), ("r_1=2",), rotors=True) == {
-        "wind": Wind(velocity_mps=(3.0, -1.0, 0.0), gusts_mps=7.7),
-        "batteries": {"all": 1.0, "r_0": 0.5},
-        "drain": {"r_1": 2.0},
-        "rotor_level": True,
-    }
-    assert conditions_of("1,2,3", None, (), (), rotors=False)["wind"].velocity_mps == (1.0, 2.0, 3.0)
-    assert conditions_of(None, 5.0, (), (), rotors=False)["wind"].gusts_mps == 5.0
+@pytest.fixture
+def asked(monkeypatch):
+    """Gives the request that `muster simulate` makes of options."""
+    from muster.cli.local_backend import LocalBackend
+
+    def of(*options):
+        made = []
+
+        def take(self, mission, plan, request, on_line):
+            made.append(request)
+            raise ParameterError("enough")
+
+        monkeypatch.setattr(LocalBackend, "simulate", take)
+        assert muster(["simulate", *CALM, *options]) == 2
+        return made[0] if made else None
+
+    return of
 
 
-@pytest.mark.parametrize("wind", ["3", "a,b", "1,2,3,4", "nan,0"])
-def test_winds_that_are_none_are_refused(wind):
-    with pytest.raises(ParameterError, match="expected"):
-        conditions_of(wind, None, (), (), rotors=False)
+def test_options_become_fields(asked):
+    assert asked().as_settings().keys() == {"planning"}
+    request = asked("--wind=3,-1", "--gusts=7.7", "--battery=all=1", "--battery=r_0=0.5", "--drain=r_1=2", "--rotors")
+    assert request.wind == Wind(velocity_mps=(3.0, -1.0, 0.0), gusts_mps=7.7)
+    assert (request.batteries, request.drain, request.rotor_level) == ({"all": 1.0, "r_0": 0.5}, {"r_1": 2.0}, True)
+    assert asked("--wind=1,2,3").wind.velocity_mps == (1.0, 2.0, 3.0)
+    assert asked("--gusts=5").wind.gusts_mps == 5.0
+    assert asked("--drain=2").drain == {"all": 2.0}
 
 
-@pytest.mark.parametrize("batteries", [("0.5",), ("r_0=x",), ("r_0=1", "r_0=0.5")])
-def test_batteries_that_are_none_are_refused(batteries):
-    with pytest.raises(ParameterError, match="--battery"):
-        conditions_of(None, None, batteries, (), rotors=False)
-
-
-@pytest.mark.parametrize("drain", [("x",), ("r_0=1", "r_0=2")])
-def test_drains_that_are_none_are_refused(drain):
-    with pytest.raises(ParameterError, match="--drain"):
-        conditions_of(None, None, (), drain, rotors=False)
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        *((("--wind", wind), "wind.velocity_mps: ") for wind in ("3", "a,b", "1,2,3,4", "nan,0")),
+        *((("--battery", given), "--battery: ") for given in ("0.5", "=1")),
+        (("--battery", "r_0=x"), 'batteries.r_0: "x"; expected a finite number, at least 0 and at most 1'),
+        (("--battery", "r_0=1", "--battery", "r_0=0.5"), "--battery: r_0=0.5; expected ROBOT=SHARE, each name at most"),
+        (("--drain", "x"), 'drain.all: "x"; expected a finite number, above 0'),
+        (("--drain", "r_0=1", "--drain", "r_0=2"), "--drain: r_0=2; expected [ROBOT=]FACTOR, each name at most once"),
+    ],
+)
+def test_conditions_that_are_none_are_refused(asked, capsys, options, message):
+    assert asked(*options) is None
+    assert capsys.readouterr().err.startswith(message)
 
 
 @pytest.mark.parametrize(

@@ -14,10 +14,12 @@ from muster.cli.real_robots import RealRunOptions, carried_out, reported
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.planning.options import PlanningOptions
 from muster.running.live import wait_for_robots
+from muster.running.observed_run import ObservedRun
+from muster.running.run_request import OPEN_FLEET
 
 ASKED = {
     **dict.fromkeys(("plan", "record", "html", "plot", "gantt", "foxglove")),
-    "traffic": "auto",
+    "request": ObservedRun(world=OPEN_FLEET),
     "planning": PlanningOptions(time_limit=0.1),
     "require_complete": False,
     "form": "table",
@@ -100,4 +102,4 @@ def test_a_port_that_is_taken_is_told_before_robots_move():
 @pytest.mark.parametrize("name", ["9 bad/", "a-b", "a//b", "é"])
 def test_a_namespace_that_is_none_is_told(name, capsys):
     assert run(["ros2", "6T-2R", "--namespace", name]) == 2
-    assert f"Invalid value for '--namespace': {name!r}; expected names such as" in capsys.readouterr().err
+    assert f'namespace: "{name}"; expected names such as' in capsys.readouterr().err

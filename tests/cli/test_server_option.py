@@ -7,6 +7,7 @@ import subprocess
 import time
 from dataclasses import replace
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -134,6 +135,35 @@ def test_a_simulation_is_as_here(plan, muster, url):
     assert "search has no parameter hott" in err
 
 
+@pytest.mark.parametrize("more", [("--drain", "1.1"), pytest.param(("--orders", "o.jsonl"), marks=pytest.mark.long)])
+def test_conditions_of_a_run_are_those_of_the_command(folder, muster, url, more):
+    order = {"at_s": 1.0, "new_task": {"id": "ordered", "type": "D", "position": [2, 2]}}
+    Path("o.jsonl").write_text(json.dumps(order), encoding="utf-8")
+    how = ("--noise", "slip=0.05", "--battery", "all=1", "--dt", 0.2, *more)
+    call = ("simulate", "31T-6R50", "--iterations", 5, *how, "--format", "json", "-q")
+    here, there = (json.loads(muster(*call, *server)[1]) for server in ((), ("--server", url)))
+    assert ("ordered" in here["tasks_done"]) == ("--orders" in more)
+    assert there["tasks_done"] == here["tasks_done"]
+    for one, other in zip(there["robots"], here["robots"], strict=True):
+        assert one["charge"] == pytest.approx(other["charge"])
+        assert one["usage_flown"] == pytest.approx(other["usage_flown"])
+
+
+@pytest.mark.long
+@pytest.mark.skipif(find_spec("mujoco") is None, reason="the extra `physics` is not installed")
+def test_drones_in_wind_fly_there_as_here(folder, muster, url):
+    Path("m.yaml").write_text(
+        "schema: muster/1\nname: windy\n"
+        "robots: [{id: a, position: [0, 0, 1], kind: air, kinematics: hexacopter, radius_m: 0.35}]\n"
+        "tasks: [{id: t, position: [2, 0, 1]}]\n",
+        encoding="utf-8",
+    )
+    call = ("simulate", "m.yaml", "--iterations", 5, "--world", "physics", "--wind", "4,1", "--gusts", 5, "--rotors")
+    here, there = (muster(*call, "--format", "json", "-q", *more) for more in ((), ("--server", url)))
+    assert here[0] == 0
+    assert there == here
+
+
 def test_a_record_comes_back(plan, muster, url):
     code, _, err = muster("simulate", "yard.yaml", "--plan", plan, "--record", "r.mcap", "--server", url)
     assert (code, err) == (0, "")
@@ -169,7 +199,7 @@ def test_files_are_sent_with_a_mission(muster, url):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--ray", "x"), "--ray given; expected it without --server"),
+        (("--ray", "x"), "--ray given; expected it without --server: a server uses no cluster"),
         (("--set", "nothing=1"), "nothing"),
         (("-a", "serach"), "serach"),
     ],
@@ -178,6 +208,24 @@ def test_what_makes_no_sense_there_is_refused(folder, muster, url, arguments, sa
     code, out, err = muster("solve", "yard.yaml", *arguments, "--server", url)
     assert (code, out, len(err.splitlines())) == (2, "", 1)
     assert said in err
+
+
+def test_what_a_server_cannot_do_in_a_simulation_is_refused_with_the_reason(folder, muster, url):
+    for options, said in (
+        (
+            ("--world", "physics", "--film", "a.mp4"),
+            "--film given; expected it without --server: it keeps where bodies",
+        ),
+        (("--found", "a.png"), "--found given; expected it without --server: it keeps no pictures of cameras"),
+        (
+            ("--negotiate",),
+            "--negotiate given; expected it without --server: the robots' processes run on this machine",
+        ),
+        (("--foxglove", "0"), "--foxglove given; expected it without --server: the port is one of this machine"),
+    ):
+        code, out, err = muster("simulate", "yard.yaml", *options, "--server", url)
+        assert (code, out, len(err.splitlines())) == (2, "", 1)
+        assert err.startswith(said)
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,11 @@ import pytest
 
 import muster
 from muster.mission.errors import ParameterError
+from muster.motion.noise import Noise
 from muster.motion.port import Inertial, Telemetry, Waypoint
 from muster.perception.errors import AirErrors, GroundErrors
 from muster.perception.pose_tracking import AirTracker, FusedPort, GroundTracker
 from muster.simulation import KinematicWorld
-from muster.simulation.noise import Noise
 
 NOISE = Noise(velocity=0.05, slip=0.05, odometry=0.02, position_m=0.1, heading_rad=0.05)
 

@@ -12,6 +12,7 @@ from muster import Camera, Landmark, Mission, Robot, Tag
 from muster.mission.errors import ParameterError
 from muster.motion.port import Waypoint
 from muster.running.localisation import SENSORS, sensors_of
+from muster.running.run_request import RunRequest
 from muster.running.state_estimation import with_state_estimation
 from muster.running.worlds import world_named
 from muster.simulation import KinematicWorld, Noise
@@ -188,15 +189,12 @@ def test_a_pose_that_is_none():
 
 def test_command_python_and_server_settings_mean_the_same():
     """The command's texts, Python's numbers and a server's JSON name the same sensors."""
-    from muster.cli.localisation_options import localise_of
-    from muster.server.runs.run_settings import require_world
-
-    texts = localise_of(("odometry", "motion-capture:robot=r_1,turn_deg=35"))
+    texts = {"odometry": {}, "motion-capture": {"robot": "r_1", "turn_deg": "35"}}
     numbers = {"odometry": {}, "motion-capture": {"robot": "r_1", "turn_deg": 35}}
     assert sensors_of(texts) == sensors_of(numbers)
-    require_world("kinematic", (), {"pose": "estimate", "localise": numbers})
+    RunRequest.from_settings("kinematic", {"pose": "estimate", "localise": numbers})
     with pytest.raises(ParameterError, match="expected odometry among them"):
-        require_world("kinematic", (), {"localise": {"gps": {}}})
+        RunRequest.from_settings("kinematic", {"localise": {"gps": {}}})
     mission = muster.load("6T-2R")
     plan = muster.solve(mission, iterations=100)
     one, other = (muster.simulate(mission, plan, localise=how) for how in (texts, numbers))

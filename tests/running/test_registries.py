@@ -12,7 +12,7 @@ from muster.mission.errors import ParameterError
 from muster.running.fleet_registry import FLEETS
 from muster.running.fleets import fleet_ready
 from muster.running.worlds import WORLDS, world_named
-from muster.server.runs.run_settings import require_world
+from muster.server.runs.run_settings import new_request
 from muster.simulation import KinematicWorld
 
 
@@ -58,16 +58,17 @@ def test_a_world_carries_a_plan_out(added, mission, tmp_path, capsys):
     plan.save(tmp_path / "p.json")
     assert run(["simulate", "31T-6R50", "--plan", str(tmp_path / "p.json"), "--world", "slow", "--format", "json"]) == 0
     assert len(json.loads(capsys.readouterr().out)["tasks_done"]) == plan.tasks_completed
-    require_world("slow", (), {"dt_s": 0.2})
-    with pytest.raises(ParameterError, match="speeed: no setting of world slow; expected seed"):
-        require_world("slow", (), {"speeed": 1})
+    new_request("slow", (), {"dt_s": 0.2})
+    with pytest.raises(ParameterError, match="speeed: unknown; did you mean 'speed'"):
+        new_request("slow", (), {"speeed": 1})
 
 
 def test_an_unknown_world_is_refused_with_the_near_match(capsys):
     assert run(["simulate", "31T-6R50", "--world", "phisics"]) == 2
-    assert "'phisics' is not one of kinematic, physics; did you mean 'physics'?" in capsys.readouterr().err
+    said = 'world: "phisics"; expected kinematic or physics or ros1 or ros2 or mavlink; did you mean'
+    assert said in capsys.readouterr().err
     with pytest.raises(ParameterError, match="did you mean 'physics'"):
-        require_world("phisics", (), {})
+        new_request("phisics", (), {})
 
 
 def test_a_fleet_is_opened_with_the_settings_of_the_run(added, mission):
@@ -76,9 +77,9 @@ def test_a_fleet_is_opened_with_the_settings_of_the_run(added, mission):
     halt = threading.Event()
     assert fleet_ready("barges", mission, {"port": 3}, halt, again=True) == ("fleet", "at end")
     assert opened == [(mission, {"port": 3}, halt, True)]
-    require_world("barges", ("barges",), {"port": 3})
+    new_request("barges", ("barges",), {"port": 3})
     with pytest.raises(ParameterError, match="world: barges; expected kinematic, physics"):
-        require_world("barges", (), {})
+        new_request("barges", (), {})
 
 
 def test_a_format_is_exported_to(added, mission, tmp_path, capsys):

@@ -156,7 +156,7 @@ def test_orders_that_are_not_listed_any_more_are_counted(files, capsys):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--until", "3"), "--until given; expected it together with --stay"),
+        (("--until", "3"), "until_s: 3.0; expected it together with stay"),
         (("--orders", "nowhere.csv"), "nowhere.csv: No such file or directory; expected a file to read"),
         (("--stay", "--negotiate"), "--stay given; expected it without --negotiate"),
     ],

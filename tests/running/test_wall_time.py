@@ -11,6 +11,7 @@ import muster
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.running.live import Live
+from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.running.wall_time import MissionStart, notes_on_start, planned_from, require_time_left
 from muster.server.runs.real_run import RealRun
 
@@ -183,13 +184,13 @@ def test_the_clock_of_a_machine_that_slept_is_set_forward_and_no_clock_goes_back
 @pytest.mark.parametrize("starts", ["given", "now"])
 def test_a_deadline_passes_while_no_process_runs(starts):
     there, wall, log = mission(SOON, ANY), Wall(DAY_S if starts == "now" else 0.0), Log()
-    plan = muster.solve(there, iterations=50)
-    run = RealRun(there, plan, wall.fleet(there), log, wall=wall, starts=starts)
+    plan, request = muster.solve(there, iterations=50), RunRequest(world=OPEN_FLEET, starts=starts)
+    run = RealRun(there, plan, wall.fleet(there), log, request=request, wall=wall)
     for _ in range(5):
         run.go_on()
     before, lasted = list(log.entries), run.time_s
     wall.more_s += 40.0
-    again = resumed_run(there, plan, wall.fleet(there), log, before, wall=wall, starts=starts)
+    again = resumed_run(there, plan, wall.fleet(there), log, before, request=request, wall=wall)
     assert again.time_s == pytest.approx(lasted + 40.0, abs=0.5)
     assert again.starts_at == run.starts_at
     while not again.done:

@@ -156,7 +156,7 @@ def test_noise_of_motors_is_nothing_where_there_are_none():
 
 @pytest.mark.parametrize("name", ["motors", "attitude_rad", "gyro_radps", "gyro_bias_radps", "accelerometer_mps2"])
 def test_a_negative_error_is_told(name):
-    with pytest.raises(ParameterError, match=f"^{name}: -1; expected a number of at least 0$"):
+    with pytest.raises(ParameterError, match=f"^{name}: -1; expected a finite number, at least 0$"):
         Noise(**{name: -1})
 
 

@@ -57,7 +57,7 @@ def test_air_is_the_wind_and_gusts_by_the_seed():
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"velocity_mps": (1.0, 2.0)}, {"velocity_mps": (math.nan, 0.0, 0.0)}, {"gusts_mps": -1.0}]
+    "wrong", [{"velocity_mps": (1.0,)}, {"velocity_mps": (math.nan, 0.0, 0.0)}, {"gusts_mps": -1.0}]
 )
 def test_wrong_winds_are_refused(wrong):
     with pytest.raises(ParameterError, match="expected"):

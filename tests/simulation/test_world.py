@@ -174,7 +174,7 @@ def test_wrong_robots_and_way_points_are_told():
 
 
 def test_wrong_noise_is_told():
-    with pytest.raises(ParameterError, match=r"slip: 1.5; expected at most 1"):
+    with pytest.raises(ParameterError, match=r"slip: 1.5; expected a finite number, at least 0 and at most 1"):
         Noise(slip=1.5)
-    with pytest.raises(ParameterError, match="velocity: -1; expected a number of at least 0"):
+    with pytest.raises(ParameterError, match="velocity: -1; expected a finite number, at least 0"):
         Noise(velocity=-1)

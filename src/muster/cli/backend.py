@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
@@ -20,16 +20,15 @@ if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
     from muster.cli.local_backend import OnLine
     from muster.exchange.export_request import ExportOptions, Files
-    from muster.exchange.mission_control import MissionEntry, World
+    from muster.exchange.mission_control import MissionEntry
     from muster.execution import Report
     from muster.library import MissionSummary
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
     from muster.planning.request import Request
     from muster.planning.solving import Solution
-    from muster.running.localisation import Localise
     from muster.running.negotiated.simulation import Negotiation
-    from muster.simulation import Noise
+    from muster.running.observed_run import ObservedRun
     from muster.verification import Verdict
 
 Verb = Callable[..., Any]
@@ -69,23 +68,7 @@ class Backend(Protocol):
         """An admissible plan as files of other tools."""
 
     def simulate(
-        self,
-        mission: Mission,
-        plan: Plan | Negotiation,
-        *,
-        world: World,
-        seed: int,
-        dt_s: float,
-        avoidance: str,
-        traffic: str,
-        law: str,
-        noise: Noise,
-        pose: str | None,
-        localise: Localise | None,
-        speed: float | None,
-        record: Path | None,
-        on_line: OnLine | None,
-        **in_this_process: Any,
+        self, mission: Mission, plan: Plan | Negotiation, request: ObservedRun, on_line: OnLine | None
     ) -> tuple[Report, float | None]:
         """Carry a plan out; its report, and the mission's time at which Ctrl-C ended it, None where nothing did.
 
@@ -93,18 +76,16 @@ class Backend(Protocol):
         ----------
         on_line
             is called with the time and the line of each event.
-        in_this_process
-            objects of this process that observe the mission; a server knows none.
         """
 
 
-def server_option(*in_this_process: str) -> Callable[[Verb], Verb]:
+def server_option(**in_this_process: str) -> Callable[[Verb], Verb]:
     """--server and --token-file; the verb gets a `backend`.
 
     Parameters
     ----------
     in_this_process
-        parameters of the verb that mean nothing to a server: they are refused beside --server.
+        parameters of the verb that mean nothing to a server, and why: they are refused beside --server.
     """
 
     def decorate(verb: Verb) -> Verb:
@@ -163,10 +144,11 @@ def token_from(file: Path | None) -> str | None:
     return token or None
 
 
-def _refuse(names: Sequence[str]) -> None:
+def _refuse(reasons: Mapping[str, str]) -> None:
     """Refuse options that mean nothing to a server."""
     context = click.get_current_context()
     for parameter in context.command.params:
         given = context.get_parameter_source(str(parameter.name)) is ParameterSource.COMMANDLINE
-        if given and parameter.name in names:
-            raise ParameterError(f"{parameter.opts[-1]} given; expected it without --server")
+        if given and parameter.name in reasons:
+            why = reasons[parameter.name]
+            raise ParameterError(f"{parameter.opts[-1]} given; expected it without --server: {why}")

@@ -33,7 +33,7 @@ class Ending(Enum):
     STILL_MOVING = (
         exits.STILL_MOVING,
         "a real robot still flies or drives, is armed, or did or was when it was last heard",
-        "`fly`, `ros`, `ros2`",
+        "`fly`, `ros`, `ros2`, `run`",
         "; at (",
         "entry `final_states` of the run",
     )
@@ -50,14 +50,14 @@ class Ending(Enum):
     TASKS_LOST = (
         exits.TASKS_LOST,
         "real robots are safe, and tasks were lost",
-        "`fly`, `ros`, `ros2`",
+        "`fly`, `ros`, `ros2`, `run`",
         "lost",
         "run `ended`, `tasks_lost` in its report",
     )
     CUT_SHORT = (
         exits.INCOMPLETE,
         "the time limit cut the plan short, and `--accept-partial` was not given",
-        "`solve`, `simulate`, `export`, `fly`, `ros`, `ros2`",
+        "`solve`, `simulate`, `export`, `fly`, `ros`, `ros2`, `run`",
         "cut short",
         "plan with `cut_short`; 409 to a run of it",
     )

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     help="Seconds after which nothing more is looked for.",
 )
 @quiet_option
-@server_option("time_limit")
+@server_option(time_limit="a server has its own limit")
 def command(
     backend: Backend,
     mission: MissionFile,

@@ -5,12 +5,13 @@ from __future__ import annotations
 import threading
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
+from muster.bridges.fleet_settings import MavlinkSettings
 from muster.cli.exit_codes import Ending, exit_code_if
-from muster.cli.options import Finite, MissionFile, mission_argument
+from muster.cli.options import MissionFile, mission_argument
 from muster.cli.real_robots import (
     LastLines,
     RealRunOptions,
@@ -23,7 +24,6 @@ from muster.cli.real_robots import (
     show_final_states,
     start_in_time,
 )
-from muster.mission.errors import ParameterError
 from muster.mission.interrupts import TO_END, ctrl_c_halts, signals_interrupt
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
@@ -36,101 +36,35 @@ if TYPE_CHECKING:
 
 @click.command()
 @mission_argument
-@click.option(
-    "--endpoint",
-    "endpoints",
-    multiple=True,
-    required=True,
-    metavar="ROBOT=ENDPOINT",
-    help="udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM after it, of several on it.",
-)
-@click.option("--arm", is_flag=True, help="Arm and fly. Without it nothing is sent but heartbeats and requests.")
-@click.option("--offboard", is_flag=True, help="Send way points one by one instead of uploading missions.")
-@click.option(
-    "--local-frame",
-    type=click.Choice(["north", "forward"]),
-    default="north",
-    show_default=True,
-    help="With --offboard and no origin: what a drone calls north is north, or forward at power-up (no compass).",
-)
-@click.option(
-    "--height", type=Finite(0.5, 500), metavar="M", help="Height of flight above home, for a mission in the plane."
-)
-@click.option(
-    "--low-battery",
-    type=Finite(1, 99),
-    default=25,
-    show_default=True,
-    metavar="%",
-    help="Battery level below which a drone returns.",
-)
-@click.option(
-    "--wait",
-    type=Finite(0.1, 600),
-    default=10,
-    show_default=True,
-    metavar="S",
-    help="Seconds to wait for drones to answer.",
-)
-@click.option(
-    "--at-end",
-    type=click.Choice(["hold", "return", "land"]),
-    default="hold",
-    show_default=True,
-    help="When all is done; return and land wait until drones have landed.",
-)
-@real_options
-def command(
-    mission: MissionFile,
-    endpoints: tuple[str, ...],
-    arm: bool,
-    offboard: bool,
-    local_frame: Literal["north", "forward"],
-    height: float | None,
-    low_battery: float,
-    wait: float,
-    at_end: AtEnd,
-    options: RealRunOptions,
-) -> int:
+@real_options("mavlink", MavlinkSettings)
+def command(mission: MissionFile, options: RealRunOptions) -> int:
     """Carry out a plan of a MISSION with drones on PX4 or ArduPilot, over MAVLink.
 
     Without --arm nothing flies: telemetry is received, and the orders are shown. Ctrl-C lets drones
     hover. The exit code is 4 if a drone is armed at the end. Read docs/mavlink.md before the first flight.
     """
     from muster.bridges.mavlink import MavlinkFleet
-    from muster.bridges.mavlink.settings import Settings
     from muster.running.claim_locks import robots_claimed
-    from muster.running.robot_claims import claims_of
+    from muster.running.robot_claims import claims_of_request
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
-    given = read_given_plan(options, loaded)
-    claims = claims_of("mavlink", {"endpoints": _by_robot(endpoints)})
-    settings = Settings(arm=arm, offboard=offboard, local_frame=local_frame, low_battery=low_battery / 100)
+    given, settings = read_given_plan(options, loaded), options.request.settings
     with ExitStack() as stack:
-        stack.enter_context(robots_claimed(claims))
-        fleet = stack.enter_context(closing(MavlinkFleet(loaded, _by_robot(endpoints), settings, height_m=height)))
+        stack.enter_context(robots_claimed(claims_of_request(options.request)))
+        made = MavlinkFleet(loaded, settings.endpoints, settings, height_m=settings.height_m)
+        fleet = stack.enter_context(closing(made))
         stack.enter_context(signals_interrupt())
         last_lines = stack.enter_context(LastLines(fleet.final_states))
         start = start_in_time(loaded, fleet, options)
         plan = given or planned(options, loaded, start)
         if not options.quiet:
-            _warn(loaded, plan, height)
-        fleet.connect(wait)
-        if not arm:
+            _warn(loaded, plan, settings.height_m)
+        fleet.connect(settings.wait_s)
+        if not settings.arm:
             return _show(loaded, plan, fleet, options.form)
         last_lines.begun = True
-        return _fly(loaded, plan, fleet, at_end, options)
-
-
-def _by_robot(endpoints: tuple[str, ...]) -> dict[str, str]:
-    named: dict[str, str] = {}
-    for text in endpoints:
-        robot, _, endpoint = text.partition("=")
-        if not endpoint or robot in named:
-            raise ParameterError(f"--endpoint: {text}; expected ROBOT=ENDPOINT, once for each robot")
-        named[robot] = endpoint
-    return named
+        return _fly(loaded, plan, fleet, settings.at_end, options)
 
 
 def _warn(mission: Mission, plan: Plan, height: float | None) -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from muster.cli.whole_work import time_left_s
 from muster.mission.interrupts import ctrl_c_halts
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from muster.planning.request import Request
     from muster.planning.solving import Solution
     from muster.running.negotiated.simulation import Negotiation
+    from muster.running.observed_run import ObservedRun
     from muster.verification import Verdict
 
 OnLine = Callable[[float, str], None]
@@ -74,16 +75,10 @@ class LocalBackend:
         return exported(mission, require_admissible(mission, plan, file, ignore), form, options, plan)
 
     def simulate(
-        self,
-        mission: Mission,
-        plan: Plan | Negotiation,
-        *,
-        record: Path | None,
-        on_line: OnLine | None,
-        **how: Any,
+        self, mission: Mission, plan: Plan | Negotiation, request: ObservedRun, on_line: OnLine | None
     ) -> tuple[Report, float | None]:
-        from muster import simulate
         from muster.mission.event_descriptions import event_line
+        from muster.running.simulate import simulated
 
         def report(event: ExecutionEvent) -> None:
             assert on_line is not None
@@ -92,5 +87,6 @@ class LocalBackend:
         with ctrl_c_halts() as halt:
             on_event = None if on_line is None else report
             # What is accepted of a plan is the verb's to check.
-            outcome = simulate(mission, plan, accept_partial=True, record=record, on_event=on_event, halt=halt, **how)
+            here = replace(request, accept_partial=True, halt=halt, on_event=on_event)
+            outcome = simulated(mission, plan, here)
         return outcome, outcome.mission_time_s if halt.is_set() else None

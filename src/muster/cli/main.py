@@ -40,6 +40,7 @@ VERBS: Mapping[str, str] = MappingProxyType(
         "path": "Find a path on the map of a mission, from one point to another.",
         "traffic": "Show the roadmap that the robots of a mission share: lanes, passages for one, holding places.",
         "simulate": "Carry a plan out in a simulated world, and report its cost.",
+        "run": "Carry a plan out with a fleet of real robots, of a bridge or of an installed package.",
         "ros": "Carry a plan out with real robots on ROS 1.",
         "ros2": "Carry a plan out with real robots on ROS 2.",
         "fly": "Carry a plan out with drones, over MAVLink.",

@@ -16,8 +16,6 @@ from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
 from muster.mission.value_types import FLAGS
-from muster.motion.avoidance_names import AUTO, AVOIDANCE
-from muster.traffic.names import DEFAULT, TRAFFIC
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -235,29 +233,6 @@ def ignore_option(verb: Verb) -> Verb:
 def objective_option(verb: Verb) -> Verb:
     """--objective."""
     return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
-
-
-def avoidance_option(verb: Verb) -> Verb:
-    """--avoidance."""
-    return click.option(
-        "--avoidance",
-        type=click.Choice(AVOIDANCE),
-        default=AUTO,
-        show_default=True,
-        help="How robots pass each other; auto: simulated in the plane by hrvo, else by orca.",
-    )(verb)
-
-
-def traffic_option(verb: Verb) -> Verb:
-    """--traffic."""
-    return click.option(
-        "--traffic",
-        type=click.Choice(TRAFFIC),
-        default=DEFAULT,
-        show_default=True,
-        help="Who passes first: reserve, by one plan for all that drive; free, as they meet. auto: reserve where the "
-        "mission gives lanes or its map has passages for one, or where robots at their ends can close others out.",
-    )(verb)
 
 
 def require_complete_option(verb: Verb) -> Verb:

@@ -56,8 +56,8 @@ def _with_planning_options(verb: Verb, time_limit_s: float | None, carries_out: 
         if given["iterations"] is None and given["time_limit"] is None:
             given["time_limit"] = time_limit_s
         names = ("allocator", "objective", "ignore", "seed", "time_limit", "iterations", "bound", "rewire")
-        how = {name: given[name] for name in ("avoidance", "law") if name in given}
-        traffic = of_run(given["traffic"], **how) if carries_out else given.pop("traffic")
+        how = {name: given[name] for name in ("avoidance", "law") if given.get(name)}
+        traffic = of_run(given["traffic"] or DEFAULT, **how) if carries_out else given.pop("traffic")
         own = {name: given.pop(name) for name in names}
         options = PlanningOptions(parameters=parameters, traffic=traffic, **own)
         return verb(options=options, **given)

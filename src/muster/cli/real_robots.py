@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
 import threading
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -13,30 +12,33 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 
 from muster.cli.exit_codes import Ending, exit_code_if, note_ending
+from muster.cli.exits import INTERRUPTED
 from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
 from muster.cli.options import (
-    Finite,
     Verb,
-    accept_partial_option,
     format_option,
     load_plan,
     quiet_option,
     require_admissible,
     require_complete_option,
-    traffic_option,
 )
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.planning_options import planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
+from muster.cli.request_options import request_options, settings_from
 from muster.cli.tables import sequence
 from muster.mission.counting import counted
 from muster.mission.errors import IncompletePlanError, MusterError
 from muster.mission.event_descriptions import was_cancelled
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
+from muster.mission.records import Settings
 from muster.planning.options import PlanningOptions
-from muster.running.wall_time import STARTS, notes_on_start, planned_from, require_time_left
+from muster.running.fleet_registry import FLEETS, settings_class
+from muster.running.observed_run import ObservedRun
+from muster.running.run_request import REAL, RunRequest
+from muster.running.wall_time import notes_on_start, planned_from, require_time_left
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
@@ -49,8 +51,9 @@ _FILE = click.Path(path_type=Path)
 
 @dataclass(frozen=True, kw_only=True)
 class RealRunOptions:
-    """The values of `real_options`: everything but the mission and the options of the bridge."""
+    """The values of `real_options`: the request of the run, and what is no part of it but the mission."""
 
+    request: ObservedRun
     plan: Path | None
     planning: PlanningOptions
     start: Path | None = None
@@ -59,9 +62,6 @@ class RealRunOptions:
     html: Path | None
     plot: Path | None
     gantt: Path | None
-    starts: str = "given"
-    accept_partial: bool = False
-    traffic: str
     foxglove: int | None
     require_complete: bool
     form: str
@@ -69,27 +69,26 @@ class RealRunOptions:
     verbose: bool
 
 
-def real_options(verb: Verb) -> Verb:
-    """The options that the verb gets as `RealRunOptions`."""
-    own = [field.name for field in fields(RealRunOptions) if field.name != "planning"]
+def real_options(
+    fleet: str = "", settings: type[Settings] | None = None, without: Sequence[str] = ()
+) -> Callable[[Verb], Verb]:
+    """The options that the verb gets as `RealRunOptions`.
 
-    @wraps(verb)
-    def with_options(*, options: PlanningOptions, **given: Any) -> Any:
-        asked = RealRunOptions(planning=options, **{name: given.pop(name) for name in own})
-        return verb(options=asked, **given)
-
+    Parameters
+    ----------
+    fleet
+        the fleet that carries missions out; empty where the options --fleet and --setting name it and its settings.
+    settings
+        what the fleet declares: each of its fields is an option.
+    without
+        fields of the request that have no option.
+    """
+    own = [field.name for field in fields(RealRunOptions) if field.name not in ("planning", "request")]
     declared = (
         click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]"),
         planning_options(time_limit_s=2.0, carries_out=True),
-        click.option(
-            "--starts",
-            type=click.Choice(STARTS),
-            default="given",
-            show_default=True,
-            help="given: the mission starts at its starts_at; now: when robots are ready, with all its times shifted.",
-        ),
-        accept_partial_option,
-        traffic_option,
+        request_options(RunRequest, REAL, without),
+        *(() if settings is None else (request_options(settings),)),
         record_option,
         drawing_options,
         foxglove_option,
@@ -97,43 +96,30 @@ def real_options(verb: Verb) -> Verb:
         format_option,
         quiet_option,
     )
-    decorated: Any = with_options
-    for option in reversed(declared):
-        decorated = option(decorated)
-    return cast("Verb", decorated)
+
+    def decorate(verb: Verb) -> Verb:
+        @wraps(verb)
+        def with_options(*, options: PlanningOptions, how: Mapping[str, Any], **given: Any) -> Any:
+            name, texts = given.pop("fleet", fleet), given.pop("setting", ())
+            rules = {"seed": options.seed, "ignore": options.ignore, "planning": options}
+            request = _request(name, {**how, **rules}, texts)
+            asked = {name: given.pop(name) for name in own}
+            return verb(options=RealRunOptions(request=request, planning=options, **asked), **given)
+
+        decorated: Any = with_options
+        for option in reversed(declared):
+            decorated = option(decorated)
+        return cast("Verb", decorated)
+
+    return decorate
 
 
-def _namespace(_: click.Context, __: click.Parameter, value: str) -> str:
-    """Checks a namespace of ROS: names with slashes between them."""
-    if value.strip("/") and not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*", value.strip("/")):
-        raise click.BadParameter(f"{value!r}; expected names such as team or lab/team: letters, digits, _")
-    return value
-
-
-def ros_options(verb: Verb) -> Verb:
-    """Where robots on ROS are looked for: --namespace, --wait, --known-only."""
-    options = (
-        click.option(
-            "--namespace",
-            callback=_namespace,
-            default="",
-            metavar="NAME",
-            help="Namespace that holds those of the robots.  [default: the root]",
-        ),
-        click.option(
-            "--wait",
-            "wait_s",
-            type=Finite(0.0, 1e6),
-            default=10.0,
-            show_default=True,
-            metavar="S",
-            help="Seconds to wait for the mission's robots.",
-        ),
-        click.option("--known-only", is_flag=True, help="Robots that the mission does not name do not join."),
-    )
-    for option in reversed(options):
-        verb = option(verb)
-    return verb
+def _request(fleet: str, how: Mapping[str, Any], texts: Sequence[str]) -> ObservedRun:
+    """The request of a run with a fleet, whose settings stand beside the others, or are texts KEY=VALUE."""
+    FLEETS.named(fleet)
+    if not texts:
+        return ObservedRun.from_settings(fleet, how)
+    return ObservedRun(world=fleet, settings=settings_from(settings_class(fleet), texts), **how)
 
 
 def require_outputs(options: RealRunOptions, inputs: tuple[str | Path | None, ...]) -> None:
@@ -176,7 +162,7 @@ def planned(options: RealRunOptions, mission: Mission, start: MissionStart) -> P
 
 def require_whole(plan: Plan, options: RealRunOptions) -> Plan:
     """Return a plan; raise `IncompletePlanError` if it was cut short or is not complete, and that is not accepted."""
-    plan.require_whole(accept_partial=options.accept_partial)
+    plan.require_whole(accept_partial=options.request.accept_partial)
     if options.require_complete and not plan.complete:
         raise IncompletePlanError(f"{plan.planned_line}; nothing was started; expected all (--require-complete)")
     return plan
@@ -192,7 +178,7 @@ def start_in_time(mission: Mission, fleet: Fleet, options: RealRunOptions) -> Mi
     """
     from muster.running.fleet_clock import start_of
 
-    start = start_of(mission, fleet, options.starts)
+    start = start_of(mission, fleet, options.request.starts)
     require_time_left(mission, start.seconds())
     for line in notes_on_start(mission, start.seconds()):
         click.echo(line, err=True)
@@ -207,6 +193,38 @@ def from_here(mission: Mission, fleet: Fleet) -> Mission:
     for line in elsewhere(mission, there):
         click.echo(line, err=True)
     return there
+
+
+def carried_out_from_here(
+    mission: Mission,
+    fleet: Fleet,
+    given: Plan | None,
+    options: RealRunOptions,
+    halt: threading.Event,
+    at_end: Callable[[], None] = lambda: None,
+) -> int:
+    """Carry a mission out with robots that are ready, from where they stand; returns the exit code.
+
+    Parameters
+    ----------
+    given
+        the plan; None: one is made now.
+    at_end
+        see `carried_out`.
+    """
+    from muster.bridges.final_state import final_states_of
+
+    if not halt.is_set():
+        start = start_in_time(mission, fleet, options)
+        there = from_here(mission, fleet)
+        plan = given or planned(options, there, start)
+    if halt.is_set():
+        click.echo("interrupted; nothing was sent", err=True)
+        return INTERRUPTED
+    with LastLines(lambda: final_states_of(fleet, there), begun=True):
+        report = carried_out(there, plan, fleet, options, halt, at_end=at_end)
+        left = "the robots were told to stay where they are"
+        return reported(there, report, options, halt, left, final_states_of(fleet, there))
 
 
 def carried_out(
@@ -225,27 +243,21 @@ def carried_out(
     at_end
         gives robots their last orders when the plan is done, before pictures are drawn.
     """
-    from muster import carry_out
+    from muster.running.carry_out import carried_out as carry_out
 
     report = None
     try:
         kept = kept_record(options.record, options.html, options.plot, options.gantt)
         with kept as file, shown_live(mission, options.foxglove, quiet=options.quiet) as viewers:
-            report = carry_out(
-                mission,
-                plan,
-                fleet,
-                seed=options.planning.seed,
+            request = replace(
+                options.request,
                 accept_partial=True,  # or the verb has refused the plan
-                planning=options.planning,
-                ignore=options.planning.ignore,
-                traffic=options.traffic,
-                starts=options.starts,
                 record=file,
                 observers=(*observers, *viewers),
                 on_event=None if options.quiet else print_event,
                 halt=halt,
             )
+            report = carry_out(mission, plan, fleet, request)
             at_end()
     except (OSError, MusterError) as error:
         if report is None:

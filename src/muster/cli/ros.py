@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from muster.bridges.fleet_settings import Ros1Settings
 from muster.cli.exit_codes import gravest
 from muster.cli.exits import DONE, INTERRUPTED
 from muster.cli.options import (
-    Finite,
     MissionFile,
-    avoidance_option,
     optional_mission_argument,
     require_none_without_mission,
 )
@@ -29,7 +27,6 @@ from muster.cli.real_robots import (
     reported,
     require_outputs,
     require_whole,
-    ros_options,
     start_in_time,
 )
 from muster.cli.ros_targets import TargetOptions, target_options
@@ -38,7 +35,6 @@ from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
-from muster.motion.avoidance_names import AUTO
 
 if TYPE_CHECKING:
     from muster.bridges.final_state import FinalState
@@ -52,65 +48,14 @@ _LEFT = "the robots were told to stand"
 
 @click.command()
 @optional_mission_argument
-@click.option("--master", metavar="URI", help="The ROS master.  [default: ROS_MASTER_URI, or localhost]")
-@click.option(
-    "--drive",
-    type=click.Choice(["cmd_vel", "goals"]),
-    default="cmd_vel",
-    show_default=True,
-    help="What robots take: velocities, or goals on WP.",
-)
-@click.option("--frame", default="map", show_default=True, metavar="FRAME", help="The mission's frame, for tf.")
-@click.option(
-    "--arrival",
-    type=Finite(0.001, 100.0),
-    default=0.1,
-    show_default=True,
-    metavar="M",
-    help="Distance to a way point at which it counts as reached.",
-)
-@click.option(
-    "--rate",
-    type=Finite(1.0, 200.0),
-    default=20.0,
-    show_default=True,
-    metavar="HZ",
-    help="Rate at which velocities are sent.",
-)
-@avoidance_option
-@click.option(
-    "--odometry",
-    type=click.Choice(["map", "start"]),
-    default="map",
-    show_default=True,
-    help="Odometry is in a frame that tf ties to the map, or in <robot>/odom, from the robot's start in the mission.",
-)
-@click.option(
-    "--poses",
-    default="",
-    metavar="TOPIC",
-    help="Where motion capture publishes poses, such as /vrpn_client_node/{robot}/pose.  [default: <robot>/pose]",
-)
 @click.option("--markers", is_flag=True, help="Publish tasks, routes and robots for RViz, on /muster/markers.")
 @click.option("--on-start", is_flag=True, help="Begin when the service command_interface/start is called.")
 @click.option("--stay", is_flag=True, help="After the end wait for the next mission, until Ctrl-C.")
 @target_options
-@ros_options
-@real_options
+@real_options("ros1", Ros1Settings, without=("stay", "until_s", "orders"))
 def command(
     mission: MissionFile | None,
-    master: str | None,
-    drive: Literal["cmd_vel", "goals"],
-    namespace: str,
-    frame: str,
-    wait_s: float,
-    arrival: float,
-    rate: float,
-    avoidance: str,
-    odometry: Literal["map", "start"],
-    poses: str,
     markers: bool,
-    known_only: bool,
     on_start: bool,
     stay: bool,
     targets: TargetOptions | None,
@@ -121,45 +66,29 @@ def command(
     Robot r_0 is at /r_0/odom or /r_0/pose. Without a MISSION the command waits for command_interface/load and start.
     Ctrl-C stops all robots. The exit code is 4 if a robot still flies or drives at the end.
     """
-    from muster.bridges.discovery import pose_topics
     from muster.bridges.ros1.extra import require_rospy
 
     require_rospy()
     if markers or targets is not None:
         require_rospy(("sensor_msgs", "visualization_msgs"))
-    from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node, leave
 
     if mission is None:
         require_none_without_mission(plan=options.plan)
     _require_one_mission(options, stay)
-    _require_steering(drive, avoidance)
-    pose_topics(poses)
     require_outputs(options, () if mission is None else mission.files)
     loaded = None if mission is None else mission.load(verbose=options.verbose)
     given = None if loaded is None else read_given_plan(options, loaded)
 
-    def fleet_of(its: Mission) -> Ros1Fleet:
-        return Ros1Fleet(
-            its,
-            drive=drive,
-            namespace=namespace,
-            frame=frame,
-            arrival_m=arrival,
-            rate_hz=rate,
-            avoidance=avoidance,
-            odometry=odometry,
-            poses=poses,
-            joins=not known_only,
-        )
+    settings = options.request.settings
 
-    become_node("muster", master)
+    become_node("muster", settings.master)
     try:
         own = ("--planning", json.dumps(_as_data(options)), "--targets", "" if targets is None else targets.as_text())
-        where = ("--namespace", namespace, "--frame", frame, "--poses", poses)
+        where = ("--namespace", settings.namespace, "--frame", settings.frame, "--poses", settings.poses)
         node = (sys.executable, "-m", "muster.cli.ros_node", *where, *own)
-        work = _Work(fleet_of, given, wait_s, stay, targets is not None, frame if markers else None, options)
-        return _with_nodes(loaded, work, node, master, begins=not on_start)
+        work = _Work(given, stay, targets is not None, settings.frame if markers else None, options)
+        return _with_nodes(loaded, work, node, begins=not on_start)
     finally:
         leave()
 
@@ -177,28 +106,18 @@ def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
             raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")
 
 
-def _require_steering(drive: str, avoidance: str) -> None:
-    """Refuse --avoidance for robots that find their way themselves."""
-    if drive == "goals" and avoidance not in (AUTO, "orca"):
-        raise ParameterError(f"--avoidance {avoidance} with --drive goals; expected --drive cmd_vel")
-
-
 @dataclass(frozen=True)
 class _Work:
     """What is the same for every mission that is carried out."""
 
-    fleet_of: Callable[[Mission], Ros1Fleet]
     plan: Plan | None
-    wait_s: float
     stay: bool
     finds_targets: bool
     marked_in: str | None  # the frame of markers for RViz, where they are asked for
     options: RealRunOptions
 
 
-def _with_nodes(
-    mission: Mission | None, work: _Work, node: tuple[str, ...], master: str | None, *, begins: bool
-) -> int:
+def _with_nodes(mission: Mission | None, work: _Work, node: tuple[str, ...], *, begins: bool) -> int:
     """Carry missions out while the other nodes run; returns the exit code.
 
     Parameters
@@ -222,7 +141,7 @@ def _with_nodes(
     with ctrl_c_halts(TO_END) as asked:
         children = NodeProcesses(
             node,
-            master_address(master),
+            master_address(work.options.request.settings.master),
             asked_to_end=asked.is_set,
             on_end=controller.end_all,
             duties=(*DUTIES, "target_localization") if work.finds_targets else DUTIES,
@@ -266,7 +185,9 @@ def _through(
     mission: Mission, controller: Controller, work: _Work, children: NodeProcesses
 ) -> tuple[Report, list[FinalState]] | None:
     """Open the fleet, carry the mission out, and close the fleet; None if halted before the beginning."""
-    fleet = work.fleet_of(mission)
+    from muster.bridges.ros1.fleet import Ros1Fleet
+
+    fleet = Ros1Fleet(mission, work.options.request.settings)
     try:
         return _carried_out(mission, controller, work, fleet, children)
     finally:
@@ -287,7 +208,7 @@ def _carried_out(
 
     options = work.options
     start = start_in_time(mission, fleet, options)
-    wait_for_robots(fleet, controller.halt, work.wait_s)
+    wait_for_robots(fleet, controller.halt, options.request.settings.wait_s)
     if controller.halt.is_set():
         return None
     there = from_here(mission, fleet)

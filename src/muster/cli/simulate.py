@@ -3,82 +3,94 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
 from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
-from muster.cli.drone_options import IN_THIS_PROCESS, conditions_of, drone_options
-from muster.cli.duty_options import duty_options, standing_of
 from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
-from muster.cli.localisation_options import localise_of, pose_options
 from muster.cli.options import (
     Finite,
     MissionFile,
-    accept_partial_option,
-    avoidance_option,
     format_option,
+    load_plan,
     mission_argument,
     quiet_option,
     require_complete_option,
-    say_of_plan,
-    traffic_option,
 )
 from muster.cli.outputs import require_drawable, require_folder, require_writable
 from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
+from muster.cli.request_options import request_options
 from muster.cli.whole_work import whole_work
 from muster.client.server_plan import ServerPlan
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, json_text
-from muster.mission.plan_reader import read_plan
-from muster.motion.laws import LAWS
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
+from muster.running.observed_run import ObservedRun
+from muster.running.run_request import SIMULATED, RunRequest
 
 if TYPE_CHECKING:
     from muster import Negotiation
-    from muster.exchange.mission_control import World
     from muster.report.camera_pictures import CameraPictures
-    from muster.simulation import Noise
+    from muster.running.localisation import Localise
 
 _FILE = click.Path(path_type=Path)
 _OF_A_PLAN = (
     *("plan", "ignore", "time_limit", "iterations", "allocator", "objective", "threads", "ray"),
-    *("bound", "start", "fixed", "rewire", "stay", "until", "orders"),
+    *("bound", "start", "fixed", "rewire", "stay", "until_s", "orders"),
 )
 _OF_A_NEGOTIATION = ("method", "transport")
-_IN_THIS_PROCESS = (
-    *_OF_A_NEGOTIATION,
-    "ray",
-    "negotiate",
-    "found",
-    "cameras",
-    "film",
-    "film_speed",
-    "still",
-    "foxglove",
-    "orders",
-    *IN_THIS_PROCESS,
-)
+_PROCESSES = "the robots' processes run on this machine"
+_PICTURES = "it keeps no pictures of cameras"
+_BODIES = "it keeps where bodies are, and not how they look"
+_IN_THIS_PROCESS = {
+    "method": _PROCESSES,
+    "transport": _PROCESSES,
+    "negotiate": _PROCESSES,
+    "ray": "a server uses no cluster",
+    "found": _PICTURES,
+    "cameras": _PICTURES,
+    "film": _BODIES,
+    "film_speed": _BODIES,
+    "still": _BODIES,
+    "foxglove": "the port is one of this machine",
+}
 
 
-def _world(_: click.Context, __: click.Parameter, value: str) -> str:
-    from muster.running.worlds import WORLDS
+@dataclass(frozen=True, kw_only=True)
+class _Asked:
+    """The options of the verb that are no part of a request."""
 
-    if value not in WORLDS:
-        hint = did_you_mean(value, WORLDS)
-        raise click.BadParameter(f"{value!r} is not one of {', '.join(WORLDS)}{hint}", param_hint="'--world'")
-    return value
+    plan: Path | None
+    start: Path | None
+    fixed: Path | None
+    negotiate: bool
+    record: Path | None
+    html: Path | None
+    plot: Path | None
+    gantt: Path | None
+    found: Path | None
+    cameras: Path | None
+    film: Path | None
+    film_speed: float | None
+    still: Path | None
+    method: str
+    transport: str
+    foxglove: int | None
+    require_complete: bool
+    form: str
+    quiet: bool
+    verbose: bool
 
 
 @click.command()
@@ -86,34 +98,7 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]")
 @planning_options(time_limit_s=2.0, carries_out=True)
 @click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
-@click.option(
-    "--world",
-    callback=_world,
-    default="kinematic",
-    show_default=True,
-    metavar="WORLD",
-    help="kinematic, physics, or a world of an installed package.",
-)
-@avoidance_option
-@traffic_option
-@click.option("--law", type=click.Choice(LAWS), default="profile", show_default=True, help="How robots move.")
-@click.option("--dt", type=Finite(0.001, 1.0), default=0.1, show_default=True, metavar="S", help="Step, 0.001 to 1.")
-@click.option(
-    "--speed",
-    type=Finite(0.001, 1e6),
-    metavar="X",
-    help="X times real time, printing events.  [default: at once; 1 with --foxglove; with --negotiate 1, at most 10]",
-)
-@click.option(
-    "--noise",
-    "noises",
-    multiple=True,
-    metavar="KIND=AMOUNT",
-    help="Noise of motion and telemetry; see docs/simulation.md.",
-)
-@duty_options
-@drone_options
-@pose_options
+@request_options(RunRequest, SIMULATED)
 @record_option
 @drawing_options
 @click.option("--found", type=_FILE, metavar="FILE", help="Draw what cameras found (.png, .svg, .pdf).")
@@ -128,52 +113,11 @@ def _world(_: click.Context, __: click.Parameter, value: str) -> str:
 @foxglove_option
 @method_options
 @require_complete_option
-@accept_partial_option
 @format_option
 @quiet_option
-@server_option(*_IN_THIS_PROCESS)
+@server_option(**_IN_THIS_PROCESS)
 def command(
-    backend: Backend,
-    mission: MissionFile,
-    plan: Path | None,
-    options: PlanningOptions,
-    start: Path | None,
-    fixed: Path | None,
-    negotiate: bool,
-    world: World,
-    avoidance: str,
-    traffic: str,
-    law: str,
-    dt: float,
-    speed: float | None,
-    noises: tuple[str, ...],
-    stay: bool,
-    until: float | None,
-    orders: Path | None,
-    wind: str | None,
-    gusts: float | None,
-    rotors: bool,
-    batteries: tuple[str, ...],
-    drain: tuple[str, ...],
-    pose: str | None,
-    sensors: tuple[str, ...],
-    record: Path | None,
-    html: Path | None,
-    plot: Path | None,
-    gantt: Path | None,
-    found: Path | None,
-    cameras: Path | None,
-    film: Path | None,
-    film_speed: float | None,
-    still: Path | None,
-    method: str,
-    transport: str,
-    foxglove: int | None,
-    require_complete: bool,
-    accept_partial: bool,
-    form: str,
-    quiet: bool,
-    verbose: bool,
+    backend: Backend, mission: MissionFile, options: PlanningOptions, how: Mapping[str, Any], **given: Any
 ) -> int:
     """Carry out a plan of a MISSION in a simulated world, in virtual time, and report its cost.
 
@@ -184,79 +128,78 @@ def command(
     With --negotiate there is no plan and no centre: robots agree as in `muster auction`, over the same network, and
     each decides for itself what to do next. They exchange messages in real time.
     """
-    _check_together(negotiate)
-    require_writable(None, (record, html, plot, gantt, film, still, found), mission.files, (plan, start, fixed))
-    require_drawable(plot, gantt, found)
-    require_filmable(world, film, film_speed, still)
-    noise, localise = noise_of(noises), localise_of(sensors)
-    conditions = conditions_of(wind, gusts, batteries, drain, rotors=rotors)
-    standing = standing_of(orders, until, stay=stay)
-    speed = 1.0 if foxglove is not None and speed is None else speed
-    loaded = mission.load(verbose=verbose)
-    if localise is not None:
-        _require_possible(localise, loaded)
-    looks = _looks(loaded, world, found, cameras)
-    planned: Plan | Negotiation
-    if negotiate:
-        planned, speed = _negotiation(loaded, method, transport, options), speed or 1.0
-    elif plan is not None:
-        planned = read_plan(plan, loaded)
-        say_of_plan(planned, plan, loaded, options.ignore, quiet=quiet, verbose=verbose)
-        planned = _judged(loaded, planned, plan, options.ignore, quiet=quiet)
-    else:
-        planned = _plan(backend, request_of(options, loaded, start, fixed), quiet=quiet)
+    asked = _Asked(**given)
+    _check_together(asked.negotiate)
+    request = _request(asked, options, how)
+    _require_outputs(asked, mission, request.world)
+    loaded = mission.load(verbose=asked.verbose)
+    if request.localise is not None:
+        _require_possible(request.localise, loaded)
+    looks = _looks(loaded, request.world, asked.found, asked.cameras)
+    planned = _planned(backend, asked, loaded, options)
     if isinstance(planned, Plan):
-        planned.require_whole(accept_partial=accept_partial)
-    footage = footage_of(loaded) if film is not None or still is not None else None
-    rules = {} if negotiate else {"ignore": options.ignore, "planning": options, "standing": standing}
-    with kept_record(record, html, plot, gantt) as file, shown_live(loaded, foxglove, quiet=quiet) as observers:
-        report, interrupted_s = backend.simulate(
-            loaded,
-            planned,
-            world=world,
-            seed=options.seed,
-            dt_s=dt,
-            avoidance=avoidance,
-            traffic=traffic,
-            law=law,
-            noise=noise,
-            pose=pose,
-            localise=localise,
-            speed=speed,
-            record=file,
-            on_line=print_event_line if speed is not None and not quiet else None,
-            observers=observers,
-            film=footage,
-            on_look=looks,
-            **conditions,
-            **rules,
-        )
-    if found is not None and looks is not None:
-        looks.plot(loaded, found)
-    if form == "json":
+        planned.require_whole(accept_partial=request.accept_partial)
+    footage = footage_of(loaded) if asked.film is not None or asked.still is not None else None
+    with (
+        kept_record(asked.record, asked.html, asked.plot, asked.gantt) as file,
+        shown_live(loaded, asked.foxglove, quiet=asked.quiet) as observers,
+    ):
+        request = replace(request, record=file, observers=observers, film=footage, on_look=looks)
+        on_line = print_event_line if request.speed is not None and not asked.quiet else None
+        report, interrupted_s = backend.simulate(loaded, planned, request, on_line)
+    if asked.found is not None and looks is not None:
+        looks.plot(loaded, asked.found)
+    if asked.form == "json":
         click.echo(json_text(report.as_dict()), nl=False)
     else:
-        print_report(report.as_dict(), loaded, with_tasks=verbose)
+        print_report(report.as_dict(), loaded, with_tasks=asked.verbose)
     if footage is not None:
-        draw_footage(footage, film, film_speed, still, quiet=quiet)
+        draw_footage(footage, asked.film, asked.film_speed, asked.still, quiet=asked.quiet)
     if interrupted_s is not None:
         click.echo(f"interrupted at {interrupted_s:.1f} s of the mission", err=True)
     return exit_code_if(
-        (Ending.INTERRUPTED, interrupted_s is not None), (Ending.LEFT_OUT, require_complete and report.tasks_lost)
+        (Ending.INTERRUPTED, interrupted_s is not None), (Ending.LEFT_OUT, asked.require_complete and report.tasks_lost)
     )
+
+
+def _request(asked: _Asked, options: PlanningOptions, how: Mapping[str, Any]) -> ObservedRun:
+    """The request of the run; what is wrong with it is said before anything is read."""
+    if "speed" not in how and (asked.negotiate or asked.foxglove is not None):
+        how = {**how, "speed": 1.0}
+    rules: dict[str, Any] = {} if asked.negotiate else {"ignore": options.ignore, "planning": options}
+    return ObservedRun(**how, seed=options.seed, **rules)
+
+
+def _require_outputs(asked: _Asked, mission: MissionFile, world: str) -> None:
+    """Refuse files that cannot be written, or would replace one that is read."""
+    files = (asked.record, asked.html, asked.plot, asked.gantt, asked.film, asked.still, asked.found)
+    require_writable(None, files, mission.files, (asked.plan, asked.start, asked.fixed))
+    require_drawable(asked.plot, asked.gantt, asked.found)
+    require_filmable(world, asked.film, asked.film_speed, asked.still)
+
+
+def _planned(backend: Backend, asked: _Asked, mission: Mission, options: PlanningOptions) -> Plan | Negotiation:
+    """What is carried out: the plan of --plan, one that is made now, or a negotiation."""
+    if asked.negotiate:
+        return _negotiation(mission, asked.method, asked.transport, options)
+    if asked.plan is None:
+        return _plan(backend, request_of(options, mission, asked.start, asked.fixed), quiet=asked.quiet)
+    plan = load_plan(asked.plan, mission, options.ignore, quiet=asked.quiet, verbose=asked.verbose)
+    return _judged(mission, plan, asked.plan, options.ignore, quiet=asked.quiet)
 
 
 def _check_together(negotiate: bool) -> None:
     """Refuse options that go only with --negotiate, or only without it."""
     context = click.get_current_context()
-    given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-    wrong = given.intersection(_OF_A_PLAN if negotiate else _OF_A_NEGOTIATION)
-    for name in sorted(wrong):
-        option = "--set" if name == "settings" else f"--{name.replace('_', '-')}"
-        raise ParameterError(f"{option} given; expected it {'without' if negotiate else 'together with'} --negotiate")
+    wrong = _OF_A_PLAN if negotiate else _OF_A_NEGOTIATION
+    for option in sorted(context.command.params, key=lambda option: str(option.name)):
+        given = context.get_parameter_source(str(option.name)) is ParameterSource.COMMANDLINE
+        if given and option.name in wrong:
+            how = "without" if negotiate else "together with"
+            raise ParameterError(f"{option.opts[-1]} given; expected it {how} --negotiate")
 
 
-def _require_possible(localise: Mapping[str, Mapping[str, str]], mission: Mission) -> None:
+def _require_possible(localise: Localise, mission: Mission) -> None:
     """Refuse sensors before anything is planned."""
     from muster.running.localisation import require_possible, sensors_of
 
@@ -321,20 +264,3 @@ def _plan(backend: Backend, request: Request, *, quiet: bool) -> Plan:
         click.echo(f"interrupted: {kept}nothing was started", err=True)
         raise KeyboardInterrupt
     return plan
-
-
-def noise_of(noises: tuple[str, ...]) -> Noise:
-    """The noise of `--noise KIND=AMOUNT`."""
-    from muster.simulation import Noise
-
-    kinds = [field.name for field in fields(Noise)]
-    amounts: dict[str, float] = {}
-    for text in noises:
-        kind, _, amount = text.partition("=")
-        if kind not in kinds or kind in amounts:
-            raise ParameterError(f"--noise: {text}; expected each of {', '.join(kinds)} at most once, =AMOUNT")
-        try:
-            amounts[kind] = float(amount)
-        except ValueError:
-            raise ParameterError(f"--noise: {text}; expected a number after {kind}=") from None
-    return Noise(**amounts)

@@ -46,7 +46,7 @@ _OVERRUN, _OVERRUN_S = 0.1, 0.2  # of a time limit, and seconds, about which not
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the routes (.png, .svg, .pdf).")
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw the time chart (.png, .svg, .pdf).")
 @quiet_option
-@server_option("ray")
+@server_option(ray="a server uses no cluster")
 def command(
     backend: Backend,
     mission: MissionFile,

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import io
-import math
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,22 +15,21 @@ from muster.client.resources import MissionText
 from muster.client.server_plan import ServerPlan
 from muster.client.uploads import packed_mission
 from muster.exchange.export_request import ExportOptions, Files
-from muster.exchange.mission_control import ConflictError, MissionEntry, World
+from muster.exchange.mission_control import ConflictError, MissionEntry
 from muster.mission.errors import Finding, MissionError, MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.planning.options import OPTIONS, PlanningOptions
+from muster.planning.options import OPTIONS
 from muster.planning.request import Request
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
-    from muster.execution import Report, Standing
+    from muster.execution import Report
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
     from muster.planning.solving import Solution
-    from muster.running.localisation import Localise
-    from muster.simulation import Noise
+    from muster.running.observed_run import ObservedRun
     from muster.verification import Verdict
 
 _NOTES = "NOTES.txt"
@@ -103,53 +100,21 @@ class ServerBackend:
         return unpacked(*self._client.plans.export(self._kept_plan(mission, plan), form, ignore, **asked))
 
     def simulate(
-        self,
-        mission: Mission,
-        plan: Plan | object,
-        *,
-        world: World,
-        seed: int,
-        dt_s: float,
-        avoidance: str,
-        traffic: str,
-        law: str,
-        noise: Noise,
-        pose: str | None,
-        localise: Localise | None,
-        speed: float | None,
-        record: Path | None,
-        on_line: Callable[[float, str], None] | None,
-        ignore: Sequence[str] = (),
-        planning: PlanningOptions | None = None,
-        standing: Standing | None = None,
-        **in_this_process: Any,
+        self, mission: Mission, plan: Plan | object, request: ObservedRun, on_line: Callable[[float, str], None] | None
     ) -> tuple[Report, float | None]:
         if not isinstance(plan, Plan):
             raise ParameterError(f"plan: {type(plan).__name__}; expected a Plan for a server")
-        settings: dict[str, Any] = {"seed": seed, "dt_s": dt_s, "avoidance": avoidance, "traffic": traffic, "law": law}
-        settings["ignore"] = list(ignore)
+        settings = request.as_settings()
         if plan.cut_short:
             settings["accept_partial"] = True  # or the verb has refused the plan
-        if planning is not None and (replanning := _replanning(planning)):
-            settings["planning"] = replanning
-        if amounts := {kind: amount for kind, amount in asdict(noise).items() if amount}:
-            settings["noise"] = amounts
-        if standing is not None:
-            settings["stay"] = True
-            if standing.until_s is not None and standing.until_s < math.inf:
-                settings["until_s"] = standing.until_s
-        if pose is not None:
-            settings["pose"] = pose
-        if localise is not None:
-            settings["localise"] = localise
         kept = plan if isinstance(plan, ServerPlan) else self._kept_plan(mission, plan)
         with ctrl_c_halts() as halt:  # without an exception, so that every run that is started is known here
-            run = self._client.start(kept, world=world, speed=speed, **settings)
+            run = self._client.start(kept, world=request.world, speed=request.speed, **settings)
         interrupted = followed(run, on_line, halt.is_set())
         if run.seen.report is None:
             raise MusterError(run.seen.remark or f"run {run.id} {run.seen.state}, without a report")
-        if record is not None:
-            record.write_bytes(self._client.records.mcap(run.id))
+        if request.record is not None:
+            Path(request.record).write_bytes(self._client.records.mcap(run.id))
         return report_from(run.seen.report), run.seen.time_s if interrupted else None
 
     def _kept(self, mission: Mission) -> MissionText:
@@ -161,12 +126,6 @@ class ServerBackend:
         entry = self._client.plans.upload(self._kept(mission).id, plan)
         self._note(f"the server has it as plan {entry.id}")
         return entry
-
-
-def _replanning(planning: PlanningOptions) -> dict[str, Any]:
-    """The options that bear on planning again while a plan is carried out, where they are not the defaults."""
-    usual, asked = PlanningOptions().as_dict(), planning.as_dict()
-    return {name: asked[name] for name in ("allocator", "parameters", "rewire") if asked[name] != usual[name]}
 
 
 def awaited(job: RunningJob, on_progress: Callable[[Progress], None] | None, interrupt: Stop, say: Say) -> ServerPlan:

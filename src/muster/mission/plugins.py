@@ -61,6 +61,10 @@ class Registry(Mapping[str, T], Generic[T]):
             self._loaded[name] = self._load(name, self._entries[name])
         return self._loaded[name]
 
+    def __contains__(self, name: object) -> bool:
+        """Whether there is an implementation of that name; it is not loaded."""
+        return name in self._entries
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._entries)
 

@@ -13,7 +13,7 @@ from dataclasses import MISSING, Field, dataclass, field, fields
 from functools import partial
 from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
-from muster.mission.errors import Finding, MissionError
+from muster.mission.errors import Finding, MissionError, MusterError, ParameterError
 from muster.mission.field_help import fields_text
 from muster.mission.keywords import require_known
 from muster.mission.near_matches import did_you_mean
@@ -51,6 +51,7 @@ def spec(
     unless: JsonSchema | None = None,
     if_used: bool = False,
     key: str = "",
+    **more: Any,
 ) -> Any:
     """A dataclass field whose values are of `kind`; without `default` it is required.
 
@@ -68,8 +69,10 @@ def spec(
         whether tables show it only where some record has it.
     key
         what files call it, where Python keeps the word for itself (`from`); by default the field's name.
+    more
+        further metadata: how a command calls it, where the field counts.
     """
-    metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit, "if_used": if_used}
+    metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit, "if_used": if_used} | more
     metadata |= {"key": key} if key else {}
     metadata |= {"instead": instead if isinstance(instead[0], tuple) else (instead,)} if instead else {}
     metadata |= {"unless": unless} if unless else {}
@@ -94,13 +97,13 @@ def _with_parameters(words: str, parameters: str) -> str:
     return f"{summary}\n\n{parameters.strip()}{errors}{raised}"
 
 
-def _naming_unknown_fields(init: Callable[..., None], cls: type[Any]) -> Callable[..., None]:
+def _naming_unknown_fields(init: Callable[..., None], cls: Any) -> Callable[..., None]:
     @functools.wraps(init)
     def checked(self: Any, *args: Any, **values: Any) -> None:
         try:
             init(self, *args, **values)
         except TypeError:
-            require_known(values, [f.name for f in fields(cls)], cls.__name__)
+            require_known(values, [f.name for f in fields(cls)], cls.called())
             raise
 
     return checked
@@ -152,7 +155,17 @@ class Checked:
                 object.__setattr__(self, name, value)
             faults.extend(self.cross_check(self.__dict__))
         if faults:
-            raise MissionError(findings(faults, IN_PYTHON))
+            raise self.refusal(faults)
+
+    @classmethod
+    def refusal(cls, faults: Sequence[Fault]) -> MusterError:
+        """Return the error of wrong values."""
+        return MissionError(findings(faults, IN_PYTHON))
+
+    @classmethod
+    def called(cls) -> str:
+        """Return how messages about unknown fields call the class; empty where they name the field alone."""
+        return cls.__name__
 
     @classmethod
     def is_tied(cls, given: Iterable[str]) -> bool:
@@ -182,6 +195,24 @@ class Checked:
     def further_keys(cls, data: Mapping[Any, Any]) -> Mapping[str, Key]:
         """Keys that a file may hold besides the fields, in view of its other keys; their values go into `extra`."""
         return {}
+
+
+class Settings(Checked):
+    """Base of classes whose fields are parameters of a function or command: a wrong value is a `ParameterError`.
+
+    The message is the same whether a value comes from Python, from a command line or from a request to a server.
+    """
+
+    @classmethod
+    def refusal(cls, faults: Sequence[Fault]) -> MusterError:
+        """See `Checked`; the first fault alone."""
+        fault = faults[0]
+        return ParameterError(f"{path_text(fault.path)}: {fault.value}; expected {fault.expected}")
+
+    @classmethod
+    def called(cls) -> str:
+        """See `Checked`."""
+        return ""
 
 
 @dataclass(frozen=True)

@@ -2,77 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.planning.options import PlanningOptions
 from muster.planning.request import require_mission
+from muster.running.observed_run import ObservedRun, keywords_of_run
 from muster.running.recorded import recorded
-from muster.traffic.names import DEFAULT
 
 if TYPE_CHECKING:
-    import threading
-
     from muster.bridges.fleet import Fleet
-    from muster.execution import ExecutionEvent, Recorder, Report, Standing
-    from muster.mission.clock import Clock
+    from muster.execution import Report
 
 
-def carry_out(
-    mission: Mission,
-    plan: Plan,
-    fleet: Fleet,
-    *,
-    seed: int = 0,
-    accept_partial: bool = False,
-    planning: PlanningOptions | None = None,
-    ignore: str | Collection[str] = (),
-    standing: Standing | None = None,
-    traffic: str = DEFAULT,
-    record: str | Path | None = None,
-    observers: Sequence[Recorder] = (),
-    on_event: Callable[[ExecutionEvent], None] | None = None,
-    halt: threading.Event | None = None,
-    starts: str = "given",
-    wall: Clock | None = None,
-) -> Report:
+def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: ObservedRun) -> Report:
     """Carry a plan out with real robots, in real time, to its end. The tasks left are planned again when robots fail.
 
     Parameters
     ----------
     fleet
-        the robots, behind a bridge of `muster.bridges`; stays open.
-    seed
-        of planning again.
-    accept_partial
-        whether a plan is carried out that was cut short.
-    planning
-        options with which the tasks left are planned again: allocator, parameters, `rewire`.
-    ignore
-        rules that do not hold, whatever the plan says of itself.
-    standing
-        for a fleet that stays on duty: until when, and for which orders.
-    traffic
-        who says which robot passes first: free, robots pass each other as they meet; reserve, in the order of one plan
-        for all that drive; auto, reserve where the mission gives lanes, its map has passages for one robot, or robots
-        at their ends can close others out of theirs.
-    record
-        a file (.mcap) for the record of the run; needs the extra `record`.
-    observers
-        receive every event and state, such as `muster.report.live.FoxgloveServer`.
-    on_event
-        is called with each event, as it happens.
-    halt
-        when it is set, by another thread or by `on_event`, robots stop where they are, and the run ends.
-    starts
-        "given": time 0 is the mission's `starts_at`, or now without one; "now": the mission starts now, all its times
-        are shifted.
-    wall
-        the wall clock, by which the mission's clock goes; by default the machine's.
+        the robots, behind a bridge of `muster.bridges`, which stays open; or the name of a registered fleet, which is
+        opened with the `settings` of the request, and closed.
+    request
+        how the plan is carried out: the fields of `RunRequest` and `ObservedRun`, by name.
 
     Returns
     -------
@@ -86,27 +42,36 @@ def carry_out(
         if a route enters an area that is closed to its robot.
     ParameterError
         if the plan names robots or tasks that the mission does not have, a robot has no port, or the mission's time is
-        over.
+        over; if another run on this machine commands the robots of a fleet that is named.
     """
     from muster.running.live import carry_out_live
 
     require_mission(mission)
-    plan.require_whole(accept_partial=accept_partial)
+    plan.require_whole(accept_partial=request.accept_partial)
     remarks: list[str] = []
-    with recorded(mission, record, observers, lambda error: remarks.append(f"no more is kept: {error}")) as recorder:
-        report = carry_out_live(
-            mission,
-            plan,
-            fleet,
-            seed=seed,
-            planning=planning,
-            ignore=ignore,
-            standing=standing,
-            traffic=traffic,
-            recorder=recorder,
-            on_event=on_event,
-            halt=halt,
-            starts=starts,
-            wall=wall,
-        )
+    request = request if request.halt else replace(request, halt=threading.Event())
+    with (
+        _opened(fleet, mission, request) as (robots, at_end),
+        recorded(
+            mission, request.record, request.observers, lambda error: remarks.append(f"no more is kept: {error}")
+        ) as recorder,
+    ):
+        report = carry_out_live(mission, plan, robots, request, recorder=recorder)
+        at_end()
     return replace(report, remarks=(*report.remarks, *remarks))
+
+
+carry_out = keywords_of_run.with_fleet(carried_out)
+
+
+@contextmanager
+def _opened(fleet: Fleet | str, mission: Mission, request: ObservedRun) -> Iterator[tuple[Fleet, Callable[[], None]]]:
+    """The robots that are commanded, and what is called when all is done."""
+    if not isinstance(fleet, str):
+        yield fleet, lambda: None
+        return
+    from muster.running.claimed_fleet import claimed_fleet
+
+    assert request.halt is not None
+    with claimed_fleet(mission, request, request.halt) as opened:
+        yield opened

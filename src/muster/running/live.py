@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from muster.bridges.fleet import Fleet, has_simulated_time, is_paused, reason_of
 from muster.execution import (
     Executor,
     Recorder,
-    Standing,
     Status,
     compared_in_part,
     report_of,
@@ -25,24 +24,23 @@ from muster.execution import (
 )
 from muster.mission.clock import Clock
 from muster.mission.errors import NetworkError
-from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
 from muster.motion.robot_paths import RobotPaths
-from muster.planning.options import PlanningOptions
 from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of
 from muster.running.fleet_in_traffic import FleetInTraffic
+from muster.running.observed_run import ObservedRun
 from muster.running.replanning import planning_of
+from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.running.traffic_choice import manager_for
 from muster.running.wall_time import MissionStart, has_time_limits, require_time_left
 from muster.state import MissionState
 from muster.state.run_events import MissionBegins
-from muster.traffic.names import DEFAULT
 from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
-    from muster.execution import ExecutionEvent, Report
+    from muster.execution import Report
     from muster.execution.standing import EventLog
 
 LOOK_S = 0.2
@@ -57,17 +55,10 @@ def carry_out_live(
     mission: Mission,
     plan: Plan,
     fleet: Fleet,
+    request: ObservedRun | None = None,
     *,
-    seed: int = 0,
-    planning: PlanningOptions | None = None,
-    ignore: str | Collection[str] = (),
-    standing: Standing | None = None,
-    traffic: str = DEFAULT,
     recorder: Recorder | None = None,
-    on_event: Callable[[ExecutionEvent], None] | None = None,
-    halt: threading.Event | None = None,
-    starts: str = "given",
-    wall: Clock | None = None,
+    **how: Any,
 ) -> Report:
     """Let a fleet carry a plan out to its end, or until `halt` is set; then robots stay where they are.
 
@@ -77,22 +68,10 @@ def carry_out_live(
     ----------
     fleet
         has a port for each robot of the mission, and stays open.
-    seed
-        of planning anew.
-    planning
-        options of planning anew; see `reallocation_by`.
-    ignore
-        rules that do not hold, whatever the plan says of itself.
-    standing
-        for a fleet that stays on duty: until when, and for which orders.
-    traffic
-        who says which robot passes first; see `Simulation`.
+    request
+        how the plan is carried out; without it the fields of `ObservedRun` are keyword arguments.
     recorder
         receives all events, and the positions that robots report.
-    on_event
-        receives every event when it happens.
-    starts, wall
-        See `Live`.
 
     Raises
     ------
@@ -100,20 +79,9 @@ def carry_out_live(
         if the plan names robots or tasks that the mission does not have, a robot has no port, or the mission's time is
         over.
     """
-    live = Live(
-        mission,
-        plan,
-        fleet,
-        seed=seed,
-        planning=planning,
-        ignore=ignore,
-        standing=standing,
-        traffic=traffic,
-        recorder=recorder,
-        starts=starts,
-        wall=wall,
-    )
-    halt, told = halt or threading.Event(), 0
+    request = ObservedRun(**{"world": OPEN_FLEET, **how}) if request is None else request
+    live = Live(mission, plan, fleet, request, recorder=recorder, wall=request.wall)
+    halt, on_event, told = request.halt or threading.Event(), request.on_event, 0
     try:
         while not halt.is_set():
             live.look()
@@ -139,22 +107,12 @@ class Live:
     ----------
     fleet
         has a port for each robot of the mission, and stays open.
-    seed
-        of planning anew.
-    planning
-        options of planning anew; see `reallocation_by`.
-    ignore
-        rules that do not hold, whatever the plan says of itself.
-    standing
-        for a fleet that stays on duty: until when, and for which orders.
-    traffic
-        who says which robot passes first; see `Simulation`.
+    request
+        how the plan is carried out; without it the fields of `RunRequest` are keyword arguments.
     recorder
         receives all events, and the positions that robots report.
     state
         what is known of a mission that goes on after a stop.
-    starts
-        "given": the mission starts at its `starts_at`; "now": it starts now, with all its times shifted.
     wall
         the wall clock; by default the machine's, or of a fleet with simulated time that clock alone.
 
@@ -170,20 +128,20 @@ class Live:
         mission: Mission,
         plan: Plan,
         fleet: Fleet,
+        request: RunRequest | None = None,
         *,
-        seed: int = 0,
-        planning: PlanningOptions | None = None,
-        ignore: str | Collection[str] = (),
-        standing: Standing | None = None,
-        traffic: str = DEFAULT,
         recorder: Recorder | None = None,
         state: MissionState | None = None,
-        starts: str = "given",
         wall: Clock | None = None,
+        **how: Any,
     ) -> None:
+        request = ObservedRun(**{"world": OPEN_FLEET, **how}) if request is None else request
+        seed = request.seed
         clock = clock_of(fleet, wall)
         zero_s = None if state is None else state.zero_s
-        self.start = start_of(mission, fleet, starts, wall) if zero_s is None else MissionStart.at(mission, zero_s)
+        self.start = (
+            start_of(mission, fleet, request.starts, wall) if zero_s is None else MissionStart.at(mission, zero_s)
+        )
         mission, begin_s = self.start.mission, self.start.seconds(clock)
         if state is None:
             require_time_left(mission, begin_s)
@@ -192,15 +150,17 @@ class Live:
             begin_s = max(begin_s, state.now_s)
         require_geometry(mission, "a run of real robots")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
-        manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
+        manager = manager_for(
+            request.traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world
+        )
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
         self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)
         self._robots, self._recorder, self._stood = fleet, recorder, False
         travel = travel_of(mission, robot_paths)
-        replan, self._standing = planning_of(mission, standing, planning, travel, seed, repeatable=False)
+        replan, self._standing = planning_of(mission, request.duty, request.planning, travel, seed, repeatable=False)
         self.executor = Executor(
             mission,
-            replace(plan, ignored=ignored_rules(ignore)),
+            replace(plan, ignored=request.ignore),
             self._fleet.ports,
             way=way_of(mission, robot_paths),
             travel=travel,

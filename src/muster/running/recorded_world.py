@@ -8,31 +8,23 @@ from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
+from muster.mission.value_types import shown
+from muster.mission.yaml_writer import plain
 from muster.motion.laws import PROFILE
+from muster.motion.noise import CALM
 from muster.running.worlds import MakeWorld, world_named
-from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
-from muster.simulation.wind import CALM, Wind
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
     from muster.mission.model import Mission
+    from muster.running.run_request import RunRequest
     from muster.simulation import SimulatedWorld
 
 
 def recorded_world(
-    name: str,
-    mission: Mission,
-    recorder: Recorder | None,
-    *,
-    law: str = PROFILE,
-    wind: Wind = CALM,
-    batteries: Charges = NO_CHARGES,
-    drain: Drains = NO_DRAINS,
-    rotor_level: bool = False,
-    snapshot: Mapping[str, Any] | None = None,
-    **how: Any,
+    mission: Mission, request: RunRequest, recorder: Recorder | None, snapshot: Mapping[str, Any] | None = None
 ) -> SimulatedWorld:
-    """The world of that name for a mission, which tells a recorder where bodies are.
+    """The world of a request for a mission, which tells a recorder where bodies are, and goes on from a snapshot.
 
     Raises
     ------
@@ -40,31 +32,36 @@ def recorded_world(
         for a law, wind, batteries or rotors that the world does not have. Worlds of other packages need not know of
         them.
     """
+    name = request.world
     make = world_named(name)
+    how = {field: getattr(request, field) for field in ("seed", "dt_s", "avoidance", "noise")}
     if recorder is not None:
         how |= {"observer": recorder.on_step, "observe_s": 0.1}
-    if law != PROFILE:
-        how["law"] = _taken(make, "law", law, f"expected {PROFILE}: the world {name} has no other")
-    if wind.blows:
-        how["wind"] = _taken(make, "wind", wind, f"expected none: the world {name} has no wind; physics has")
-    if batteries:
-        how["batteries"] = _taken(make, "batteries", batteries, f"expected none: the world {name} has no batteries")
-    if drain:
-        how["drain"] = _taken(make, "drain", drain, f"expected none: the world {name} has no batteries")
-    if rotor_level:
-        why = f"expected the world physics: {name} has no rotors"
-        how["rotor_level"] = _taken(make, "rotor_level", rotor_level, why)
+    for field, lacks in _OF_SOME_WORLDS.items():
+        value = getattr(request, field)
+        if value and value not in (PROFILE, CALM):
+            how[field] = _taken(make, field, value, lacks.format(name))
     if snapshot is not None:
-        how["snapshot"] = _taken(make, "snapshot", "of bodies", f"expected none: the world {name} cannot be resumed")
+        _taken(make, "snapshot", "of bodies", f"expected none: the world {name} cannot be resumed")
         how["snapshot"] = snapshot
     return make(mission, **how)
+
+
+_OF_SOME_WORLDS = {
+    "law": f"expected {PROFILE}: the world {{}} has no other",
+    "wind": "expected none: the world {} has no wind; physics has",
+    "batteries": "expected none: the world {} has no batteries",
+    "drain": "expected none: the world {} has no batteries",
+    "rotor_level": "expected the world physics: {} has no rotors",
+}
+"""Fields of a request that only some worlds take, and what is said of others."""
 
 
 def _taken(make: MakeWorld, option: str, value: Any, expected: str) -> Any:
     """The value, if the world takes the option."""
     taken = signature(make).parameters
     if option not in taken and not any(parameter.kind is Parameter.VAR_KEYWORD for parameter in taken.values()):
-        raise ParameterError(f"{option}: {value}; {expected}")
+        raise ParameterError(f"{option}: {shown(plain(value))}; {expected}")
     return value
 
 

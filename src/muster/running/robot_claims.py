@@ -4,57 +4,48 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from muster.bridges.fleet_settings import MavlinkSettings, Ros1Settings, Ros2Settings, RosSettings
 from muster.mission.errors import MusterError, PluginError
 from muster.mission.value_types import shown
-from muster.running.fleet_registry import FLEETS, OpenFleet
+from muster.running.fleet_registry import FLEETS, Claims, OpenFleet, declares
+from muster.running.run_request import RunRequest
 from muster.running.worlds import WORLDS
-
-Claims = Callable[[Mapping[str, Any]], Iterable[str]]
-"""Returns what a run with some settings claims: words for robots, the same for the same robots."""
 
 
 def claims(of: Claims) -> Callable[[OpenFleet], OpenFleet]:
-    """Declare what runs with a fleet claim: two runs that claim the same never command robots at the same time.
-
-    A fleet without a declaration is claimed as a whole: one run at a time.
-
-    Parameters
-    ----------
-    of : callable
-        Returns the claims of a run by its settings, such as `[settings["url"]]`; it is called before the fleet is
-        opened, in another process.
-    """
-
-    def declared(open_fleet: OpenFleet) -> OpenFleet:
-        open_fleet.claims = of  # type: ignore[attr-defined]
-        return open_fleet
-
-    return declared
+    """Declare what runs with a fleet claim, and nothing else; see `fleet_registry.declares`."""
+    return declares(claims=of)
 
 
-def claims_of(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
+def claims_of_request(request: RunRequest) -> frozenset[str]:
     """Return what a run claims, in words: what its fleet declares, else the fleet; nothing in a simulated world.
 
     Raises
     ------
-    ParameterError, PluginError
-        if there is no such fleet, its package cannot be loaded, or its declaration is no list of texts.
+    PluginError
+        if the package of the fleet cannot be loaded, or its declaration is no list of texts.
     """
+    world = request.world
     if world in WORLDS:
         return frozenset()
     of = getattr(FLEETS.named(world), "claims", None)
     if of is None:
         return frozenset({f"fleet {world}"})
     try:
-        found = list(of(settings))
+        found = list(of(request.settings))
     except Exception as error:  # the code of another package may raise anything
         raise PluginError(f"fleet {world}: its claims: {type(error).__name__}: {error}") from error
     if not all(isinstance(claim, str) for claim in found):
         raise PluginError(f"fleet {world}: its claims: {shown(found)}; expected texts")
     return frozenset(found)
+
+
+def claims_of(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
+    """Return what a run claims by its settings in the form of the API; see `claims_of_request`."""
+    return claims_of_request(RunRequest.from_settings(world, settings))
 
 
 def claims_as_far_as_known(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
@@ -65,29 +56,29 @@ def claims_as_far_as_known(world: str, settings: Mapping[str, Any]) -> frozenset
         return frozenset({f"fleet {world}"})
 
 
-def ros1_claims(settings: Mapping[str, Any]) -> Iterator[str]:
+def ros1_claims(settings: Ros1Settings) -> Iterator[str]:
     """Yield a namespace, whichever the master, for one master goes by many names."""
     yield f"{_namespace(settings)} of ROS 1"
 
 
-def ros2_claims(settings: Mapping[str, Any]) -> Iterator[str]:
+def ros2_claims(settings: Ros2Settings) -> Iterator[str]:
     """Yield a namespace of a domain."""
-    domain = settings.get("domain")
+    domain = settings.domain
     text = (os.environ.get("ROS_DOMAIN_ID") or "0") if domain is None else str(domain)
     yield f"{_namespace(settings)} of domain {text.strip().lstrip('0') or '0'} of ROS 2"
 
 
-def _namespace(settings: Mapping[str, Any]) -> str:
-    name = str(settings.get("namespace", "")).strip().strip("/")
+def _namespace(settings: RosSettings) -> str:
+    name = settings.namespace.strip("/")
     return f"namespace {name}" if name else "the root namespace"
 
 
-def mavlink_claims(settings: Mapping[str, Any]) -> Iterator[str]:
+def mavlink_claims(settings: MavlinkSettings) -> Iterator[str]:
     """Yield each line (a UDP port that is listened at, an address that is called, a device).
 
     Which systems are on a line does not matter: two processes do not share one.
     """
-    for endpoint in settings.get("endpoints", {}).values():
+    for endpoint in settings.endpoints.values():
         yield _line(endpoint.partition("#")[0].strip())
 
 

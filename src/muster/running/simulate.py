@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING
 
 from muster.mission.errors import ParameterError
-from muster.mission.keywords import require_known
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
 from muster.planning.request import require_mission
+from muster.running.observed_run import ObservedRun, keywords_of_run
 from muster.running.recorded import recorded
-from muster.running.simulation_options import SimulationOptions
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
@@ -22,17 +20,7 @@ if TYPE_CHECKING:
     from muster.running.negotiated.simulation import Negotiation
 
 
-def simulate(
-    mission: Mission,
-    plan: Plan | Negotiation,
-    *,
-    seed: int = 0,
-    accept_partial: bool = False,
-    record: str | Path | None = None,
-    film: str | Path | Footage | None = None,
-    observers: Sequence[Recorder] = (),
-    **how: Unpack[SimulationOptions],
-) -> Report:
+def simulated(mission: Mission, plan: Plan | Negotiation, request: ObservedRun) -> Report:
     """Carry a plan out in a simulated world, in virtual time; the mission's events happen.
 
     Parameters
@@ -40,23 +28,8 @@ def simulate(
     plan
         what is carried out; or a `Negotiation`: then each robot is a process that decides for itself, without a
         centre, and time passes as in reality.
-    seed
-        of the world and of planning again.
-    accept_partial
-        whether a plan is carried out that was cut short.
-    record
-        a file (.mcap) for the record of the run; needs the extra `record`.
-    film
-        a file (.mp4, .gif) for a film of it, in the physics world; or a `Footage` of the mission, of which films and
-        stills can be made afterwards.
-    observers
-        receive every event and state, such as `muster.report.live.FoxgloveServer`.
-    how
-        as `Simulation` takes it: `world`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`, `wind`,
-        `batteries`, `drain`, `rotor_level`, `on_look`, `on_world`; `ignore`, rules that do not hold, whatever the plan
-        says of itself; `planning`, the options with which the rest is planned again; `standing`, for a fleet that
-        stays on duty (a `muster.execution.Standing`); and `speed`, times real time, `on_event`, which is called with
-        each event, and `halt`, which ends it when it is set.
+    request
+        the world, and how the plan is carried out: the fields of `RunRequest` and `ObservedRun`, by name.
 
     Raises
     ------
@@ -72,22 +45,28 @@ def simulate(
     MissingExtraError
         if an extra is missing: a negotiation needs `net`, the physics world `physics`.
     """
-    require_known(how, (*SimulationOptions.__annotations__, "seed", "accept_partial", "record", "film", "observers"))
     require_mission(mission)
+    if request.is_real:
+        raise ParameterError(f"world: {request.world}; expected a simulated one: muster.carry_out has real robots")
     if isinstance(plan, Plan):
-        plan.require_whole(accept_partial=accept_partial)
-    carry_out = _runner(mission, plan)
+        plan.require_whole(accept_partial=request.accept_partial)
+    else:
+        _require_possible(mission, plan)
+    film, observers = request.film, request.observers
     if film is not None:
         footage = _footage(mission, film)
         observers = (*observers, footage)
-        how["on_world"] = footage.on_world
-    with recorded(mission, record, observers) as recorder:
-        report = carry_out(seed=seed, recorder=recorder, **how)
+        request = replace(request, on_world=footage.on_world)
+    with recorded(mission, request.record, observers) as recorder:
+        report = _carry_out(mission, plan, request, recorder)
     if isinstance(film, str | Path):
         from muster.report.film import write_film
 
         write_film(film, footage)
     return report
+
+
+simulate = keywords_of_run.in_world(simulated)
 
 
 def _footage(mission: Mission, film: str | Path | Footage) -> Footage:
@@ -99,17 +78,23 @@ def _footage(mission: Mission, film: str | Path | Footage) -> Footage:
     return Footage(mission)
 
 
-def _runner(mission: Mission, plan: Plan | Negotiation) -> Callable[..., Report]:
+def _require_possible(mission: Mission, negotiation: Negotiation) -> None:
+    """Refuse, before any file is opened, what is no negotiation, and a mission on which robots cannot agree."""
+    from muster.negotiation.capabilities import refuse_mission
+    from muster.negotiation.methods import method_named
+    from muster.running.negotiated.simulation import Negotiation
+
+    if not isinstance(negotiation, Negotiation):
+        raise ParameterError(f"plan: {shown(negotiation)}; expected a Plan or a Negotiation")
+    refuse_mission(mission, method_named(negotiation.method).can)
+
+
+def _carry_out(mission: Mission, plan: Plan | Negotiation, request: ObservedRun, recorder: Recorder | None) -> Report:
     if isinstance(plan, Plan):
         from muster.running.simulation import carry_out
 
-        return partial(carry_out, mission, plan)
+        return carry_out(mission, plan, request, recorder=recorder)
     from muster.allocation.problem import Problem
-    from muster.negotiation.capabilities import refuse_mission
-    from muster.negotiation.methods import method_named
-    from muster.running.negotiated.simulation import Negotiation, negotiate_and_carry_out
+    from muster.running.negotiated.simulation import negotiate_and_carry_out
 
-    if not isinstance(plan, Negotiation):
-        raise ParameterError(f"plan: {shown(plan)}; expected a Plan or a Negotiation")
-    refuse_mission(mission, method_named(plan.method).can)
-    return partial(negotiate_and_carry_out, Problem.compile(mission).ready(), plan)
+    return negotiate_and_carry_out(Problem.compile(mission).ready(), plan, request, recorder)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from muster.execution import (
     Executor,
     Recorder,
-    Standing,
     Status,
     broken_off,
     report_of,
@@ -21,33 +20,26 @@ from muster.execution import (
     travel_of,
     way_of,
 )
-from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.avoidance_names import AUTO
 from muster.motion.robot_paths import RobotPaths
-from muster.planning.options import PlanningOptions
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
-from muster.running.localisation import Localise
+from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.replanning import planning_of
 from muster.running.robots_in_traffic import RobotsInTraffic
+from muster.running.run_request import RunRequest
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
-from muster.simulation import CALM, NO_NOISE, Noise, SimulatedWorld, Wind
-from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
+from muster.simulation import NO_NOISE, SimulatedWorld
 from muster.state import MissionState, OtherEvent
-from muster.traffic.names import DEFAULT
 from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
-    from typing import Unpack
-
     from muster.execution.report import Report
     from muster.execution.standing import EventLog
-    from muster.running.simulation_options import RecordedWorldOptions
     from muster.state import ExecutionEvent
 
 OnWorld = Callable[[SimulatedWorld], None]
@@ -60,39 +52,8 @@ class Simulation:
 
     Parameters
     ----------
-    world
-        `kinematic`, or `physics`, which needs the extra of that name.
-    seed
-        of the world and of planning anew.
-    dt_s
-        step of the world in seconds.
-    avoidance
-        how robots pass each other: auto (the method that gets all done soonest), orca, rvo, hrvo, avo or none.
-    traffic
-        free: robots pass each other as they meet; reserve: robots that drive pass in the order of one plan for all,
-        and go round nothing; auto: reserve where the mission gives lanes, its map has passages for one robot, or robots
-        at their ends can close others out of theirs, and no avoidance and no other law than profile is asked for.
-    law
-        how robots move: profile, thesis or trajectory; see `simulation.world_base.WorldBase`.
-    noise
-        of motion and telemetry.
-    pose, localise
-        what robots steer by, and the sensors by which they estimate their poses; see `with_state_estimation`.
-    wind
-        in which drones fly, in the physics world.
-    batteries
-        shares of full batteries with which robots begin, by id or for `all`; these report a charge, and those to which
-        the mission gives a battery.
-    drain
-        how many times as fast as by usage batteries drain, by id or for `all`.
-    rotor_level
-        whether all drones of the physics world are simulated rotor by rotor.
-    planning
-        options of planning anew; see `reallocation_by`.
-    ignore
-        rules that do not hold, whatever the plan says of itself.
-    standing
-        for a fleet that stays on duty: until when, and for which orders.
+    request
+        the world, and how the plan is carried out; without it the fields of `RunRequest` are keyword arguments.
     recorder
         receives all events.
     on_look
@@ -114,68 +75,41 @@ class Simulation:
         self,
         mission: Mission,
         plan: Plan,
+        request: RunRequest | None = None,
         *,
-        world: str = "kinematic",
-        seed: int = 0,
-        dt_s: float = 0.1,
-        avoidance: str = AUTO,
-        traffic: str = DEFAULT,
-        law: str = "profile",
-        noise: Noise = NO_NOISE,
-        wind: Wind = CALM,
-        batteries: Charges = NO_CHARGES,
-        drain: Drains = NO_DRAINS,
-        rotor_level: bool = False,
-        pose: str | None = None,
-        localise: Localise | None = None,
-        planning: PlanningOptions | None = None,
-        ignore: str | Collection[str] = (),
-        standing: Standing | None = None,
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
         begun: Begun | None = None,
+        **how: Any,
     ) -> None:
+        request = ObservedRun(**how) if request is None else request
         if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
             require_open_ways(mission, plan)
         there = mission if begun is None else begun.standing(mission)
         require_geometry(mission, "a simulated run")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
-        travel = travel_of(mission, robot_paths)
+        travel, seed = travel_of(mission, robot_paths), request.seed
         manager = manager_for(
-            traffic,
+            request.traffic,
             mission,
             seed=seed,
-            avoidance=avoidance,
-            law=law,
-            exact=world == "kinematic" and noise == NO_NOISE and pose is None and localise is None,
+            avoidance=request.avoidance,
+            law=request.law,
+            exact=_is_exact(request),
             world=None if robot_paths is None else robot_paths.world,
         )
-        self._world = recorded_world(
-            world,
-            there,
-            recorder,
-            law=law,
-            wind=wind,
-            batteries=batteries,
-            drain=drain,
-            rotor_level=rotor_level,
-            seed=seed,
-            dt_s=dt_s,
-            avoidance=avoidance,
-            noise=noise,
-            snapshot=None if begun is None else begun.snapshot,
-        )
+        self._world = recorded_world(there, request, recorder, None if begun is None else begun.snapshot)
         if on_world is not None:
             on_world(self._world)
-        robots = with_state_estimation(self._world, there, pose=pose, localise=localise, seed=seed)
+        robots = with_state_estimation(self._world, there, pose=request.pose, localise=request.localise, seed=seed)
         self._estimated = robots if isinstance(robots, EstimatedWorld) else None
         self._traffic = None if manager is None else RobotsInTraffic(robots, self._world, manager, there)
         self._robots: RobotsInWorld = robots if self._traffic is None else self._traffic
-        replan, self._standing = planning_of(mission, standing, planning, travel, seed)
+        replan, self._standing = planning_of(mission, request.duty, request.planning, travel, seed)
         self._executor = Executor(
             mission,
-            _with_objective(mission, replace(plan, ignored=ignored_rules(ignore))),
+            _with_objective(mission, replace(plan, ignored=request.ignore)),
             self._robots.ports,
             way=way_of(mission, robot_paths),
             travel=travel,
@@ -191,7 +125,7 @@ class Simulation:
         if manager is not None:
             manager.expect(self._executor.outlook)
         self._camera_search = camera_search_for(
-            there, self._world, self._robots.ports, noise=noise, seed=seed, on_look=on_look
+            there, self._world, self._robots.ports, noise=request.noise, seed=seed, on_look=on_look
         )
         self._recorder = recorder
         self._ahead = sorted(there.events, key=lambda event: event.at_s)
@@ -377,28 +311,25 @@ def _with_objective(mission: Mission, plan: Plan) -> Plan:
     return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
 
 
+def _is_exact(request: RunRequest) -> bool:
+    """Whether robots drive exactly as told, and know where they are."""
+    estimated = request.pose is not None or request.localise is not None
+    return request.world == "kinematic" and request.noise == NO_NOISE and not estimated
+
+
 def carry_out(
     mission: Mission,
     plan: Plan,
+    request: ObservedRun | None = None,
     *,
-    speed: float | None = None,
-    on_event: Callable[[ExecutionEvent], None] | None = None,
-    halt: threading.Event | None = None,
-    **how: Unpack[RecordedWorldOptions],
+    recorder: Recorder | None = None,
+    **how: Any,
 ) -> Report:
-    """Carry a plan out to its end; see `Simulation`.
-
-    Parameters
-    ----------
-    speed
-        how many times as fast as the wall clock; None: as fast as it goes.
-    on_event
-        receives every event when it happens.
-    halt
-        when it is set, carrying out stops, and the report is of what was done until then.
-    """
-    halt = halt or threading.Event()
-    with closing(Simulation(mission, plan, **how)) as simulation:
+    """Carry a plan out to its end, or until `halt` of the request is set; see `Simulation`."""
+    request = ObservedRun(**how) if request is None else request
+    halt, speed = request.halt or threading.Event(), request.speed
+    hooks: dict[str, Any] = {"recorder": recorder, "on_look": request.on_look, "on_world": request.on_world}
+    with closing(Simulation(mission, plan, request, **hooks)) as simulation:
         begin, told = time.monotonic(), 0
         while not simulation.done and not halt.is_set():
             simulation.advance(simulation.time_s + LOOK_S)
@@ -406,8 +337,8 @@ def carry_out(
                 ahead_s = begin + simulation.time_s / speed - time.monotonic()
                 simulation.note_lag(max(0.0, -ahead_s))
                 halt.wait(max(0.0, ahead_s))
-            if on_event is not None:
+            if request.on_event is not None:
                 for event in simulation.events.since(told):
-                    on_event(event)
+                    request.on_event(event)
                 told = simulation.events.total
         return simulation.result()

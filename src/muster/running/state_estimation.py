@@ -30,11 +30,9 @@ from muster.running.localisation import (
     require_possible,
     sensors_of,
 )
+from muster.running.run_request import ESTIMATE, POSES
 from muster.simulation import Noise, SimulatedWorld, WaypointPassed
 from muster.simulation.port import SimulatedPort
-
-TRUE, ESTIMATE = POSES = ("true", "estimate")
-"""What robots steer by: where they are, or where they take themselves to be."""
 
 LEAST_M, LEAST_RAD, LEAST_RADPS, LEAST_MPS = 0.001, 0.001, 0.001, 0.001
 """What robots err by in a filter's eyes where there is no noise: nothing is exact."""

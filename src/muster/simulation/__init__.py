@@ -1,9 +1,8 @@
 """Worlds in which a plan is carried out. The physics world is in `simulation.physics`, and needs an extra."""
 
+from muster.motion.noise import CALM, NO_NOISE, Noise, Wind
 from muster.simulation.kinematic_world import KinematicWorld
 from muster.simulation.lasers import Laser
-from muster.simulation.noise import NO_NOISE, Noise
-from muster.simulation.wind import CALM, Wind
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
 
 __all__ = [

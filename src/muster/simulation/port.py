@@ -12,11 +12,11 @@ from muster import core
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.frames import wrapped
+from muster.motion.noise import Noise
 from muster.motion.order_trajectory import STEP_S, TrajectoryMaker
 from muster.motion.port import Inertial, Telemetry, Waypoint
 from muster.perception.dead_reckoning import Odometry
 from muster.simulation.batteries import Battery
-from muster.simulation.noise import Noise
 
 
 @dataclass(frozen=True)

@@ -7,54 +7,17 @@ the wind they have a first-order spectrum, across it and upright a second-order 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.errors import ParameterError
 from muster.motion.grid import Floats
+from muster.motion.noise import Wind
 
 _FOOT_M = 0.3048
 _LOWEST_FT, _HIGHEST_FT = 10.0, 1000.0
 """The heights between which the model at low altitude holds; others are taken for the nearer of these."""
 _SLOWEST_MPS = 0.5
 """The least airspeed by which gusts change: a drone in still air meets them, too."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Wind:
-    """The wind of a mission, the same everywhere but for gusts.
-
-    Parameters
-    ----------
-    velocity_mps
-        of the air: east, north, up.
-    gusts_mps
-        wind speed at 6 m (20 ft) by which [milf1980] gives the strength of gusts (7.7 light, 15 moderate, 23 high);
-        0: no gusts.
-
-    Raises
-    ------
-    ParameterError
-        if a number is not finite, or `gusts_mps` below 0.
-    """
-
-    velocity_mps: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    gusts_mps: float = 0.0
-
-    def __post_init__(self) -> None:
-        if len(self.velocity_mps) != 3 or not all(map(math.isfinite, self.velocity_mps)):
-            raise ParameterError(f"wind: {self.velocity_mps}; expected three finite numbers, m/s")
-        if not 0 <= self.gusts_mps < math.inf:
-            raise ParameterError(f"gusts: {self.gusts_mps}; expected a finite number of at least 0, m/s")
-
-    @property
-    def blows(self) -> bool:
-        """Whether there is any wind."""
-        return self != CALM
-
-
-CALM = Wind()
 
 
 def turbulence(height_m: Floats, gusts_mps: float) -> tuple[Floats, Floats]:

@@ -9,8 +9,8 @@ from typing import Any, Protocol
 
 from muster.mission.model import Robot
 from muster.motion.grid import Floats
+from muster.motion.noise import Noise
 from muster.perception.laser import NO_DISCS, Scanner
-from muster.simulation.noise import Noise
 from muster.simulation.port import SimulatedPort
 
 Observer = Callable[[float, Floats, Floats, Floats], None]

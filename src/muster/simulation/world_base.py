@@ -27,6 +27,7 @@ from muster.motion.kinematics.registry import kinematics_named, limits_of, turni
 from muster.motion.laws import PROFILE, THESIS, TRAJECTORY, require_law
 from muster.motion.limits import Limits
 from muster.motion.map_world import Body, World, body_of
+from muster.motion.noise import NO_NOISE, Noise
 from muster.motion.order_trajectory import TrajectoryMaker
 from muster.motion.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
@@ -42,7 +43,6 @@ from muster.simulation.batteries import (
     require_charges,
     require_drains,
 )
-from muster.simulation.noise import NO_NOISE, Noise
 from muster.simulation.port import Serving, SimulatedPort
 from muster.simulation.station_service import LOOK_S, WorldStations
 from muster.simulation.walls import Slab, faces_and_slabs

@@ -112,7 +112,7 @@ def bridge(count: int, windows: int, window_s: float) -> None:
     team = tuple(Robot(id=name, position=place, **body) for name, place in starts(count))  # type: ignore[arg-type]
     become_node("muster")
     heard = Heard()
-    fleet = Ros1Fleet(Mission(robots=team, tasks=()), on_pose=heard.note, rate_hz=20.0)
+    fleet = Ros1Fleet(Mission(robots=team, tasks=()), on_pose=heard.note)
     while fleet.robots_not_ready():
         time.sleep(0.05)
     rounds = math.ceil((windows + 1) * (window_s + 1) * SPEED_MPS / (4 * SIDE_M)) + 1

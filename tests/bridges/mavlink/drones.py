@@ -3,9 +3,9 @@
 import socket
 
 import muster
+from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.mavlink import MavlinkFleet
 from muster.bridges.mavlink.autopilots import PX4
-from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.bridges.mavlink.simulated_earth import origin_at
 from muster.bridges.mavlink.simulated_faults import Faults
@@ -67,7 +67,7 @@ class Sky:
         made = MavlinkFleet(
             there,
             self.endpoints,
-            Settings(**{"arm": True, **settings}),
+            FlightSettings(**{"arm": True, **settings}),
             height_m=height_m,
             clock=self.clock,
             wait=self.wait,

@@ -1,12 +1,12 @@
 """A session that is spoken to, message by message, in the words of a drone."""
 
+from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.mavlink.autopilots import PX4
 from muster.bridges.mavlink.dialect import mavlink
 from muster.bridges.mavlink.drone import Drone
 from muster.bridges.mavlink.fence import no_fence
 from muster.bridges.mavlink.frames import GlobalFrame
 from muster.bridges.mavlink.session import Session
-from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.telemetry import DroneTelemetry
 from muster.mission.model import Origin, Robot
 from muster.motion.port import Waypoint
@@ -51,7 +51,7 @@ class Talk:
     def __init__(self, kind=PX4, **settings):
         robot = Robot(id="r_0", position=(0.0, 0.0, 0.0), kind="air", speed_mps=4.0)
         telemetry = DroneTelemetry((0.0, 0.0, 0.0), GlobalFrame(ORIGIN, (0.0, 0.0, 0.0)))
-        self.session = Session(Drone(robot, telemetry, Settings(**{"arm": True, **settings}), None), no_fence)
+        self.session = Session(Drone(robot, telemetry, FlightSettings(**{"arm": True, **settings}), None), no_fence)
         self.kind, self.now = kind, 0.0
         self.say(heartbeat(kind), position())
 

@@ -6,10 +6,10 @@ import pytest
 from tests.bridges.mavlink.drones import ORIGIN, Sky, flown, mission
 
 import muster
+from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.mavlink import Kind, MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
-from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Map, Mission, Robot, Task, Zone
@@ -111,7 +111,7 @@ def test_without_a_compass_the_local_frame_begins_forward():
     assert sky.drones["r_0"].flight.place == pytest.approx((-7.071, 7.071, -10.0), abs=0.2)
     assert fleet.ports["r_0"].telemetry().position == pytest.approx((12.0, 3.0, 10.0), abs=0.3)
     with pytest.raises(ParameterError, match="origin_wgs84; expected none with the local frame forward"):
-        MavlinkFleet(mission(1), {"r_0": "udpout:127.0.0.1:9"}, Settings(offboard=True, local_frame="forward"))
+        MavlinkFleet(mission(1), {"r_0": "udpout:127.0.0.1:9"}, FlightSettings(offboard=True, local_frame="forward"))
 
 
 def test_what_does_not_answer_or_is_unknown_or_elsewhere_is_said_in_a_line():

@@ -10,11 +10,11 @@ import pytest
 from tests.bridges.mavlink.drones import ORIGIN, Sky, mission
 
 import muster
+from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.mavlink import MavlinkFleet
 from muster.bridges.mavlink.autopilots import ARDUPILOT, PX4
 from muster.bridges.mavlink.dialect import Codec
 from muster.bridges.mavlink.endpoints import Endpoint, endpoint_of, line_to
-from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.bridges.mavlink.simulated_faults import Faults
 from muster.mission.clock import VirtualClock
@@ -80,11 +80,11 @@ def test_three_drones_behind_one_endpoint(offboard):
 def test_one_of_several_that_is_not_named_is_asked_for():
     there = mission(2)
     sky, one = Router(there), mission(1)
-    fleet = MavlinkFleet(one, {"r_0": sky.line}, Settings(), clock=sky.clock, wait=sky.wait)
+    fleet = MavlinkFleet(one, {"r_0": sky.line}, FlightSettings(), clock=sky.clock, wait=sky.wait)
     with pytest.raises(ParameterError, match=r"r_0: systems 1 and 2 on udpout:.*; expected one, or which: udpout:.*#1"):
         fleet.connect(5.0)
     fleet.close()
-    fleet = MavlinkFleet(one, {"r_0": f"{sky.line}#7"}, Settings(), clock=sky.clock, wait=sky.wait)
+    fleet = MavlinkFleet(one, {"r_0": f"{sky.line}#7"}, FlightSettings(), clock=sky.clock, wait=sky.wait)
     with pytest.raises(NetworkError, match="r_0: no heartbeat within 5 s"):
         fleet.connect(5.0)
     fleet.close()
@@ -111,7 +111,7 @@ def test_two_drones_that_call_one_port_are_each_answered_where_they_are():
                 pass
 
     endpoints = {f"r_{k}": f"udp:127.0.0.1:{port}#{k + 1}" for k in range(2)}
-    fleet = MavlinkFleet(there, endpoints, Settings(), clock=clock, wait=wait)
+    fleet = MavlinkFleet(there, endpoints, FlightSettings(), clock=clock, wait=wait)
     fleet.connect(5.0)
     fleet.advance(fleet.time_s + 2.0)
     fleet.close()
@@ -158,7 +158,7 @@ def test_a_drone_on_a_serial_line(kind):
             os.write(ours, packet)
 
     fleet = MavlinkFleet(
-        there, {"r_0": f"serial:{os.ttyname(theirs)}:115200"}, Settings(arm=True), clock=clock, wait=wait
+        there, {"r_0": f"serial:{os.ttyname(theirs)}:115200"}, FlightSettings(arm=True), clock=clock, wait=wait
     )
     fleet.connect(5.0)
     report = carry_out_live(there, muster.solve(there, iterations=50), fleet)

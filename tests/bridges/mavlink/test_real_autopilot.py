@@ -6,8 +6,8 @@ import os
 import pytest
 from tests.bridges.mavlink.drones import ORIGIN, mission
 
+from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.mavlink import MavlinkFleet
-from muster.bridges.mavlink.settings import Settings
 
 VARIABLE = "MUSTER_MAVLINK_ENDPOINT"
 pytestmark = [
@@ -19,7 +19,7 @@ pytestmark = [
 @pytest.fixture
 def fleet():
     there = mission(1, origin_wgs84=ORIGIN)
-    made = MavlinkFleet(there, {"r_0": os.environ[VARIABLE]}, Settings(arm=False, far_m=math.inf))
+    made = MavlinkFleet(there, {"r_0": os.environ[VARIABLE]}, FlightSettings(arm=False, far_m=1e9))
     made.connect(20.0)
     yield made
     made.close()

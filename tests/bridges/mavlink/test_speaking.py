@@ -7,9 +7,9 @@ import time
 import pytest
 from tests.bridges.mavlink.drones import ORIGIN, mission
 
+from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.mavlink import MavlinkFleet
 from muster.bridges.mavlink.autopilots import PX4
-from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.simulated_autopilot import serve
 from muster.bridges.mavlink.simulated_drone import SimulatedAutopilot
 from muster.motion.port import Waypoint
@@ -28,7 +28,7 @@ def fleet(drone):
     over = threading.Event()
     flies = threading.Thread(target=serve, args=(drone, ("127.0.0.1", port)), kwargs={"until": over.is_set})
     flies.start()
-    made = MavlinkFleet(mission(1), {"r_0": f"udp:127.0.0.1:{port}"}, Settings(arm=True, offboard=True))
+    made = MavlinkFleet(mission(1), {"r_0": f"udp:127.0.0.1:{port}"}, FlightSettings(arm=True, offboard=True))
     made.connect(5.0)
     yield made
     made.close()

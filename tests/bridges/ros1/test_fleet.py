@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from muster.bridges.fleet_settings import Ros1Settings
 from muster.bridges.steering import STILL
 from muster.mission.errors import NetworkError
 from muster.mission.model import Map, Mission, Robot, Zone
@@ -63,7 +64,7 @@ def fleet_of(rospy_there, monkeypatch):
 
     def of(**port):
         monkeypatch.setattr(fleet, "Ros1Port", type("PortHere", (Port,), port))
-        made.append(fleet.Ros1Fleet(Mission(robots=TEAM, tasks=()), joins=False))
+        made.append(fleet.Ros1Fleet(Mission(robots=TEAM, tasks=()), Ros1Settings(known_only=True)))
         return made[-1]
 
     yield of

@@ -156,7 +156,7 @@ def test_a_robot_in_a_namespace_may_say_nothing_but_where_it_is_from_its_start(r
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (("--avoidance", "rvo", "--drive", "goals"), "--avoidance rvo with --drive goals; expected --drive cmd_vel\n"),
+        (("--avoidance", "rvo", "--drive", "goals"), "avoidance: rvo; expected auto with drive goals: robots find"),
         (("--poses", "/vrpn/r_0/pose"), "expected a topic such as /vrpn_client_node/{robot}/pose"),
     ],
 )

@@ -151,7 +151,7 @@ def test_what_is_missing_is_one_line(start, mission):
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (("--domain", "300"), "domain: '300'; expected a number from 0 to 232"),
+        (("--domain", "300"), "domain: 300; expected a whole number of at least 0, at most 232"),
         (("--give", "nav2"), "/r_0/navigate_to_pose: an action, by DDS; expected rclpy (--by rclpy), or goals as"),
     ],
 )

@@ -210,7 +210,7 @@ def test_a_run_is_acted_upon(http, plan):
 
 def test_settings_of_a_run_name_no_parameters(http, plan):
     refused = http.post("/runs", json={"plan": plan, "settings": {"who": "me"}})
-    assert (refused.status_code, refused.json()["error"][:13]) == (400, "settings: who")
+    assert (refused.status_code, refused.json()["error"][:13]) == (400, "who: unknown;")
 
 
 def test_a_record_is_looked_at_and_taken_away(http, run):

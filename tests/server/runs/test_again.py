@@ -149,7 +149,7 @@ class Drives:
     def break_off(self, reason):
         self.told.append(reason)
 
-    def bodies(self):
+    def snapshot(self):
         return None
 
     def go_on(self):

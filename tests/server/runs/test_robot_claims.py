@@ -58,13 +58,13 @@ def test_a_second_run_of_the_same_robots_is_refused_however_soon_it_is_asked_for
 
     async def story():
         runs = Runs(store, settings_of(store, bridges=("mavlink", "ros1")))
-        both = (runs.start(ADA, plan, "mavlink", endpoints=ends, arm=True) for ends in (HERE, THERE))
+        both = (runs.start(ADA, plan, "mavlink", settings={"endpoints": ends, "arm": True}) for ends in (HERE, THERE))
         run, at_once = await asyncio.gather(*both, return_exceptions=True)
         assert isinstance(at_once, ConflictError)
         words = f"run {run.id} commands robots on UDP port 14550; expected others, or that it is over"
         with pytest.raises(ConflictError, match=words):
-            await runs.start(ADA, plan, "mavlink", endpoints=THERE, arm=True)
-        others = await runs.start(ADA, plan, "ros1", namespace="team")
+            await runs.start(ADA, plan, "mavlink", settings={"endpoints": THERE, "arm": True})
+        others = await runs.start(ADA, plan, "ros1", settings={"namespace": "team"})
         await runs.close()
         assert [one.id for one in store.runs.list()] == [others.id, run.id]
 
@@ -81,7 +81,7 @@ def test_of_two_runs_that_a_server_left_the_later_one_has_the_robots(store):
         await runs.start_up()
         assert runs.under_way == 1
         with pytest.raises(ConflictError, match=f"run {later} commands robots on UDP port 14550"):
-            await runs.start(ADA, plan.id, "mavlink", endpoints=HERE, arm=True)
+            await runs.start(ADA, plan.id, "mavlink", settings={"endpoints": HERE, "arm": True})
         await runs.close()
 
     asyncio.run(story())
@@ -141,19 +141,19 @@ def test_two_runs_never_command_the_robots_of_another_packages_fleet(store, flee
 
     async def story():
         runs = Runs(store, settings_of(store, bridges=("acme",)))
-        both = (runs.start(ADA, plan, "acme", site="a") for _ in range(2))
+        both = (runs.start(ADA, plan, "acme", settings={"site": "a"}) for _ in range(2))
         run, at_once = await asyncio.gather(*both, return_exceptions=True)
         assert isinstance(at_once, ConflictError)
         what = "site a" if declares else "fleet acme"
         with pytest.raises(
             ConflictError, match=f"run {run.id} commands robots on {what}; expected others, or that it is over"
         ):
-            await runs.start(ADA, plan, "acme", site="a")
+            await runs.start(ADA, plan, "acme", settings={"site": "a"})
         if declares:
-            await runs.start(ADA, plan, "acme", site="b")
+            await runs.start(ADA, plan, "acme", settings={"site": "b"})
         else:
             with pytest.raises(ConflictError, match="fleet acme"):
-                await runs.start(ADA, plan, "acme", site="b")
+                await runs.start(ADA, plan, "acme", settings={"site": "b"})
         await runs.close()
 
     asyncio.run(story())

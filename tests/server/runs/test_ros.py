@@ -35,7 +35,7 @@ def mission(kinematics):
 async def through(store, world, there, **settings):
     """A run that is paused at the first task's end, and whose runner is killed at the third's begin."""
     runs = Runs(store, settings_of(store, bridges=(world,)))
-    run = (await runs.start(ADA, planned(store, there), world, **settings)).id
+    run = (await runs.start(ADA, planned(store, there), world, settings=settings)).id
     paused_at, stood, killed, ended = None, [], False, 0
     async for text in runs.subscribers(run).watch(0):
         said = json.loads(text)

@@ -335,15 +335,15 @@ def test_who_asks_for_what_cannot_be_is_told(store):
                 await runs.start(ADA, 99)
             wrong = (
                 ({"world": "ros1"}, "world: ros1; expected kinematic, physics"),
-                ({"speed": 0}, "speed: 0; expected a number above 0"),
-                ({"colour": "red"}, "colour: no setting"),
-                ({"dt_s": 7}, "dt_s: 7; expected"),
-                ({"avoidance": "no such"}, "avoidance: no such; expected auto, orca"),
+                ({"speed": 0}, "speed: 0; expected a finite number, at least 0.001"),
+                ({"settings": {"colour": "red"}}, "colour: unknown"),
+                ({"settings": {"dt_s": 7}}, "dt_s: 7; expected"),
+                ({"settings": {"avoidance": "no such"}}, 'avoidance: "no such"; expected auto or orca'),
             )
             for how, why in wrong:
                 with pytest.raises(ParameterError, match=why):
                     await runs.start(ADA, plan, **how)
-            run = (await runs.start(ADA, plan, speed=1.0, avoidance="rvo")).id
+            run = (await runs.start(ADA, plan, speed=1.0, settings={"avoidance": "rvo"})).id
             with pytest.raises(BusyError, match="expected fewer than 1"):
                 await runs.start(ADA, plan)
             await gone(runs, run)
@@ -375,7 +375,7 @@ def test_what_is_refused_is_written_down(store):
     asyncio.run(story())
     found = [(action.verb, action.outcome, action.applied_s) for action in reversed(store.actions.list())]
     assert found == [
-        ("run.start", "world: mavlink; expected kinematic, physics", None),
+        ("run.start", "world: mavlink; expected kinematic, physics: muster serve has no --bridge mavlink", None),
         # infinity is no JSON: it cannot be written down
         ("run.start", "no plan 99", None),
         ("run.cancel", "no run 99", None),
@@ -408,18 +408,19 @@ def test_a_plan_that_was_cut_short_is_not_carried_out_unless_that_is_accepted(st
     version = store.missions.create(mission.name, yaml_text(mission), {}, {"name": mission.name}, "ada")
     cut = replace(muster.solve(mission, iterations=10), cut_short=True).as_dict()
     plan = store.plans.add(version.mission, version.version, "planned", "ada", cut).id
+    own = {} if world == "kinematic" else {"endpoints": {"r_0": "udp:127.0.0.1:14550"}}
 
     async def story():
         async with opened(store, bridges=("mavlink",)) as runs:
             words = f"^plan {plan}: planning was cut short; expected a whole plan, or accept_partial: true$"
             with pytest.raises(ConflictError, match=words):
-                await runs.start(ADA, plan, world)
+                await runs.start(ADA, plan, world, settings=own)
             with pytest.raises(ConflictError, match=words):
-                await runs.start(ADA, plan, world, accept_partial=False)
+                await runs.start(ADA, plan, world, settings={**own, "accept_partial": False})
             assert store.runs.list() == []
             if world != "kinematic":
                 return None
-            run = (await runs.start(ADA, plan, speed=None, accept_partial=True)).id
+            run = (await runs.start(ADA, plan, speed=None, settings={"accept_partial": True})).id
             await watched(runs, run)
             return await runs.get(run)
 

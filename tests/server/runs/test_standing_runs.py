@@ -6,7 +6,7 @@ from tests.server.runs.stage import performed, performed_with_crashes, require_w
 import muster
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Rules
-from muster.server.runs.run_settings import require_action, require_world, standing_of
+from muster.server.runs.run_settings import new_request, require_action
 
 MISSION = Mission(
     robots=tuple(Robot(id=f"r_{k}", position=(10 * k, 0)) for k in range(3)),
@@ -48,13 +48,13 @@ def test_a_run_on_duty_that_is_killed_goes_on_with_its_orders(crash):
 
 
 def test_settings_of_duty_are_checked():
-    require_world("kinematic", (), ON_DUTY)
+    new_request("kinematic", (), ON_DUTY)
     with pytest.raises(ParameterError, match=r"until_s: 40.0; expected it together with stay"):
-        require_world("kinematic", (), {"until_s": 40.0})
+        new_request("kinematic", (), {"until_s": 40.0})
     with pytest.raises(ParameterError, match="stay: 1; expected true or false"):
-        require_world("kinematic", (), {"stay": 1})
-    assert standing_of({}) is None
-    assert standing_of(ON_DUTY).until_s == 40.0
+        new_request("kinematic", (), {"stay": 1})
+    assert new_request("kinematic", (), {}).duty is None
+    assert new_request("kinematic", (), ON_DUTY).duty.until_s == 40.0
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from muster.bridges.final_state import FinalState
+from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.follower import Follower
 from muster.bridges.mavlink.autopilots import Autopilot
 from muster.bridges.mavlink.dialect import Message
 from muster.bridges.mavlink.mission_items import Route
-from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.telemetry import DroneTelemetry
 from muster.mission.model import Robot
 from muster.motion.port import Waypoint
@@ -38,7 +38,7 @@ class Drone:
 
     robot: Robot
     telemetry: DroneTelemetry
-    settings: Settings
+    settings: FlightSettings
     height_m: float | None
     autopilot: Autopilot | None = None  # once it was heard
     mode: int | None = None  # in which it must be

@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from muster.bridges.final_state import FinalState
 from muster.bridges.fleet import Failure
+from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.mavlink.autopilots import AtEnd
 from muster.bridges.mavlink.drone import Drone, final_state_of
 from muster.bridges.mavlink.faults import Fault, Kind
@@ -20,7 +21,6 @@ from muster.bridges.mavlink.fence import fences_of, no_fence
 from muster.bridges.mavlink.frames import GlobalFrame, LocalFrame, StartFrame
 from muster.bridges.mavlink.links import Link, links_of
 from muster.bridges.mavlink.session import Session
-from muster.bridges.mavlink.settings import Settings
 from muster.bridges.mavlink.telemetry import DroneTelemetry
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError, ParameterError
@@ -66,13 +66,13 @@ class MavlinkFleet:
         self,
         mission: Mission,
         endpoints: Mapping[str, str],
-        settings: Settings | None = None,
+        settings: FlightSettings | None = None,
         *,
         height_m: float | None = None,
         clock: Clock | None = None,
         wait: Callable[[float], None] = time.sleep,
     ) -> None:
-        self._settings = Settings() if settings is None else settings
+        self._settings = FlightSettings() if settings is None else settings
         _check(mission, endpoints, self._settings, height_m)
         self._clock, self._wait = SystemClock() if clock is None else clock, wait
         self.simulated_time = clock is not None
@@ -297,7 +297,7 @@ class Port:
             return self._session.telemetry()
 
 
-def _telemetry_of(mission: Mission, robot: Robot, settings: Settings) -> DroneTelemetry:
+def _telemetry_of(mission: Mission, robot: Robot, settings: FlightSettings) -> DroneTelemetry:
     start: Place = (robot.position[0], robot.position[1], robot.position[2] if len(robot.position) > 2 else 0.0)
     if mission.origin_wgs84 is not None:
         return DroneTelemetry(start, GlobalFrame(mission.origin_wgs84, start))
@@ -306,7 +306,7 @@ def _telemetry_of(mission: Mission, robot: Robot, settings: Settings) -> DroneTe
     return DroneTelemetry(start, None, local=local)
 
 
-def _check(mission: Mission, endpoints: Mapping[str, str], settings: Settings, height_m: float | None) -> None:
+def _check(mission: Mission, endpoints: Mapping[str, str], settings: FlightSettings, height_m: float | None) -> None:
     names = [robot.id for robot in mission.robots]
     for name in endpoints:
         if name not in names:

@@ -14,13 +14,14 @@ from contextlib import suppress
 from typing import Any
 
 from muster.bridges.discovery import NAME, pose_topics, topics_in
+from muster.bridges.fleet_settings import Ros1Settings
 from muster.bridges.ros1.clock import Forward, MissionClock
 from muster.bridges.ros1.joining import Ros1Newcomers
 from muster.bridges.ros1.map_frame import MapFrame
 from muster.bridges.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
-from muster.bridges.ros1.port import Drive, Ros1Port
+from muster.bridges.ros1.port import Ros1Port
 from muster.bridges.ros1.ros import TFMessage, rospy
-from muster.bridges.ros1.static_frames import Odometry, static_frames
+from muster.bridges.ros1.static_frames import static_frames
 from muster.bridges.steering import STILL, Steering
 from muster.bridges.yielding import Yielding
 from muster.mission.errors import NetworkError, ParameterError
@@ -45,24 +46,8 @@ class Ros1Fleet:
     ----------
     mission
         its robots are looked for by their ids: robot `r_0` at `/r_0/odom`, or `/r_0/pose`.
-    drive
-        `cmd_vel`: by velocities; `goals`: robots that find their way themselves are told where to.
-    namespace
-        in which the robots' own are; "" for the root.
-    frame
-        of the mission, in tf's words.
-    arrival_m
-        from a way point, where a robot counts as there.
-    rate_hz
-        how often velocities are told.
-    avoidance
-        with `cmd_vel`, how robots pass each other: orca, in the plane rvo or hrvo too, or none.
-    poses
-        topic of a robot's pose, where a motion capture system publishes it: `/vrpn_client_node/{robot}/pose`.
-    odometry
-        of which frame robots' odometry is: see `static_frames`.
-    joins
-        whether robots that the mission does not name may join.
+    settings
+        how they are reached and steered.
     clock
         the mission's; by default by ROS' time.
     on_pose
@@ -77,34 +62,24 @@ class Ros1Fleet:
     def __init__(
         self,
         mission: Mission,
+        settings: Ros1Settings | None = None,
         *,
-        drive: Drive = "cmd_vel",
-        namespace: str = "",
-        frame: str = "map",
-        arrival_m: float = 0.1,
-        rate_hz: float = 20.0,
-        avoidance: str = "orca",
-        poses: str = "",
-        odometry: Odometry = "map",
-        joins: bool = True,
         clock: MissionClock | None = None,
         on_pose: Callable[[str, Any], None] | None = None,
     ) -> None:
-        for name, number in (("arrival_m", arrival_m), ("rate_hz", rate_hz)):
-            if not number > 0:
-                raise ParameterError(f"{name}: {number}; expected a number above 0")
-        require_avoidance(avoidance, mission.dimensions)
+        how = settings or Ros1Settings()
+        require_avoidance(how.avoidance, mission.dimensions)
         self._now = time_of_ros()
         self.clock = clock or MissionClock(self._now)
         self.simulated_time = isinstance(self._now, Forward)
-        self._drive, self._arrival_m, self._interval_s = drive, arrival_m, 1 / rate_hz
-        self.topics = topics_in(namespace)
+        self._drive, self._arrival_m, self._interval_s = how.drive, how.arrival_m, 1 / how.rate_hz
+        self.topics = topics_in(how.namespace)
         """The namespace of a robot's topics, such as `/r_0`."""
-        self._pose_topic = pose_topics(poses)
+        self._pose_topic = pose_topics(how.poses)
         self._flat = mission.dimensions == 2
-        self._frame = MapFrame(frame)
-        self._steering = Steering(interval_s=self._interval_s, space=not self._flat, avoidance=avoidance)
-        self._yielding = Yielding(arrival_m=arrival_m, may_go=_free_ways(mission))
+        self._frame = MapFrame(how.frame)
+        self._steering = Steering(interval_s=self._interval_s, space=not self._flat, avoidance=how.avoidance)
+        self._yielding = Yielding(arrival_m=how.arrival_m, may_go=_free_ways(mission))
         self._on_pose = on_pose
         self._lock = threading.RLock()
         self._news = threading.Event()
@@ -112,14 +87,14 @@ class Ros1Fleet:
         self._failure: Exception | None = None  # of the thread that steers
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
         self._static = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
-        if frames := static_frames(mission, self.topics, frame=self._frame.name, odometry=odometry):
+        if frames := static_frames(mission, self.topics, frame=self._frame.name, odometry=how.odometry):
             publish(self._static, TFMessage(frames))
         self._ports: dict[str, Ros1Port] = {}
         self._events: list[Event] = []
         for robot in mission.robots:
             self._ports[robot.id] = self._reached(robot)
-        self._newcomers = Ros1Newcomers(namespace, self._ports, self._reached, flat=self._flat)
-        tasks: list[Callable[[], None]] = [self._steer_on] + ([self._look_on] if joins else [])
+        self._newcomers = Ros1Newcomers(how.namespace, self._ports, self._reached, flat=self._flat)
+        tasks: list[Callable[[], None]] = [self._steer_on] + ([] if how.known_only else [self._look_on])
         self._threads = [threading.Thread(target=task, daemon=True) for task in tasks]
         for thread in self._threads:
             thread.start()

@@ -4,33 +4,29 @@ from __future__ import annotations
 
 import tempfile
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from muster.allocation.problem import Problem
-from muster.execution import ExecutionEvent, Recorder, Report, report_of
+from muster.execution import Recorder, Report, report_of
 from muster.execution.record import NoObserver
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
-from muster.motion.avoidance_names import AUTO
 from muster.negotiation.keys import new_key
 from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
 from muster.negotiation.team import Team, timeouts_for
-from muster.running.camera_search import OnLook, camera_search_for, with_found
-from muster.running.localisation import Localise
+from muster.running.camera_search import camera_search_for, with_found
 from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
 from muster.running.negotiated.robot_process import run_robot_process
 from muster.running.negotiated.team_log import TeamLog
+from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
-from muster.running.simulation import OnWorld
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
-from muster.simulation import CALM, NO_NOISE, Noise, Wind
-from muster.simulation.batteries import NO_CHARGES, NO_DRAINS, Charges, Drains
-from muster.traffic.names import DEFAULT, RESERVE
+from muster.traffic.names import RESERVE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,28 +50,7 @@ class Negotiation:
 
 
 def negotiate_and_carry_out(
-    problem: Problem,
-    negotiation: Negotiation,
-    *,
-    world: str = "kinematic",
-    seed: int = 0,
-    dt_s: float = 0.1,
-    avoidance: str = AUTO,
-    traffic: str = DEFAULT,
-    law: str = "profile",
-    noise: Noise = NO_NOISE,
-    wind: Wind = CALM,
-    batteries: Charges = NO_CHARGES,
-    drain: Drains = NO_DRAINS,
-    rotor_level: bool = False,
-    pose: str | None = None,
-    localise: Localise | None = None,
-    speed: float | None = None,
-    recorder: Recorder | None = None,
-    on_world: OnWorld | None = None,
-    on_event: Callable[[ExecutionEvent], None] | None = None,
-    halt: threading.Event | None = None,
-    on_look: OnLook | None = None,
+    problem: Problem, negotiation: Negotiation, request: ObservedRun, recorder: Recorder | None = None
 ) -> Report:
     """Let robots agree and execute their tasks, while the mission's events happen.
 
@@ -85,13 +60,10 @@ def negotiate_and_carry_out(
     ----------
     problem
         the mission, without robots that join later.
-    traffic
-        auto or free: nobody says which robot passes first.
-    speed
-        the speed-up over real time, at most 10; None: 1. Messages travel in real time: the faster robots move, the
-        longer communication takes in the mission's time.
-    others
-        as for `running.carry_out`.
+    request
+        its `speed` is at most 10, and 1 without one: messages travel in real time, so that the faster robots move, the
+        longer communication takes in the mission's time. Its traffic is auto or free: nobody says which robot passes
+        first.
 
     Raises
     ------
@@ -100,6 +72,7 @@ def negotiate_and_carry_out(
     MusterError
         if there is no agreement in time, or a robot cannot take part.
     """
+    speed, traffic = request.speed, request.traffic
     if speed is not None and speed > MOST_SPEED:
         raise ParameterError(f"speed: {speed:g}; expected at most {MOST_SPEED:g}, as robots talk in real time")
     if traffic == RESERVE:
@@ -111,34 +84,28 @@ def negotiate_and_carry_out(
             )
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        bodies = recorded_world(
-            world,
-            problem.mission,
-            recorder,
-            law=law,
-            wind=wind,
-            batteries=batteries,
-            drain=drain,
-            rotor_level=rotor_level,
-            seed=seed,
-            dt_s=dt_s,
-            avoidance=avoidance,
-            noise=noise,
-        )
-        if on_world is not None:
-            on_world(bodies)
+        bodies = recorded_world(problem.mission, request, recorder)
+        if request.on_world is not None:
+            request.on_world(bodies)
         setup = setup_of(problem, negotiation, memory, 1.0 if speed is None else speed)
-        log = TeamLog(setup.problem, recorder or NoObserver(), on_event or (lambda event: None), setup.late)
-        robots = with_state_estimation(bodies, problem.mission, pose=pose, localise=localise, seed=seed)
+        log = TeamLog(setup.problem, recorder or NoObserver(), request.on_event or (lambda event: None), setup.late)
+        robots = with_state_estimation(
+            bodies, problem.mission, pose=request.pose, localise=request.localise, seed=request.seed
+        )
         robot_bodies = RobotBodies(problem.mission, bodies, robots, setup, log)
         camera_search = camera_search_for(
-            problem.mission, bodies, robot_bodies.ports, noise=noise, seed=seed, on_look=on_look
+            problem.mission,
+            bodies,
+            robot_bodies.ports,
+            noise=request.noise,
+            seed=request.seed,
+            on_look=request.on_look,
         )
         if camera_search is not None:
             stack.callback(camera_search.close)
             robot_bodies.camera_search = camera_search
         robot_bodies.team = stack.enter_context(Team(setup, robot_bodies.take_report))
-        halt = halt or threading.Event()
+        halt = request.halt or threading.Event()
         robot_bodies.await_agreement(negotiation.limit_s, halt)
         while not halt.is_set() and not robot_bodies.over:
             robot_bodies.step(setup.speed)

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Response, WebSocket
 from pydantic import Field
 
 from muster.exchange.mission_control import MOST_ROWS, OVER, Action, ConflictError, Entry, Run
-from muster.mission.errors import ParameterError
+from muster.running.run_request import SETTING_NAMES
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import IdempotencyKey, ThePage, TheServices, TheUser, key_of
 from muster.server.api.parameter_types import LARGEST, After, Before, Body, MissionQuery, Name, RunId
@@ -21,7 +21,6 @@ from muster.server.services.runs import Runs
 
 router = APIRouter(prefix="/runs", tags=["runs"], route_class=BoundedRoute)
 
-_NO_SETTINGS = frozenset({"self", "who", "plan", "world", "speed", "request"})
 Speed = Annotated[float, Field(gt=0, le=1e6)]
 
 
@@ -34,8 +33,7 @@ class NewRun(Body):
     settings: dict[Name, Any] = Field(
         default={},
         max_length=50,
-        description="`seed`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`; a bridge has its own. "
-        "`accept_partial`: also a plan that was cut short. `starts`: `now` shifts the times of a run of real robots.",
+        description=f"{', '.join(f'`{name}`' for name in SETTING_NAMES)}; a fleet of real robots has its own besides.",
     )
 
 
@@ -67,12 +65,8 @@ async def start(
     services: TheServices, who: TheUser, response: Response, body: NewRun, idempotency_key: IdempotencyKey = None
 ) -> Run:
     """A separate process carries out the plan, and continues after a crash of the server."""
-    if taken := sorted(body.settings.keys() & _NO_SETTINGS):
-        raise ParameterError(f"settings: {taken[0]}; expected it beside settings, if at all")
     request = key_of(who, idempotency_key, "/runs", body)
-    run = await services.runs.start(
-        who, body.plan, world=body.world, speed=body.speed, request=request, **body.settings
-    )
+    run = await services.runs.start(who, body.plan, body.world, body.speed, body.settings, request=request)
     response.headers["Location"] = f"/api/v1/runs/{run.id}"
     return run
 

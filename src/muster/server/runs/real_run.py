@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from muster.bridges.final_state import final_states_of
 from muster.bridges.fleet import Fleet
-from muster.execution import Recorder, Report, Standing, Status, broken_off
+from muster.execution import Recorder, Report, Status, broken_off
 from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.planning.options import PlanningOptions
 from muster.running.live import Live, elsewhere, with_reported_starts
+from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.state import MissionState
 from muster.state.robot_events import Elsewhere, FinalStates
-from muster.traffic.names import DEFAULT
 
 LOOK_S = 0.1
 """Seconds between two looks at the robots, where nothing is heard before."""
@@ -25,14 +25,12 @@ class RealRun:
 
     Parameters
     ----------
+    request
+        how the plan is carried out; by default as `RunRequest` says. A run that resumes keeps its start.
     state
         what is known of a run that goes on after a crash.
-    standing
-        of a fleet that stays on duty.
-    traffic
-        who says which robot passes first; see `Simulation`.
-    starts, wall
-        when the mission starts, and the wall clock; see `Live`. A run that resumes keeps its start.
+    wall
+        the wall clock; see `Live`.
     at_end
         called when all tasks are done.
     """
@@ -46,12 +44,8 @@ class RealRun:
         fleet: Fleet,
         recorder: Recorder,
         *,
-        seed: int = 0,
-        planning: PlanningOptions | None = None,
-        standing: Standing | None = None,
-        traffic: str = DEFAULT,
+        request: RunRequest | None = None,
         state: MissionState | None = None,
-        starts: str = "given",
         wall: Clock | None = None,
         at_end: Callable[[], None] = lambda: None,
     ) -> None:
@@ -62,14 +56,9 @@ class RealRun:
             there,
             plan,
             fleet,
-            seed=seed,
-            planning=planning,
-            standing=standing,
-            traffic=traffic,
-            ignore=plan.ignored,
-            recorder=recorder,
+            replace(request or RunRequest(world=OPEN_FLEET), ignore=plan.ignored),
+            recorder=self._recorder,
             state=state,
-            starts=starts,
             wall=wall,
         )
         for line in elsewhere(mission, there) if state is None else ():
@@ -142,7 +131,7 @@ class RealRun:
         self._live.resume()
         self._paused = False
 
-    def bodies(self) -> None:
+    def snapshot(self) -> None:
         """Nothing: robots say themselves where they are."""
 
     def close(self) -> None:

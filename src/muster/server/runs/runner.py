@@ -41,7 +41,6 @@ from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
 from muster.state import MissionState
-from muster.traffic.names import DEFAULT
 
 _ENDS_WITHIN_S = 30.0
 """Seconds within which another run of the same robots, which is over, tells them to stand and ends."""
@@ -170,25 +169,12 @@ def _real_run(
 ) -> WorldRun:
     from muster.running.fleets import fleet_ready
     from muster.server.runs.real_run import RealRun
-    from muster.server.runs.run_settings import standing_of
-    from muster.server.work.tasks.check_request import checked_options
+    from muster.server.runs.run_settings import request_of
 
-    settings = begin["settings"]
-    fleet, at_end = fleet_ready(begin["world"], mission, settings, ended, again=state is not None)
+    request = request_of(begin["world"], begin["settings"], plan)
+    fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=state is not None)
     try:
-        return RealRun(
-            mission,
-            plan,
-            fleet,
-            recorder,
-            seed=settings.get("seed", 0),
-            planning=checked_options(settings.get("planning", {})),
-            standing=standing_of(settings),
-            traffic=settings.get("traffic", DEFAULT),
-            state=state,
-            starts=settings.get("starts", "given"),
-            at_end=at_end,
-        )
+        return RealRun(mission, plan, fleet, recorder, request=request, state=state, at_end=at_end)
     except BaseException:
         fleet.close()
         raise

@@ -11,13 +11,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.mission_control import PAGE_ROWS, Action, BusyError, ConflictError, Entry, Run, StoreError, User
-from muster.mission.errors import MusterError, ParameterError
-from muster.running.robot_claims import claims_as_far_as_known, claims_of
-from muster.running.worlds import WORLDS
+from muster.mission.errors import MusterError
+from muster.running.robot_claims import claims_as_far_as_known, claims_of_request
+from muster.running.run_request import RunRequest
 from muster.server.runs.journal import Journal
 from muster.server.runs.journal_replay import TOO_LATE, replay
 from muster.server.runs.run_session import RunSession
-from muster.server.runs.run_settings import require_action, require_speed, require_world
+from muster.server.runs.run_settings import new_request, require_action
 from muster.server.runs.subscribers import Subscribers
 from muster.server.services.actions import Actions, Refused, ignore_refusal, outcome_of
 from muster.server.services.database_lock import journal_of, lock_of_runs
@@ -88,9 +88,9 @@ class Runs:
         plan: int,
         world: str = "kinematic",
         speed: float | None = 1.0,
+        settings: Mapping[str, Any] | None = None,
         *,
         request: RequestKey | None = None,
-        **settings: Any,
     ) -> Run:
         """Start to carry out a plan. A repeated request returns the run of the first.
 
@@ -104,7 +104,7 @@ class Runs:
         BusyError
             if the most runs are under way.
         """
-        start = partial(self._start, who, plan, world, speed, settings, request)
+        start = partial(self._start, who, plan, world, speed, dict(settings or {}), request)
         return await made_once(self._store, request, start, self.get)
 
     async def _start(
@@ -118,11 +118,8 @@ class Runs:
     ) -> Run:
         asked = {"plan": plan, "world": world, "speed": speed, "settings": settings}
         async with self._written_if_refused(who, "run.start", asked):
-            require_world(world, self._settings.bridges, settings)
-            speed = require_speed(speed)
-            if world not in WORLDS and speed != 1.0:
-                raise ParameterError(f"speed: {speed}; expected 1: real robots have their own speed")
-            claims = await asyncio.to_thread(claims_of, world, settings)  # which may load a package
+            asked_for, claims = await asyncio.to_thread(self._asked, world, speed, settings)
+            speed = 1.0 if asked_for.is_real else asked_for.speed
             self._require_unclaimed(claims)
             if self.under_way + len(self._beginning) >= self._settings.runs:
                 raise BusyError(f"{self.under_way} runs are under way; expected fewer than {self._settings.runs}")
@@ -132,6 +129,11 @@ class Runs:
                 return self._open_session(run).run
             finally:
                 self._beginning.remove(claims)
+
+    def _asked(self, world: str, speed: float | None, settings: Mapping[str, Any]) -> tuple[RunRequest, frozenset[str]]:
+        """The request of a run, and the robots that it claims; this may load the package of a fleet."""
+        request = new_request(world, self._settings.bridges, settings, speed)
+        return request, claims_of_request(request)
 
     async def list(
         self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None

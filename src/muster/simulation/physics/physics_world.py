@@ -22,6 +22,7 @@ from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.limits import Limits
 from muster.motion.map_world import body_of
+from muster.motion.noise import CALM, Wind
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.lasers import laser_height_m
 from muster.simulation.physics.bodies import ACCELERATION_MPS2, BodyKind, RobotBody, robot_body
@@ -33,7 +34,7 @@ from muster.simulation.physics.power_supply import power_supply
 from muster.simulation.physics.rays import Rays
 from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.simulated_model import SimulatedModel
-from muster.simulation.wind import CALM, Wind, WindField
+from muster.simulation.wind import WindField
 from muster.simulation.world_base import FLIGHT_M, Event, WorldBase
 
 PHYSICS_S = 0.005

@@ -70,7 +70,7 @@ def open_start(entry: PlanEntry, dimensions: int) -> None:
             if world.value not in simulated:
                 pace = 1.0
                 settings |= {"starts": "now"} if now.value else {}
-            run = await the_services().runs.start(the_user(), entry.id, world.value, pace, **settings)
+            run = await the_services().runs.start(the_user(), entry.id, world.value, pace, settings)
             ui.navigate.to(f"/live/{run.id}")
 
         with ui.element("div").classes("dialog-buttons"):

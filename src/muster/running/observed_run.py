@@ -1,0 +1,115 @@
+"""A request of a run in this process: with the files and functions that receive what happens."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
+
+from muster.mission.errors import ParameterError
+from muster.mission.records import record
+from muster.running.run_request import OPEN_FLEET, RunRequest
+
+if TYPE_CHECKING:
+    import threading
+    from pathlib import Path
+
+    from muster.execution import ExecutionEvent, Recorder, Standing
+    from muster.mission.clock import Clock
+    from muster.report.film import Footage
+    from muster.running.camera_search import OnLook
+    from muster.simulation import SimulatedWorld
+
+P = ParamSpec("P")
+Q = TypeVar("Q")
+R = TypeVar("R")
+A = TypeVar("A")
+B = TypeVar("B")
+C = TypeVar("C")
+
+
+@record
+class ObservedRun(RunRequest):
+    """How a plan is carried out, and who receives what happens.
+
+    Attributes
+    ----------
+    standing : Standing, optional
+        A fleet that stays on duty, instead of `stay`, `until_s` and `orders`.
+    record : str or Path, optional
+        A file (.mcap) for the record of the run; needs the extra `record`.
+    film : str, Path or Footage, optional
+        A file (.mp4, .gif) for a film of the run, in the physics world; or a `Footage` of the mission, of which films
+        and stills can be made afterwards.
+    observers : sequence of Recorder
+        Receive every event and state, such as `muster.report.live.FoxgloveServer`.
+    on_event : callable, optional
+        Is called with each event, as it happens.
+    on_look : callable, optional
+        Is called with each look of a camera; cameras are used where the mission has tags.
+    on_world : callable, optional
+        Is called with the simulated world when it is made, to read the states of bodies.
+    halt : threading.Event, optional
+        When it is set, the run ends; robots stay where they are.
+    wall : Clock, optional
+        The wall clock, by which the clock of real robots goes; by default the machine's.
+    """
+
+    standing: Standing | None = None
+    record: str | Path | None = None
+    film: str | Path | Footage | None = None
+    observers: Sequence[Recorder] = ()
+    on_event: Callable[[ExecutionEvent], None] | None = None
+    on_look: OnLook | None = None
+    on_world: Callable[[SimulatedWorld], None] | None = None
+    halt: threading.Event | None = None
+    wall: Clock | None = None
+
+    @property
+    def duty(self) -> Standing | None:
+        """See `RunRequest`."""
+        own = super().duty
+        if own is not None and self.standing is not None:
+            raise ParameterError("standing: given with stay or orders; expected one of them")
+        return own if self.standing is None else self.standing
+
+
+class KeywordsOf(Generic[P, Q]):
+    """Gives functions of a request its fields as keyword arguments, for users and type checkers alike.
+
+    Parameters
+    ----------
+    make : type
+        The class of the request.
+    """
+
+    def __init__(self, make: Callable[P, Q]) -> None:
+        self._make = make
+
+    def in_world(self, function: Callable[[A, B, Q], R]) -> Callable[Concatenate[A, B, P], R]:
+        """Return a function of a mission and a plan, with the fields of the request as keywords."""
+        return self._with_keywords(function)
+
+    def with_fleet(self, function: Callable[[A, B, C, Q], R]) -> Callable[Concatenate[A, B, C, P], R]:
+        """Return a function of a mission, a plan and a fleet or its name, with the other fields as keywords."""
+        return self._with_keywords(function)
+
+    def _with_keywords(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        signature = inspect.signature(function)
+        *leading, _ = signature.parameters.values()
+        names = [parameter.name for parameter in leading]
+
+        @wraps(function)
+        def with_keywords(*given: Any, **how: Any) -> Any:
+            named = dict(zip(names, given, strict=False)) | {name: how.pop(name) for name in names if name in how}
+            if "fleet" in named:
+                how["world"] = named["fleet"] if isinstance(named["fleet"], str) else OPEN_FLEET
+            return function(**named, request=self._make(**how))  # type: ignore[call-arg]
+
+        keywords = list(inspect.signature(self._make).parameters.values())
+        with_keywords.__signature__ = signature.replace(parameters=[*leading, *keywords])  # type: ignore[attr-defined]
+        return with_keywords
+
+
+keywords_of_run = KeywordsOf(ObservedRun)
