@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.simulation.world import standing
 from muster.state import MissionState
@@ -28,6 +29,20 @@ class Begun:
     state: MissionState
     bodies: Mapping[str, Any]
     time_s: float
+
+    @classmethod
+    def of(cls, state: MissionState, bodies: Mapping[str, Any] | None, seen_s: float, world: str) -> Begun:
+        """Return where a run in a world was interrupted that was seen until a time.
+
+        Raises
+        ------
+        ParameterError
+            if it is not known where bodies were.
+        """
+        if bodies is None:
+            expected = "expected a world with snapshots, in a run that this version of Muster has begun"
+            raise ParameterError(f"world {world}: it is not known where bodies were; {expected}")
+        return cls(state=state, bodies=bodies, time_s=max(seen_s, state.now_s, bodies["time_s"]))
 
     @property
     def snapshot(self) -> Mapping[str, Any]:

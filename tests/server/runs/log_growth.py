@@ -15,6 +15,7 @@ from muster.mission.clock import VirtualClock
 from muster.report.record.json_messages import json_bytes
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import RunLoop
+from muster.server.runs.run_settings import request_of
 from muster.server.runs.simulated_run import SimulatedRun
 from muster.state import MissionState
 
@@ -68,7 +69,8 @@ def sizes_of(orders):
     plan = muster.solve(there, "greedy")
     recorder = LogRecorder(there, sizes, MissionState(there))
     settings = {"stay": True, "until_s": orders * APART_S}
-    with closing(SimulatedRun(there, plan, "kinematic", settings, recorder)) as inbox.world_run:
+    request = request_of("kinematic", settings, plan)
+    with closing(SimulatedRun(there, plan, request, recorder=recorder)) as inbox.world_run:
         how = {"speed": None, "starts_at": None, "ended": lambda: False, "clock": VirtualClock(step_s=1.0)}
         RunLoop(inbox.world_run, recorder, inbox, sizes, **how).run()
     assert sizes.done == orders

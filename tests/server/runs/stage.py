@@ -9,7 +9,7 @@ from itertools import pairwise
 from muster.mission.clock import VirtualClock
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import RunLoop
-from muster.server.runs.runner import _known, _simulated_run
+from muster.server.runs.runner import _known, _world_run
 from muster.server.runs.tracks import unpacked
 
 
@@ -102,8 +102,7 @@ def performed(
     state = _known(begin, mission, plan)
     tracked_s = before.tracks[-1][1] if before.tracks else 0.0
     recorder = LogRecorder(mission, kept, state, seq=begin["seq"], tracked_s=tracked_s)
-    goes_on = state if begin["seq"] else None
-    with suppress(Killed), closing(_simulated_run(begin, mission, plan, recorder, goes_on, None)) as world_run:
+    with suppress(Killed), closing(_world_run(begin, mission, plan, recorder, None)) as world_run:
         script = Script(world_run, asked)
         how = {"speed": None, "starts_at": mission.starts_at, "ended": ended, "clock": VirtualClock(step_s=1.0)}
         how |= {"paused": paused, "cancelled": cancelled, "checkpoint": len(before.log) - len(begin["log"])}

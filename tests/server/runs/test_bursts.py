@@ -11,6 +11,7 @@ from muster.mission.clock import VirtualClock
 from muster.mission.model import Mission, Robot, Task
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import STEPS_FIRST_S, RunLoop
+from muster.server.runs.run_settings import request_of
 from muster.server.runs.simulated_run import QUANTUM_S, SimulatedRun
 from muster.state import MissionState
 
@@ -73,7 +74,7 @@ class Stream:
 def test_while_orders_come_without_end_the_clock_goes_on():
     kept, clock = Kept(), VirtualClock(step_s=STEPS_FIRST_S / 10)
     recorder = LogRecorder(MISSION, kept, MissionState(MISSION))
-    with closing(SimulatedRun(MISSION, PLAN, "kinematic", {}, recorder)) as world_run:
+    with closing(SimulatedRun(MISSION, PLAN, request_of("kinematic", {}, PLAN), recorder=recorder)) as world_run:
         how = {"speed": None, "starts_at": None, "ended": lambda: world_run.time_s > 20, "clock": clock}
         RunLoop(world_run, recorder, Stream(30), kept, **how).run()
     times = [entry["time_s"] for entry in kinds(kept.log, "command")]

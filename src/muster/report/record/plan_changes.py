@@ -49,14 +49,9 @@ class ReadPlan:
         }
         back = {task for task, why in data["left_out"].items() if why is None}
         self.lines = {**self.lines, **data["lines"]}
-        self.plan = Plan(
-            mission=self.plan.mission,
-            allocator=self.plan.allocator,
-            ignored=self.plan.ignored,
-            objective=self.plan.objective,
-            routes=tuple(routes.values()),
-            unassigned=tuple(one for task, one in left_out.items() if task not in back),
-        )
+        kept = {name: getattr(self.plan, name) for name in ("mission", "allocator", "ignored", "objective")}
+        unassigned = tuple(one for task, one in left_out.items() if task not in back)
+        self.plan = Plan(**kept, routes=tuple(routes.values()), unassigned=unassigned)
         return self.plan
 
 

@@ -22,7 +22,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from muster.mission.errors import MusterError, ParameterError
+from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
@@ -110,9 +110,7 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
             stretch_s=REAL_STRETCH_S if real else STRETCH_S,
         )
         outbox.send({"type": "resuming", "share": 0.6})
-        make = _real_run if real else _simulated_run
-        goes_on = state if begin["seq"] else None
-        with closing(make(begin, mission, plan, recorder, goes_on, ended)) as world_run:
+        with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
             if real:
                 outbox.send({"type": "mission", "mission": _shown(replace(mission, starts_at=world_run.starts_at))})
             how = {key: begin[key] for key in ("speed", "paused", "cancelled")}
@@ -140,38 +138,21 @@ def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
     return frozenset() if world == "ros1" else claims_as_far_as_known(world, settings)
 
 
-def _simulated_run(
-    begin: Mapping[str, Any],
-    mission: Mission,
-    plan: Plan,
-    recorder: LogRecorder,
-    state: MissionState | None,
-    _: threading.Event,
+def _world_run(
+    begin: Mapping[str, Any], mission: Mission, plan: Plan, recorder: LogRecorder, ended: threading.Event
 ) -> WorldRun:
-    from muster.server.runs.simulated_run import SimulatedRun
-
-    bodies, begun = begin["bodies"], None
-    if state is not None:
-        if bodies is None:
-            expected = "expected a world with snapshots, in a run that this version of Muster has begun"
-            raise ParameterError(f"world {begin['world']}: it is not known where bodies were; {expected}")
-        begun = Begun(state=state, bodies=bodies, time_s=max(begin["until_s"], state.now_s, bodies["time_s"]))
-    return SimulatedRun(mission, plan, begin["world"], begin["settings"], recorder, begun)
-
-
-def _real_run(
-    begin: Mapping[str, Any],
-    mission: Mission,
-    plan: Plan,
-    recorder: LogRecorder,
-    state: MissionState | None,
-    ended: threading.Event,
-) -> WorldRun:
-    from muster.running.fleets import fleet_ready
-    from muster.server.runs.real_run import RealRun
+    """The run in its world: from its beginning, or by what the recorder's state knows of it."""
     from muster.server.runs.run_settings import request_of
 
-    request = request_of(begin["world"], begin["settings"], plan)
+    request, state = request_of(begin["world"], begin["settings"], plan), recorder.state if begin["seq"] else None
+    if begin["world"] in WORLDS:
+        from muster.server.runs.simulated_run import SimulatedRun
+
+        begun = None if state is None else Begun.of(state, begin["bodies"], begin["until_s"], begin["world"])
+        return SimulatedRun(mission, plan, request, recorder=recorder, begun=begun)
+    from muster.running.fleets import fleet_ready
+    from muster.server.runs.real_run import RealRun
+
     fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=state is not None)
     try:
         return RealRun(mission, plan, fleet, recorder, request=request, state=state, at_end=at_end)

@@ -6,15 +6,12 @@ While no process simulates it the mission's clock stands still.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
-from muster.execution import Recorder
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.running.begun import Begun
+from muster.running.run_request import RunRequest
 from muster.running.simulation import Simulation
-from muster.server.runs.run_settings import request_of
 
 QUANTUM_S = 0.1
 """Seconds of mission time between two moments at which users can have a say."""
@@ -25,16 +22,8 @@ class SimulatedRun(Simulation):
 
     real = False
 
-    def __init__(
-        self,
-        mission: Mission,
-        plan: Plan,
-        world: str,
-        settings: Mapping[str, Any],
-        recorder: Recorder,
-        begun: Begun | None = None,
-    ) -> None:
-        super().__init__(mission, plan, request_of(world, settings, plan), recorder=recorder, begun=begun)
+    def __init__(self, mission: Mission, plan: Plan, request: RunRequest, **how: Any) -> None:
+        super().__init__(mission, plan, request, **how)
         self._quanta = math.ceil(self.time_s / QUANTUM_S - 1e-9)
         self.starts_at = mission.starts_at
 

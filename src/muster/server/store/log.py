@@ -6,7 +6,9 @@ Triggers of the database, in the first migration, refuse changes.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from typing import Any, TypeVar
 
@@ -31,6 +33,8 @@ Item = TypeVar("Item", Entry, Stretch)
 class LogTable:
     def __init__(self, database: Database) -> None:
         self._database = database
+        self.observe: Callable[[float], None] = lambda seconds: None
+        """Receives the seconds of each `append`, also of one that failed."""
 
     def append(
         self,
@@ -55,7 +59,7 @@ class LogTable:
         ParameterError
             if an entry or stretch is of another run.
         """
-        with self._database.writing() as connection:
+        with self._timed(), self._database.writing() as connection:
             row = connection.execute(select(runs.c.time_s).where(runs.c.id == run).with_for_update()).one_or_none()
             if row is None:
                 raise NotFoundError(f"no run {run}")
@@ -142,6 +146,14 @@ class LogTable:
         """The `seq` of the last stretch, 0 without any."""
         with self._database.reading() as connection:
             return _last(connection, stretch_table, run)
+
+    @contextmanager
+    def _timed(self) -> Iterator[None]:
+        began = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.observe(time.perf_counter() - began)
 
     def _rows(self, query: Any) -> Sequence[Row[Any]]:
         with self._database.reading() as connection:
