@@ -5,6 +5,7 @@ from contextlib import closing, contextmanager
 
 import httpx
 import pytest
+from playwright.sync_api import expect
 from sqlalchemy import Engine, event
 from tests.server.browser.conftest import running_chromium
 from tests.server.long_lists import LISTS, PAGES, fill
@@ -140,6 +141,42 @@ def test_a_page_reads_no_more_rows_than_it_shows(site, chromium, path):
         page.locator(SHOWN.get(path, "table.plain")).first.wait_for()
     require_bounded(file, asked)
     assert page.locator("tr").count() <= 2 * MOST_ROWS + 10
+    page.close()
+
+
+def test_pages_lead_to_the_next_rows(site, chromium):
+    page = chromium.new_page()
+    page.goto(site[0] + "/")
+    seen = []
+    for links in (["Next page"], ["First page", "Next page"]):
+        page.locator("#missions").wait_for()
+        seen += page.locator("#missions .mission-link").all_inner_texts()
+        assert page.locator(".pager a").all_inner_texts() == links
+        page.get_by_role("link", name="Next page").click()
+        page.wait_for_url(lambda url, after=f"~{seen[-1]}": url.endswith(after))
+    assert len(set(seen)) == 2 * PAGE_ROWS
+    page.goto(site[0] + "/records?mission=yard-1")
+    page.get_by_role("link", name="Next page").click()
+    page.get_by_role("link", name=f"Run {ROWS - PAGE_ROWS}", exact=True).wait_for()
+    page.goto(f"{site[0]}/records/1?after=500")
+    page.locator("summary", has_text=f"Events 501 to {ROWS}").wait_for()
+    page.close()
+
+
+def test_older_plans_and_versions_are_listed_when_they_are_asked_for(site, chromium):
+    page = chromium.new_page()
+    page.goto(f"{site[0]}/plan/yard-1")
+    page.get_by_role("button", name="Older plans").click()
+    page.locator(".plan-choice").click()
+    page.get_by_role("option").first.wait_for()
+    page.keyboard.press("End")
+    page.get_by_role("option", name=f"{ROWS - 2 * PAGE_ROWS + 1}: greedy").wait_for()
+    page.keyboard.press("Escape")
+    page.get_by_text("History", exact=True).click()
+    rows = page.locator(".versions tr")
+    expect(rows).to_have_count(PAGE_ROWS, timeout=30_000)
+    page.get_by_role("button", name="Older versions").click()
+    expect(rows).to_have_count(2 * PAGE_ROWS, timeout=30_000)
     page.close()
 
 

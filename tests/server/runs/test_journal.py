@@ -136,6 +136,16 @@ def test_one_server_has_it(path):
     assert read(path) == []
 
 
+def test_who_asks_while_the_server_ends_is_refused(path):
+    async def story():
+        journal = Journal(path)
+        await journal.close()
+        with pytest.raises(StoreError, match="is closed, as the server ends"):
+            await asyncio.wait_for(journal.append([action()]), 10)
+
+    asyncio.run(story())
+
+
 def test_the_next_server_waits_for_one_that_ends(path):
     before = Journal(path)
 

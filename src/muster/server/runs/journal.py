@@ -129,6 +129,8 @@ class Journal:
                 await asyncio.wrap_future(self._thread.submit(self._sync, data))
             except OSError as error:
                 refused = StoreError(f"{self.path}: {error.strerror}; free some space, or make the folder writable")
+            except RuntimeError:  # its thread is no more
+                refused = StoreError(f"{self.path}: is closed, as the server ends; ask again when it is started")
             for _, synced in batch:
                 if refused is not None:
                     synced.set_exception(refused)
