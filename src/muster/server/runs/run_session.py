@@ -181,8 +181,8 @@ class RunSession:
             self._resume(0.0)
         return await asyncio.to_thread(self._runner_input.line, self.run, self._cancelled)
 
-    def _resume(self, share: float | None) -> None:
-        """Publish how far the run is with going on; None: it goes on."""
+    def _resume(self, share: float) -> None:
+        """Publish which share of going on is done."""
         self._share = share
         self._publish_run()
 

@@ -2,9 +2,8 @@
 
 The first line is the run: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`, `settings`, `speed`,
 `lock`, and of a run that goes on `checkpoint`, the entries of the `log` after it up to `seq`, `bodies`, `until_s`,
-`tracked_s`, `paused`, `cancelled`. The other lines are users' actions: `id`, `verb`, `data`,
-`who`. When the pipe ends the server is gone: the runner stops real robots and ends. The memory limit is for simulated
-worlds only.
+`tracked_s`, `paused`, `cancelled`. The other lines are users' actions: `id`, `verb`, `data`, `who`. When the pipe ends
+the server is gone: the runner stops real robots and ends. The memory limit is for simulated worlds only.
 """
 
 from __future__ import annotations
