@@ -8,10 +8,9 @@ import base64
 import sys
 from contextlib import closing
 
-from tests.server.runs.recovery_time import ROBOTS, mission
-
 import muster
 from muster.mission.clock import VirtualClock
+from muster.mission.model import Mission, Robot, Rules
 from muster.report.record.json_messages import json_bytes
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import RunLoop
@@ -19,7 +18,8 @@ from muster.server.runs.run_settings import request_of
 from muster.server.runs.simulated_run import SimulatedRun
 from muster.state import MissionState
 
-APART_S = 1.0
+ROBOTS = 6
+APART_S = 2.0
 """Seconds between two orders: the fleet keeps up."""
 
 
@@ -59,13 +59,15 @@ class Orders:
         if k >= self.count or self.world_run.time_s < k * APART_S:
             return None
         self.next += 1
-        order = {"id": f"o_{k}", "position": [(37 * k) % (10 * ROBOTS), 1.0 + k % 7], "duration_s": 2}
+        order = {"id": f"o_{k}", "position": [(37 * k) % (5 * ROBOTS), 1.0 + k % 7]}
         return {"id": k + 1, "verb": "event", "data": {"new_task": order}, "who": "ada"}
 
 
 def sizes_of(orders):
     """What the log of a fleet comes to that serves so many orders."""
-    there, sizes, inbox = mission(), Sizes(), Orders(orders)
+    robots = tuple(Robot(id=f"r_{k}", position=(5.0 * k, 0.0), speed_mps=2.0) for k in range(ROBOTS))
+    there = Mission(name="standing fleet", robots=robots, tasks=(), rules=Rules(objective="lateness"))
+    sizes, inbox = Sizes(), Orders(orders)
     plan = muster.solve(there, "greedy")
     recorder = LogRecorder(there, sizes, MissionState(there))
     settings = {"stay": True, "until_s": orders * APART_S}
