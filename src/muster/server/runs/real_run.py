@@ -21,7 +21,7 @@ LOOK_S = 0.1
 
 
 class RealRun(Live):
-    """See `run_loop.WorldRun`.
+    """A run that `RunLoop` carries to its end.
 
     Parameters
     ----------
@@ -58,12 +58,12 @@ class RealRun(Live):
 
     @property
     def state(self) -> MissionState:
-        """See `run_loop.WorldRun`."""
+        """What is known of the mission; to look at."""
         return self.executor.state
 
     @property
     def starts_at(self) -> str | None:
-        """See `run_loop.WorldRun`."""
+        """The start of the mission as its file has it, moved to when it began."""
         return self.start.mission.starts_at
 
     @property

@@ -5,18 +5,21 @@ from __future__ import annotations
 import base64
 import time
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from muster.execution import Report, RobotStatus, Status
+from muster.execution import RobotStatus, Status
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MusterError, ParameterError
-from muster.mission.model import Event
 from muster.server.runs.checkpoints import Schedule, packed_state
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pacing import Pace
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.user_events import event_given
-from muster.state import MissionState, checkpoint_of
+from muster.state import checkpoint_of
+
+if TYPE_CHECKING:
+    from muster.server.runs.real_run import RealRun
+    from muster.server.runs.simulated_run import SimulatedRun
 
 STATES_S, STATUS_S = 0.095, 0.5
 """Seconds of the wall clock between two tellings of where robots are, and what they do."""
@@ -26,40 +29,13 @@ STEPS_FIRST_S = 0.5
 CANCELLED = "not done when the run was cancelled"
 
 
-class WorldRun(Protocol):
-    """A run in its world: simulated, or with real robots."""
-
-    real: bool
-
-    @property
-    def state(self) -> MissionState: ...
-    @property
-    def starts_at(self) -> str | None: ...
-    @property
-    def time_s(self) -> float: ...
-    @property
-    def next_s(self) -> float: ...
-    @property
-    def done(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    def go_on(self) -> None: ...
-    def report(self, event: Event) -> None: ...
-    def replan(self) -> None: ...
-    def break_off(self, reason: str) -> Report: ...
-    def pause(self) -> None: ...
-    def resume(self) -> None: ...
-    def snapshot(self) -> Mapping[str, Any] | None: ...
-    def close(self) -> None: ...
-
-
 class RunLoop:
     """Carries a run to its end.
 
     Parameters
     ----------
     world_run, recorder
-        the run in its world, and the recorder of its log.
+        the run in its world, simulated or with real robots, and the recorder of its log.
     inbox, outbox
         messages from and to the server.
     speed
@@ -76,7 +52,7 @@ class RunLoop:
 
     def __init__(
         self,
-        world_run: WorldRun,
+        world_run: SimulatedRun | RealRun,
         recorder: LogRecorder,
         inbox: Inbox,
         outbox: Outbox,

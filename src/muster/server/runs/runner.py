@@ -19,7 +19,7 @@ from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
@@ -34,12 +34,16 @@ from muster.server.runs.checkpoints import unpacked_state
 from muster.server.runs.crash_recovery import recovered_from
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
-from muster.server.runs.run_loop import RunLoop, WorldRun
+from muster.server.runs.run_loop import RunLoop
 from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
 from muster.state import MissionState
+
+if TYPE_CHECKING:
+    from muster.server.runs.real_run import RealRun
+    from muster.server.runs.simulated_run import SimulatedRun
 
 _ENDS_WITHIN_S = 30.0
 """Seconds within which another run of the same robots, which is over, tells them to stand and ends."""
@@ -139,7 +143,7 @@ def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
 
 def _world_run(
     begin: Mapping[str, Any], mission: Mission, plan: Plan, recorder: LogRecorder, ended: threading.Event
-) -> WorldRun:
+) -> SimulatedRun | RealRun:
     """The run in its world: from its beginning, or by what the recorder's state knows of it."""
     from muster.server.runs.run_settings import request_of
 

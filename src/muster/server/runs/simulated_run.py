@@ -18,7 +18,7 @@ QUANTUM_S = 0.1
 
 
 class SimulatedRun(Simulation):
-    """See `run_loop.WorldRun`."""
+    """A run that `RunLoop` carries to its end."""
 
     real = False
 
