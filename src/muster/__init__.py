@@ -125,62 +125,39 @@ __all__ = [
     "verify",
 ]
 
-_LOADED_AT_FIRST_USE = {
-    "Action": "muster.mission.model",
-    "Battery": "muster.mission.model",
-    "Camera": "muster.mission.model",
-    "Comparison": "muster.comparison.comparison",
-    "Event": "muster.mission.model",
-    "Finding": "muster.mission.errors",
-    "Found": "muster.mission.model",
-    "Generator": "muster.generation.generator",
-    "InputError": "muster.mission.errors",
-    "Lag": "muster.mission.model",
-    "Landmark": "muster.mission.model",
-    "Lane": "muster.mission.model",
-    "Lanes": "muster.mission.model",
-    "Map": "muster.mission.model",
-    "MissingExtraError": "muster.mission.errors",
-    "Mission": "muster.mission.model",
-    "MissionError": "muster.mission.errors",
-    "MissionSummary": "muster.library",
-    "MusterError": "muster.mission.errors",
-    "Negotiation": "muster.running.negotiated.simulation",
-    "NetworkError": "muster.mission.errors",
-    "NotSupportedError": "muster.mission.errors",
-    "Origin": "muster.mission.model",
-    "ParameterError": "muster.mission.errors",
-    "Plan": "muster.mission.plan",
-    "PlanError": "muster.mission.errors",
-    "PlanningOptions": "muster.planning.options",
-    "PluginError": "muster.mission.errors",
-    "Report": "muster.execution",
-    "Robot": "muster.mission.model",
-    "Route": "muster.mission.plan",
-    "Rules": "muster.mission.model",
-    "Simulation": "muster.running.simulation",
-    "Station": "muster.mission.model",
-    "Tag": "muster.mission.model",
-    "Task": "muster.mission.model",
-    "TeamPart": "muster.mission.model",
-    "Verdict": "muster.verification",
-    "Zone": "muster.mission.model",
-    "carry_out": "muster.running.carry_out",
-    "check": "muster.planning.questions",
-    "compare": "muster.comparison.compare",
-    "explain": "muster.planning.questions",
-    "export": "muster.planning.exporting",
-    "gantt": "muster.planning.pictures",
-    "generate": "muster.generation.generate",
-    "load": "muster.planning.loading",
-    "missions": "muster.library",
-    "plot": "muster.planning.pictures",
-    "read_plan": "muster.mission.plan_reader",
-    "read_site": "muster.planning.importing",
-    "simulate": "muster.running.simulate",
-    "solve": "muster.planning.solve",
-    "verify": "muster.planning.judging",
+_NAMES_OF = {
+    "muster.comparison.compare": "compare",
+    "muster.comparison.comparison": "Comparison",
+    "muster.execution": "Report",
+    "muster.generation.generate": "generate",
+    "muster.generation.generator": "Generator",
+    "muster.library": "MissionSummary missions",
+    "muster.mission.errors": (
+        "Finding InputError MissingExtraError MissionError MusterError NetworkError NotSupportedError "
+        "ParameterError PlanError PluginError"
+    ),
+    "muster.mission.model": (
+        "Action Battery Camera Event Found Lag Landmark Lane Lanes Map Mission Origin Robot Rules Station Tag "
+        "Task TeamPart Zone"
+    ),
+    "muster.mission.plan": "Plan Route",
+    "muster.mission.plan_reader": "read_plan",
+    "muster.planning.exporting": "export",
+    "muster.planning.importing": "read_site",
+    "muster.planning.judging": "verify",
+    "muster.planning.loading": "load",
+    "muster.planning.options": "PlanningOptions",
+    "muster.planning.pictures": "gantt plot",
+    "muster.planning.questions": "check explain",
+    "muster.planning.solve": "solve",
+    "muster.running.carry_out": "carry_out",
+    "muster.running.negotiated.simulation": "Negotiation",
+    "muster.running.simulate": "simulate",
+    "muster.running.simulation": "Simulation",
+    "muster.verification": "Verdict",
 }
+"""By module the names that are loaded from it at their first use."""
+_MODULE_OF = {name: module for module, names in _NAMES_OF.items() for name in names.split()}
 
 
 def __dir__() -> list[str]:
@@ -188,10 +165,10 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str) -> Any:
-    if name in _LOADED_AT_FIRST_USE:
+    if name in _MODULE_OF:
         from importlib import import_module
 
-        return getattr(import_module(_LOADED_AT_FIRST_USE[name]), name)
+        return getattr(import_module(_MODULE_OF[name]), name)
     if name == "__version__":
         from importlib.metadata import version
 

@@ -4,6 +4,7 @@ from random import Random
 
 import pytest
 from tests.negotiation.networks import agree, network
+from tests.negotiation.trials.random_missions import random_mission, with_times
 
 import muster
 from muster import Mission, Robot, Rules, Task
@@ -13,7 +14,6 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.model import Lag
 from muster.negotiation.participation import plan_of
-from muster.running.negotiation_trials.random_missions import random_mission, with_times
 
 
 def mission_of(*tasks, robots=2, **rules):

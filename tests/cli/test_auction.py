@@ -226,17 +226,9 @@ def test_of_two_processes_of_one_robot_the_first_ends_and_says_why(three, ports)
     assert [code for code, *_ in ended(second, third, last)] == [0, 0, 0]
 
 
-def test_a_replay_of_the_campaign_needs_no_mission(muster):
-    runs = [muster("auction", "--simulate-network", 5) for _ in range(2)]
-    assert runs[0] == runs[1]
-    code, out, err = runs[0]
-    assert (code, err) == (0, "")
-    assert out.startswith("seed 5: ")
-    assert out.endswith("nothing failed\n")
-
-
-def test_without_either_something_is_missing(muster):
-    code, out, err = muster("auction")
+@pytest.mark.parametrize("options", [(), ("--simulate-network", 5)])
+def test_without_a_mission_something_is_missing(muster, options):
+    code, out, err = muster("auction", *options)
     assert (code, out) == (2, "")
     assert err.endswith("Error: Missing argument 'MISSION'.\n")
 
@@ -302,11 +294,6 @@ def test_what_is_no_number_is_refused(muster, three):
     code, _, err = muster("auction", three, "--simulate-network", 1, "--cut", "nan")
     assert code == 2
     assert "nan is not in the range" in err
-
-
-def test_a_run_of_the_campaign_has_its_own_faults(muster):
-    code, _, err = muster("auction", "--simulate-network", 1, "--loss", 0.1)
-    assert (code, err.partition(";")[0]) == (2, "--loss given")
 
 
 def test_a_key_is_not_overwritten_and_is_its_owners_alone(muster, three):

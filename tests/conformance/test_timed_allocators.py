@@ -10,7 +10,7 @@ from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import timed_mission
 
 import muster
-from muster.allocation.capabilities import ALL, FOR_GOOD, capability_table, those_that_can
+from muster.allocation.capabilities import _WORDS, ALL, FOR_GOOD, those_that_can
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
@@ -150,5 +150,10 @@ def test_a_task_of_a_team_is_won_by_a_coalition():
 
 
 def test_the_docs_say_which_allocator_can_do_what():
+    rows = [
+        f"| `{name}` | {' | '.join('yes' if word in allocator.can else '' for word in _WORDS)} |"
+        for name, allocator in ALLOCATORS.usable().items()
+    ]
+    table = "\n".join([f"| allocator | {' | '.join(_WORDS)} |", "|---|" + "---|" * len(_WORDS), *rows])
     page = Path(__file__).parents[2] / "docs" / "algorithms.md"
-    assert capability_table() in page.read_text(encoding="utf-8")
+    assert table in page.read_text(encoding="utf-8")

@@ -55,7 +55,7 @@ def case(tmp_path_factory):
     plan = muster.solve(mission, iterations=200, seed=1)
     verdict = muster.verify(mission, plan)
     assert verdict.valid
-    texts = plan_files(mission, verdict, ExportOptions(firmware="px4")).texts
+    texts = plan_files(mission, verdict, ExportOptions(firmware="px4"), None).texts
     return mission, plan, {name: json.loads(text)["mission"]["items"] for name, text in texts.items()}
 
 

@@ -4,13 +4,13 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 from tests.negotiation.networks import line_mission
+from tests.negotiation.trials.observer import Observer
 
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import rules_of
 from muster.negotiation.valuation import AuctionValuer
-from muster.running.negotiation_trials.observer import Observer
 
 ROBOTS = ("r_0", "r_1", "r_2")
 PROBLEM = Problem.compile(line_mission(robots=3, tasks=4, once=("0",))).ready()

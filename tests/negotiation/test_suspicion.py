@@ -1,8 +1,9 @@
 """False suspicions: what is measured is what the chance of losing all heartbeats for so long lets expect."""
 
+from tests.negotiation.simulated_figures import suspicion
+
 from muster.negotiation.members import Timeouts
 from muster.negotiation.memory_network import TICK_S
-from muster_studies.negotiation import suspicion
 
 
 def expected(loss, heartbeats):

@@ -5,13 +5,13 @@ from random import Random
 
 import pytest
 from tests.negotiation.networks import agree, all_agree, network, owners, settled_team
+from tests.negotiation.trials.random_missions import random_mission, with_times
 
 from muster import Mission, Robot, Task
 from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.negotiation.participation import plan_of
-from muster.running.negotiation_trials.random_missions import random_mission, with_times
 from muster.verification import verify
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from tests.traffic import annotated
+from tests.traffic.movingai_maps import map_text
 
-from muster.traffic.movingai import map_text
 from muster_studies.benches.joint_paths import (
     FOLDER,
     RANDOM,

@@ -3,9 +3,9 @@
 from importlib.util import find_spec
 
 import pytest
+from tools.figures.printed_figures import NOT_DRAWN, PRINTED
 
 from muster.cli.main import run as muster
-from muster_studies.printed_figures import NOT_DRAWN, PRINTED
 from muster_studies.registry import STUDIES
 
 

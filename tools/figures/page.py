@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from muster_studies.printed_figures import NOT_DRAWN
 from muster_studies.registry import STUDIES, Study
+from tools.figures.printed_figures import NOT_DRAWN
 
 _HEAD = """# Figures
 

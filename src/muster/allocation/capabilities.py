@@ -54,14 +54,3 @@ def those_that_can(words: Iterable[str]) -> list[str]:
     """The allocators that can do all of this, in the order of the registry."""
     asked = set(words)
     return [name for offered in _offered for name, can in offered().items() if asked <= can]
-
-
-def capability_table() -> str:
-    """Which registered allocator can do what, as a table of Markdown."""
-    head = f"| allocator | {' | '.join(_WORDS)} |"
-    rows = [
-        f"| `{name}` | {' | '.join('yes' if word in can else '' for word in _WORDS)} |"
-        for offered in _offered
-        for name, can in offered().items()
-    ]
-    return "\n".join([head, "|---|" + "---|" * len(_WORDS), *rows])

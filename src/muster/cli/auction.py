@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,14 +17,14 @@ from muster.cli.auction_options import (
     terms_options,
 )
 from muster.cli.auction_result import Agreement
-from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED, REJECTED
+from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import (
     Finite,
     MissionFile,
     format_option,
     ignore_option,
+    mission_argument,
     objective_option,
-    optional_mission_argument,
     quiet_option,
     require_complete_option,
 )
@@ -45,7 +44,7 @@ _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", 
 
 
 @click.command()
-@optional_mission_argument
+@mission_argument
 @method_options
 @objective_option
 @ignore_option
@@ -69,7 +68,7 @@ _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", 
 @result_options
 @quiet_option
 def command(
-    mission: MissionFile | None,
+    mission: MissionFile,
     method: str,
     transport: str,
     objective: str | None,
@@ -90,15 +89,11 @@ def command(
 
     Without --robot the whole team runs on this machine. With --robot this is one robot of a team that runs elsewhere:
     the same MISSION and key, one process on each robot's computer.
-
-    --simulate-network SEED without a MISSION replays that run of `make campaign-auction`.
     """
     from muster.allocation.problem import Problem
     from muster.negotiation.capabilities import refuse_what_is_not_agreed
     from muster.negotiation.methods import method_named
 
-    if mission is None:
-        return _replayed(others)
     _check_together(others)
     require_writable(output, (book, plot, gantt), mission.files, ())
     require_csv(book)
@@ -121,24 +116,6 @@ def command(
     if book is not None and not write_book(plan, book, quiet):
         return INTERRUPTED
     return INCOMPLETE if require_complete and not plan.complete else DONE
-
-
-def _replayed(others: Mapping[str, Any]) -> int:
-    """Print one run of the campaign of random missions, faults and orders; returns the exit code."""
-    seed = others["network_seed"]
-    if seed is None:
-        raise click.UsageError("Missing argument 'MISSION'.", click.get_current_context())
-    for name in _OF_A_SIMULATED_NETWORK:
-        if others[name] is not None:
-            raise ParameterError(
-                f"--{name} given; expected it with a MISSION: a run of the campaign has its own faults"
-            )
-    from muster.running.negotiation_trials.trial import replay
-
-    report = replay(seed)
-    for line in report.lines():
-        click.echo(line)
-    return REJECTED if report.failures else DONE
 
 
 def _agree(

@@ -6,6 +6,7 @@ import click
 from click.shell_completion import BashComplete, add_completion_class, get_completion_class
 
 from muster.cli.options import quiet_option
+from muster.mission.packaged_files import packaged_text
 
 _SHELLS = ("bash", "zsh", "fish")
 _VARIABLE = "_MUSTER_COMPLETE"
@@ -14,20 +15,7 @@ _VARIABLE = "_MUSTER_COMPLETE"
 class _Bash(BashComplete):
     """Completes names and files at once: click's own script has either."""
 
-    source_template = """\
-%(complete_func)s() {
-    local IFS=$'\\n' line
-    COMPREPLY=()
-    while read -r line; do
-        case "${line%%%%,*}" in
-            dir) compopt -o filenames; COMPREPLY+=($(compgen -d -- "${line#*,}")) ;;
-            file) compopt -o filenames; COMPREPLY+=($(compgen -f -- "${line#*,}")) ;;
-            *) COMPREPLY+=("${line#*,}") ;;
-        esac
-    done < <(COMP_WORDS="${COMP_WORDS[*]}" COMP_CWORD=$COMP_CWORD %(complete_var)s=bash_complete "$1")
-}
-complete -o nosort -F %(complete_func)s %(prog_name)s
-"""
+    source_template = packaged_text("muster.cli", "completion.bash")
 
 
 add_completion_class(_Bash, "bash")

@@ -135,14 +135,4 @@ def note_ending(ending: Ending) -> None:
     this_invocation().endings.append(ending)
 
 
-def table_of_endings() -> str:
-    """Return the table of docs/commands.md in Markdown."""
-    rows = [
-        ("ended how", "exit code", "verbs", "words", "mission control"),
-        ("---",) * 5,
-        *((e.ended, str(e.code), e.verbs, f"`{e.words}`" if e.words else "", e.status) for e in Ending),
-    ]
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows) + "\n"
-
-
 _PRECEDENCE = {ending: k for k, ending in enumerate(Ending)}

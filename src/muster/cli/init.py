@@ -5,33 +5,13 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from string import Template
 
 import click
 
 from muster.cli.options import quiet_option
 from muster.mission.errors import ParameterError
-
-_TEMPLATE = """\
-# A mission for Muster: what is to be done, and by whom. Check it with `muster check {file}`, plan it with
-# `muster solve {file}`. Lengths are metres, x to the east, y to the north.
-schema: muster/1
-name: {name}
-rules:
-  objective: total+max        # or: total, max, average, makespan, lateness
-  return_to_start: false
-robots:
-  - {{id: r_0, position: [0, 0], work_capacity: 60, skills: [camera]}}
-  - {{id: r_1, position: [2, 0], work_capacity: 60, skills: [camera, gripper]}}
-tasks:
-  - {{id: look, position: [10, 5], requires: [camera]}}
-  - {{id: open, position: [12, 8], requires: [gripper], actuation_cost: 3}}
-  - {{id: enter, position: [15, 9], prerequisites: [open]}}
-  - {{id: patrol, position: [-6, 4], actuation_cost: 12}}
-  # In time and together, seconds from the start (docs/mission-file.md has all keys):
-  # - {{id: visit, position: [3, 9], window_s: [60, 300], deadline_s: 330, duration_s: 20}}
-  # - {{id: check, position: [3, 9], prerequisites: [{{task: visit, after_s: 5, within_s: 60}}], due_s: 360}}
-  # - {{id: lift, position: [8, -2], robots_needed: 2}}
-"""
+from muster.mission.packaged_files import packaged_text
 
 
 @click.command()
@@ -65,7 +45,8 @@ def command(name: str, shipped: str | None, output: Path | None, quiet: bool, ve
 
 
 def _template(path: Path) -> tuple[str, list[Path]]:
-    return _TEMPLATE.format(name=json.dumps(path.stem, ensure_ascii=False), file=path), []
+    template = Template(packaged_text("muster.cli", "init_template.yaml"))
+    return template.substitute(name=json.dumps(path.stem, ensure_ascii=False), file=path), []
 
 
 def _shipped(shipped: str) -> tuple[str, list[Path]]:

@@ -16,46 +16,9 @@ from muster.comparison.ranking import Best, bests, by_mission, close, typical
 from muster.comparison.run import Run
 from muster.comparison.statistics import Pair, Standing
 from muster.mission.errors import ParameterError
+from muster.mission.packaged_files import packaged_text
 
 _MOST_ROWS = 500
-_STYLE = """
-:root { color-scheme: light; font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; }
-body { max-width: 1100px; margin: 0 auto; padding: 1.2rem 1rem 4rem; }
-h1 { font-size: 1.6rem; margin: 0 0 .2rem; } h2 { font-size: 1.15rem; margin: 2.2rem 0 .5rem; }
-p, li { max-width: 46rem; } .facts { color: #555; margin: 0 0 1rem; overflow-wrap: anywhere; }
-.wide { overflow-x: auto; border: 1px solid #e2e2e2; border-radius: 6px; }
-table { border-collapse: collapse; width: 100%; font-size: .88rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .35rem .7rem; text-align: right; white-space: nowrap; border-bottom: 1px solid #eee; }
-th { background: #f6f6f6; font-weight: 600; } tr:last-child td { border-bottom: 0; }
-th:first-child, td:first-child, .words th, .words td { text-align: left; }
-.words td:last-child { white-space: normal; min-width: 16rem; }
-.pictures { display: flex; flex-wrap: wrap; gap: 1.5rem; } figure { margin: 0; flex: 1 1 340px; min-width: 0; }
-figure svg { width: 100%; height: auto; } figcaption { font-size: .88rem; color: #555; }
-pre { background: #f6f6f6; padding: .7rem; border-radius: 6px; white-space: pre-wrap; overflow-wrap: anywhere; }
-.alarm { color: #b00020; }
-"""
-_METHODS = (
-    "Plans are compared lexicographically: more weight of tasks completed first, then the lower objective. All "
-    "figures are those of Muster's judge, which shares no code with allocators. Values that differ by less than "
-    "1e-9 of themselves are equal. A run that failed is behind every plan.",
-    "The gap of a run is by how many per cent its objective is above that of the best run on its mission. It is "
-    "counted where the run completes as much weight as the best; “as much done” is the share of such runs. It is "
-    "infinite (inf) where the best objective is 0 and its own is not; figures leave such runs out. The mean gap is "
-    "the mean over missions of their means, with a 95 % interval by the bootstrap over missions (percentiles, 9,999 "
-    "samples); of a single mission over its runs, where they differ.",
-    "Wins, ties and losses count missions, each by the run in the middle of an allocator's seeds: against the "
-    "best of all others, and of the two in a pair. Of an even number of seeds that is the mean of the two in the "
-    "middle, which is failed if one of them is. In pairs of a single mission they count seeds. Missions that an "
-    "allocator cannot take (n/a) are not counted for it.",
-    "Pairs are tested by Wilcoxon's signed ranks, two-sided, over missions; of a single mission over seeds, which are "
-    "one observation where they change neither allocator. With less than two observations there is nothing to test "
-    "(-). Differences are ordered lexicographically too: a plan beside none, then shares of weight, then ratios of "
-    "objectives. The test is exact up to 50 differences, up to 12 where some are equal, else by the normal "
-    "approximation. p (Holm) is corrected for all pairs that are tested; an allocator is called better below 0.05.",
-    "The performance profile shows for each ratio the share of an allocator's runs whose objective is at most so "
-    "many times the best on the mission. Runs that failed, complete less or are n/a never get there: the curve "
-    "ends below 1.",
-)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +64,7 @@ def page(contents: Contents) -> str:
     head = '<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
     return (
         f'<!doctype html>\n<html lang="en"><head>{head}<title>Comparison of allocators</title>'
-        f"<style>{_STYLE}</style></head>\n<body>\n{body}\n</body></html>\n"
+        f"<style>{packaged_text('muster.comparison', 'page.css')}</style></head>\n<body>\n{body}\n</body></html>\n"
     )
 
 
@@ -119,7 +82,7 @@ def _sections(contents: Contents) -> Iterator[str]:
     yield f'<h2>Figures</h2><div class="pictures">{"".join(shown)}</div>'
     yield "<h2>Missions</h2>" + _missions(contents.runs, contents.allocators)
     yield _not_done(contents.runs)
-    yield "<h2>How to read it</h2>" + "".join(f"<p>{text}</p>" for text in _METHODS)
+    yield "<h2>How to read it</h2>" + packaged_text("muster.comparison", "how_to_read.html")
     yield "<h2>How it was made</h2>" + (f"<pre>{escape(contents.command)}</pre>" if contents.command else "")
     yield f'<p class="facts">Muster {version("muster-robotics")}, {escape(_machine())}</p>'
 

@@ -67,46 +67,37 @@ def sol_file(mission: Mission, verdict: Verdict) -> str:
     return sol_text(mission, (tuple(stop.name for stop in route.stops) for route in verdict.routes), verdict.total_cost)
 
 
-def geojson_file(
-    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
-) -> Files:
+def geojson_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """Ways and stops as GeoJSON."""
     features, notes = _features(mission, verdict, "geojson", options)
     return Files({"plan.geojson": geojson_text(features)}, notes)
 
 
-def gpx_file(
-    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
-) -> Files:
+def gpx_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """Ways and stops as GPX."""
     features, notes = _features(mission, verdict, "gpx", options)
     return Files({"plan.gpx": gpx_text(features)}, notes)
 
 
-def kml_file(
-    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
-) -> Files:
+def kml_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """Ways and stops as KML."""
     features, notes = _features(mission, verdict, "kml", options)
     return Files({"plan.kml": kml_text(features)}, notes)
 
 
 def _features(
-    mission: Mission, verdict: Verdict, form: str, options: ExportOptions | None
+    mission: Mission, verdict: Verdict, form: str, options: ExportOptions
 ) -> tuple[PlanFeatures, tuple[str, ...]]:
     """The features of a plan, drones at their heights, and messages on these."""
     earth = Earth.of(mission, f"--to {form}")
     require_geometry(mission, f"--to {form}")
-    options = options or ExportOptions()
     altitudes = altitudes_of(mission, options)
     team, notes = raised_team(mission, verdict, altitudes, options)
     require_open_itineraries(mission, team)
     return features_of(mission, verdict, team, earth, layered=altitudes), notes
 
 
-def plan_files(
-    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
-) -> Files:
+def plan_files(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """An admissible plan as QGroundControl's files, one for each robot that has tasks.
 
     Raises
@@ -116,7 +107,6 @@ def plan_files(
     ParameterError
         if drones have no height to fly at, or an altitude is for no drone.
     """
-    options = options or ExportOptions()
     earth = Earth.of(mission, "--to qgc")
     require_geometry(mission, "--to qgc")
     robot_paths = RobotPaths.of(mission) if mission.travel_rule == "map" else None

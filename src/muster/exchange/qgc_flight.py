@@ -69,12 +69,12 @@ class Command:
         self.fates.setdefault(k, read_as(what))
         return self.params[k]
 
-    def number_at(self, k: int, what: str, expected: str, *, least: float = 0.0) -> float:
+    def number_at(self, k: int, what: str, expected: str) -> float:
         """The number at an index; 0 where nothing is said."""
         value = self.param(k, what)
         if value is None:
             return 0.0
-        if not is_number(value) or value < least:
+        if not is_number(value) or value < 0:
             raise self.wrong(k, value, expected)
         return float(value)
 

@@ -4,22 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from itertools import islice
 
 MOST_ROWS = 20
 
 
-def html_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]], total: int | None = None) -> str:
-    """A table under its title; of many rows the first, and how many more there are.
-
-    Parameters
-    ----------
-    total
-        how many rows there are; None: as many as `rows` has.
-    """
+def html_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table under its title; of many rows the first, and how many more there are."""
     listed = list(rows)
-    shown = list(islice(listed, MOST_ROWS))
-    more = (len(listed) if total is None else total) - len(shown)
+    shown, more = listed[:MOST_ROWS], len(listed) - MOST_ROWS
     head = "".join(f"<th>{escape(name)}</th>" for name in columns)
     body = "".join("<tr>" + "".join(f"<td>{_cell(cell)}</td>" for cell in row) + "</tr>" for row in shown)
     rest = f'<tr><td colspan="{len(columns)}">and {more} more</td></tr>' if more > 0 else ""

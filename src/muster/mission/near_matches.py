@@ -11,7 +11,7 @@ from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
-from muster.mission.synonyms import MEANT
+from muster.mission.synonyms import meant_by
 
 _MOST_FILES = 1000  # of a folder, that are looked at
 _MANY_NAMES = 100
@@ -42,7 +42,7 @@ def _synonym(word: str, names: Mapping[str, str]) -> str | None:
     """The known word that a word of the field means."""
     plain = word.replace(" ", "_")
     forms = (plain, plain.replace("_", "-"), plain.replace("-", "_"))
-    return next((names[meant] for form in forms for meant in MEANT.get(form, ()) if meant in names), None)
+    return next((names[meant] for form in forms for meant in meant_by(form) if meant in names), None)
 
 
 def near_file(path: Path) -> str:

@@ -8,7 +8,6 @@ several as `600 1200; 2000 inf`), `deadline_s`, `due_s` and `robots_needed`, eac
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path as FilePath
@@ -18,7 +17,7 @@ from muster.mission.csv_files import number, read_columns, read_table
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
-from muster.mission.model import SCHEMA, Mission, Robot, Task
+from muster.mission.model import SCHEMA, Mission
 from muster.mission.source import Place, Source
 from muster.mission.value_types import Path, shown
 
@@ -190,91 +189,3 @@ def suitability_table(path: FilePath, places: dict[Path, Place]) -> dict[str, di
         places["suitability", name] = (str(path), line)
         table[name] = {column: number(cell) for column, cell in zip(columns, cells, strict=True)}
     return table
-
-
-def write_csv(mission: Mission, tasks: FilePath, robots: FilePath, suitability: FilePath | None = None) -> None:
-    """Write a mission as the three files that `read_csv` reads.
-
-    Raises
-    ------
-    MissionError
-        if the mission has something that these files cannot say; nothing is written then.
-    """
-    lost = [*_lost(mission, suitability is not None)]
-    if lost:
-        raise MissionError(lost)
-    z = ("z",) if mission.dimensions == 3 else ()
-    times = [name for name in TIME_COLUMNS if any(getattr(task, name) not in (None, ()) for task in mission.tasks)]
-    task_lines = [[*TASK_COLUMNS[:3], *z, *TASK_COLUMNS[3:], *times]]
-    task_lines += [[*_task_cells(task), *(_time_cell(getattr(task, name)) for name in times)] for task in mission.tasks]
-    robot_lines = [[*ROBOT_COLUMNS[:4], *z, *ROBOT_COLUMNS[4:]]] + [_robot_cells(robot) for robot in mission.robots]
-    _write(tasks, task_lines)
-    _write(robots, robot_lines)
-    if suitability is not None and mission.suitability is not None:
-        _write(suitability, _suitability_lines(mission.suitability))
-
-
-def _lost(mission: Mission, with_suitability: bool) -> list[Finding]:
-    plain_tasks = [
-        Task(**{name: getattr(t, name) for name in ("id", "position", *TASK_COLUMNS[3:], *TIME_COLUMNS)})
-        for t in mission.tasks
-    ]
-    plain_robots = [
-        Robot(id=r.id, position=r.position, type=r.type, work_capacity=r.work_capacity) for r in mission.robots
-    ]
-    plain = Mission(
-        name=mission.name,
-        robots=tuple(plain_robots),
-        tasks=tuple(plain_tasks),
-        suitability=mission.suitability if with_suitability else None,
-    )
-    names = ("origin_wgs84", "starts_at", "rules", "map", "travel", "suitability", "robots", "tasks", "events")
-    lost = [name for name in names if getattr(plain, name) != getattr(mission, name)]
-    lost += [name for name in ("robots", "tasks", "suitability") if name not in lost and not _cells_last(mission, name)]
-    return [
-        Finding(mission.source.file, None, name, "more than CSV can say", "what read_csv reads; or write YAML")
-        for name in lost
-    ]
-
-
-def _cells_last(mission: Mission, group: str) -> bool:
-    """Whether ids and types come back from their cells as they are."""
-    if group == "suitability":
-        rows = mission.suitability or {}
-        return all(name == name.strip() for name in (*rows, *(kind for row in rows.values() for kind in row)))
-    words = [word for item in getattr(mission, group) for word in (item.id, item.type or "")]
-    return all(word == word.strip() for word in words) and (
-        group == "robots"
-        or all(
-            _prerequisites(f"[{','.join(task.prerequisites)}]") == list(task.prerequisites) for task in mission.tasks
-        )
-    )
-
-
-def _task_cells(task: Task) -> list[str]:
-    x, y, *z = (repr(c) for c in task.position)
-    prerequisites = f"[{','.join(task.prerequisites)}]"
-    return [task.id, x, y, *z, task.type or "", repr(task.actuation_cost), prerequisites]
-
-
-def _time_cell(value: object) -> str:
-    if isinstance(value, tuple):
-        return "; ".join(f"{begins!r} {'inf' if ends is None else repr(ends)}" for begins, ends in value)
-    return "" if value is None else repr(value)
-
-
-def _robot_cells(robot: Robot) -> list[str]:
-    x, y, *z = (repr(c) for c in robot.position)
-    capacity = "inf" if robot.work_capacity is None else repr(robot.work_capacity)
-    return [robot.id, robot.type or "", x, y, *z, capacity]
-
-
-def _suitability_lines(suitability: Mapping[str, Mapping[str, float]]) -> list[list[str]]:
-    columns = list(dict.fromkeys(kind for row in suitability.values() for kind in row))
-    lines = [[name, *(repr(row.get(kind, 0.0)) for kind in columns)] for name, row in suitability.items()]
-    return [["robot_type", *columns], *lines]
-
-
-def _write(path: FilePath, lines: list[list[str]]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        csv.writer(stream, lineterminator="\n").writerows(lines)

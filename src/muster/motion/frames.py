@@ -123,11 +123,6 @@ def enu_to_ned(vectors: npt.ArrayLike) -> Floats:
     return np.asarray(np.asarray(vectors, dtype=np.float64) @ ENU_NED.T)
 
 
-def flu_to_frd(vectors: npt.ArrayLike) -> Floats:
-    """(..., 3) of forward, left, up as forward, right, down; and back, being its own inverse."""
-    return np.asarray(vectors, dtype=np.float64) @ FLU_FRD.T
-
-
 def flu_to_enu(vectors: npt.ArrayLike, yaw: float) -> Floats:
     """Vectors (..., 3) of a level body that heads to `yaw` (from east) in ENU."""
     return np.asarray(vectors, dtype=np.float64) @ rotation(0.0, 0.0, yaw).T
@@ -146,11 +141,6 @@ def yaw_enu_to_ned(yaw: npt.ArrayLike) -> Floats:
 def rotation_enu_to_ned(matrix: Floats) -> Floats:
     """A FLU body's orientation in ENU as a FRD body's orientation in NED; and back. (..., 3, 3)."""
     return ENU_NED @ matrix @ FLU_FRD
-
-
-def quaternion_enu_to_ned(quaternion: npt.ArrayLike) -> Floats:
-    """As `rotation_enu_to_ned`, of quaternions (..., 4)."""
-    return quaternion_of(rotation_enu_to_ned(quaternion_rotation(quaternion)))
 
 
 def quaternion_rotation(quaternion: npt.ArrayLike) -> Floats:

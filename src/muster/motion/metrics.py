@@ -81,16 +81,6 @@ def turning(points: Floats) -> float:
     return float(2 * np.arctan2(apart, together).sum())
 
 
-def bending_energy(points: Floats) -> float:
-    """Smoothness: the integral of the squared curvature along points (n, d) that are sampled closely, in 1/m."""
-    pieces = np.diff(points, axis=0)
-    length = np.linalg.norm(pieces, axis=1)
-    pieces, length = pieces[length > 0], length[length > 0]
-    units = pieces / length[:, None]
-    turns = np.linalg.norm(np.diff(units, axis=0), axis=1)
-    return float((turns**2 / ((length[1:] + length[:-1]) / 2)).sum())
-
-
 def closest(times: Floats, positions: Floats) -> Closest:
     """The least distance between any two robots at any moment, between the samples too.
 

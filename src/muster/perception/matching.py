@@ -60,11 +60,6 @@ class ErrorTable:
         """Over the matches; NaN without any."""
         return self.matches[0].error_m if self.matches else math.nan
 
-    @property
-    def mean_error_share(self) -> float:
-        """The mean error as a share of the mean distance."""
-        return self.mean_error_m / self.mean_distance_m
-
 
 def error_table(
     found: Sequence[npt.ArrayLike], truth: Mapping[str, npt.ArrayLike], farthest_m: float = math.inf

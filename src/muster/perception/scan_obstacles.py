@@ -13,8 +13,8 @@ import numpy as np
 
 from muster.mission.errors import ParameterError
 from muster.motion.frames import Floats, moved
-from muster.perception.obstacles import Detection, Obstacle, obstacles
-from muster.perception.spikes import SpikeParameters, landmarks
+from muster.perception.obstacles import Obstacle, obstacles
+from muster.perception.spikes import landmarks
 
 
 def scan_of(
@@ -36,15 +36,7 @@ def scan_of(
     return (lengths, bearings) if step_rad > 0 else (lengths[::-1], bearings[::-1])
 
 
-def seen_on_map(
-    ranges: Floats,
-    bearings: Floats,
-    scanner: Floats,
-    *,
-    margin_m: float,
-    detection: Detection | None = None,
-    search: SpikeParameters | None = None,
-) -> dict[str, Any]:
+def seen_on_map(ranges: Floats, bearings: Floats, scanner: Floats, *, margin_m: float) -> dict[str, Any]:
     """The obstacles and the landmarks of a scan as plain data, places on the map.
 
     Parameters
@@ -59,9 +51,9 @@ def seen_on_map(
     ParameterError
         if the shapes differ.
     """
-    marks = landmarks(ranges, bearings, search)
+    marks = landmarks(ranges, bearings)
     return {
-        "obstacles": [_obstacle(one, scanner, margin_m) for one in obstacles(ranges, bearings, detection)],
+        "obstacles": [_obstacle(one, scanner, margin_m) for one in obstacles(ranges, bearings)],
         "landmarks": [
             {"position": _on_map([mark.position], scanner)[0], "radius_m": round(mark.radius_m, 4)} for mark in marks
         ],

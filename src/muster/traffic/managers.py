@@ -30,20 +30,11 @@ def manager_named(
     return ReservedTraffic(shared.plan(seed), margin_m=margin_m, lanes=lanes)
 
 
-def shared_roadmap(
-    name: str, mission: Mission, *, world: World | None = None, margin_m: float = MARGIN_M
-) -> MissionRoadmap | None:
+def shared_roadmap(name: str, mission: Mission) -> MissionRoadmap | None:
     """The roadmap on which a mission's robots pass in turn; None where they pass each other as they meet.
 
     With `auto` traffic is by reservation where the mission gives lanes, or its map has passages for one robot. It is
     free where the roadmap, which is for the widest robot, would cut off a smaller one.
-
-    Parameters
-    ----------
-    world
-        of the mission, where it is at hand.
-    margin_m
-        what robots keep between them beyond touching.
 
     Raises
     ------
@@ -52,7 +43,7 @@ def shared_roadmap(
     MissionError, MissingExtraError
         as `World.of`.
     """
-    return _shared_roadmap(name, mission, world, margin_m)
+    return _shared_roadmap(name, mission, None, MARGIN_M)
 
 
 def _shared_roadmap(

@@ -76,12 +76,5 @@ def read_scenario(path: Path) -> list[Ends]:
     return ends
 
 
-def map_text(blocked: Bools) -> str:
-    """The `.map` of a grid."""
-    rows, columns = blocked.shape
-    cells = "\n".join("".join("@" if cell else "." for cell in row) for row in blocked)
-    return f"type octile\nheight {rows}\nwidth {columns}\nmap\n{cells}\n"
-
-
 def _wrong(path: Path, line: int, field: str, value: str, expected: str) -> InputError:
     return InputError([Finding(str(path), line, field, value, expected)])

@@ -29,7 +29,7 @@ def require_admissible(mission: Mission, plan: Plan, file: str, ignore: Collecti
     return verdict
 
 
-def require_open_ways(mission: Mission, plan: Plan, file: str = "<plan>") -> None:
+def require_open_ways(mission: Mission, plan: Plan) -> None:
     """Raise unless every leg and all work of a plan keeps out of the areas that are closed to its robot.
 
     Nothing that moves robots, simulated ones included, begins with another plan; the rest of the rules is for
@@ -45,7 +45,7 @@ def require_open_ways(mission: Mission, plan: Plan, file: str = "<plan>") -> Non
     areas, (routes, _) = ClosedAreas(mission), known_routes(mission, plan, teams=True)
     robots = {robot.id: robot for robot in mission.robots}
     found = [one for name, stops in routes.items() for one in closed_legs(mission, areas, robots[name], stops)]
-    _refuse(mission, found, file)
+    _refuse(mission, found, "<plan>")
 
 
 def require_geometry(mission: Mission, what: str) -> None:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
-import yaml
-
+from muster.mission.packaged_files import packaged_data
 from muster_studies.areas.shapes import Field
 
 
@@ -34,7 +32,7 @@ class Region:
 @cache
 def regions() -> tuple[Region, ...]:
     """The regions of [apostolidis2022]."""
-    data = yaml.safe_load((files("muster_studies.areas") / "regions.yaml").read_text(encoding="utf-8"))
+    data = packaged_data("muster_studies.areas", "regions.yaml")
     return tuple(_region(one, data["width_m"]) for one in data["regions"])
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from muster.mission.packaged_files import packaged_data
 from muster_studies.instances.random_areas import Ring, random_area, ring
 
 
@@ -62,26 +63,8 @@ SHAPES: Mapping[str, Field] = {
 
 CELL_M = 10.0
 """Side of a cell of a grid map; a lane is half as wide, so that four pieces of it make a cell."""
-GRIDS: Mapping[str, Sequence[str]] = {
-    "empty": ["." * 20] * 20,
-    "rooms": [
-        "....................",
-        "....................",
-        "..######..########..",
-        "..######..########..",
-        "....................",
-        "....................",
-        "..##..####..####..##",
-        "..##..####..####..##",
-        "....................",
-        "....................",
-        "####..####..########",
-        "####..####..########",
-        "....................",
-        "....................",
-    ],
-    "posts": ["....................", "..##..##..##..##....", "..##..##..##..##....", "...................."] * 4,
-}
+_GRIDS: Mapping[str, str] = packaged_data("muster_studies.areas", "grids.yaml")
+GRIDS: Mapping[str, Sequence[str]] = {name: rows.split() for name, rows in _GRIDS.items()}
 
 
 def field_of_grid(rows: Sequence[str]) -> Field:

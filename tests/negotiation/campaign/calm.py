@@ -5,6 +5,7 @@ from random import Random
 from tests.negotiation.campaign.carried_out import Run
 from tests.negotiation.campaign.team_missions import calm_scene
 from tests.negotiation.networks import all_agree, network
+from tests.negotiation.trials.random_missions import random_mission, with_times
 from tests.trials import Report
 
 from muster.allocation.auction import AUCTION, Parameters
@@ -13,7 +14,6 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.negotiation.participation import plan_of
 from muster.running.negotiated.robot_control import LATENESS
-from muster.running.negotiation_trials.random_missions import random_mission, with_times
 from muster.verification import verify
 
 AGREE_S = 60.0

@@ -1,9 +1,8 @@
 """One run of the campaign, in a process of its own."""
 
+from tests.negotiation.trials import replay
+from tests.negotiation.trials.observer import PROMISED_NEVER
 from tests.trials import Report
-
-from muster.running.negotiation_trials import replay
-from muster.running.negotiation_trials.observer import PROMISED_NEVER
 
 
 def trial(seed, *, timed=False):

@@ -10,17 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from muster import core
-from muster.allocation.rules.rule import (
-    Bools,
-    Change,
-    InPlan,
-    Limits,
-    Outlook,
-    Question,
-    Routes,
-    Rule,
-    first_robot,
-)
+from muster.allocation.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot
 from muster.mission.model import Robot
 
 
@@ -112,9 +102,6 @@ class Battery(Rule):
         if battery is None or battery.at_start <= battery.reserve:
             return None
         return LargerBattery(math.inf, problem.usage_unit)
-
-    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        return plan.kept_out(self.word, i, j)
 
 
 def energy_room(robot: Robot) -> float:

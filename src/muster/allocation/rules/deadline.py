@@ -13,7 +13,6 @@ from muster.allocation.rules.rule import (
     ROUNDING,
     Bools,
     Change,
-    InPlan,
     Limits,
     Outlook,
     Question,
@@ -81,9 +80,6 @@ class Deadline(Rule):
         (until,) = moments(problem, float(problem.timed_rules.deadline[j]))
         late = None if free is None else too_late(problem, j, float(free.pair_end[i, j]))
         return late or f"what it waits for is too late for its deadline, which is {until}"
-
-    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        return plan.kept_out(self.word, i, j)
 
 
 def too_late(problem: Question, j: int, end: float) -> str | None:

@@ -9,18 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from muster import core
-from muster.allocation.rules.rule import (
-    Bools,
-    Change,
-    InPlan,
-    Limits,
-    Outlook,
-    Question,
-    Routes,
-    Rule,
-    first_robot,
-    first_task,
-)
+from muster.allocation.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, first_task
 from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Robot, Task
 
@@ -128,10 +117,6 @@ class Load(Rule):
         if other is None or outlook.limits.usable[i, other]:
             return None
         return f"it cannot do {problem.tasks[other].id}, which {_is_to(problem, j)}"
-
-    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        refused = self.refusal(plan.problem, i, j)
-        return refused or plan.kept_out(self.word, i, j)
 
     def concerns(self, problem: Question, j: int) -> bool:
         other = problem.partners[j]

@@ -10,18 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
-from muster.allocation.rules.rule import (
-    Bools,
-    Change,
-    InPlan,
-    Limits,
-    Outlook,
-    Question,
-    Routes,
-    Rule,
-    first_robot,
-    listed,
-)
+from muster.allocation.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, listed
 from muster.mission.counting import counted
 from muster.mission.model import Mission, Robot
 
@@ -87,9 +76,6 @@ class MinTasks(Rule):
         may = sum(problem.may(i, k) for k in range(len(problem.tasks)))
         only = f"and may do only {counted(may, 'task')}" if may < least else "and can never do so many"
         return f"does at least {least} tasks or none, {only}"
-
-    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        return plan.kept_out(self.word, i, j)
 
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str:
         least = least_tasks(problem)

@@ -279,7 +279,8 @@ class Rule:
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         """Why robot i does not do task j, which a plan leaves out; None if this rule does not keep it from it."""
-        return self.refusal(plan.problem, i, j)
+        refused = self.refusal(plan.problem, i, j)
+        return refused or (plan.kept_out(self.word, i, j) if self.lifted_late else None)
 
     def concerns(self, problem: Question, j: int) -> bool:
         """Whether the rule can keep a robot from task j by what the task itself is."""

@@ -13,7 +13,6 @@ from muster.allocation.rules.rule import (
     ROUNDING,
     Bools,
     Change,
-    InPlan,
     Limits,
     Outlook,
     Question,
@@ -89,9 +88,6 @@ class Shift(Rule):
         (until,) = moments(problem, float(problem.timed_rules.available_until[i]))
         late = None if free is None else beyond(problem, i, _end(free, i, j))
         return late or f"what it waits for is too late for its shift, which ends at {until}"
-
-    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        return plan.kept_out(self.word, i, j)
 
 
 def _end(limits: Limits, i: int, j: int) -> float:

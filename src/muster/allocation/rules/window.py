@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.allocation.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
+from muster.allocation.rules.rule import Bools, Change, Limits, Outlook, Question, Rule, first_task, listed
 from muster.allocation.rules.times import known_least, longer, moments, reaches, span
 from muster.mission.model import Robot, Task
 
@@ -71,9 +71,6 @@ class Window(Rule):
             return None
         own = closed(problem, j, "arrives at", float(limits.arrival[i, j]))
         return own or _waits_too_long(limits, i, j) or _never_together(problem, j)
-
-    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        return plan.kept_out(self.word, i, j)
 
 
 def closed(problem: Question, j: int, how: str, ready: float) -> str | None:

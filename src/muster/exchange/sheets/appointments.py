@@ -28,9 +28,7 @@ _LINE_BYTES = 75  # RFC 5545, section 3.1, without the line break
 _ESCAPED = str.maketrans({"\\": "\\\\", ";": "\\;", ",": "\\,", "\n": "\\n", "\r": None})
 
 
-def calendar_files(
-    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
-) -> Files:
+def calendar_files(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """The calendar of all robots; or one for each robot that has stops, with an event for each of its stops.
 
     Raises
@@ -43,7 +41,6 @@ def calendar_files(
     if mission.starts_at is None:
         expected = "starts_at: 2027-03-01T08:00:00+01:00 in the mission, when it begins, for --to ics"
         raise MissionError([Finding(mission.source.file, None, "starts_at", "missing", expected)])
-    options = options or ExportOptions()
     sheets = sheets_of(mission, verdict, options, plan)
     if not options.per_robot:
         return Files({"plan.ics": _text(sheets, mission.name, _events(sheets))}, sheets.notes)

@@ -35,9 +35,7 @@ _SHRUNK = 1.2  # pictures are drawn so much larger than they are printed: more n
 _MOST_ROWS = 12  # robots whose chart is beside the map
 
 
-def overview_file(
-    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
-) -> Files:
+def overview_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """The overview as PDF.
 
     Raises
@@ -47,7 +45,7 @@ def overview_file(
     ParameterError
         if an altitude is for no drone.
     """
-    sheets = sheets_of(mission, verdict, options or ExportOptions(), plan)
+    sheets = sheets_of(mission, verdict, options, plan)
     return Files({"overview.pdf": _Printer(sheets, Names(mission)).page()}, sheets.notes)
 
 

@@ -34,9 +34,7 @@ if TYPE_CHECKING:
 _MAP_MM = (105.0, 76.0)
 
 
-def sheets_files(
-    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
-) -> Files:
+def sheets_files(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """The sheets of all robots in one PDF, or a PDF for each robot that has stops.
 
     Raises
@@ -46,7 +44,6 @@ def sheets_files(
     ParameterError
         if an altitude is for no drone.
     """
-    options = options or ExportOptions()
     sheets = sheets_of(mission, verdict, options, plan)
     lines = {one.robot.id: one for one in robot_lines(mission, verdict, 2)}
     printer = _Printer(sheets, lines, _image(mission), Names(mission))

@@ -31,9 +31,7 @@ _A4 = 9
 _MOST_CHARACTERS = 32_767  # in a cell
 
 
-def workbook_file(
-    mission: Mission, verdict: Verdict, options: ExportOptions | None = None, plan: Plan | None = None
-) -> Files:
+def workbook_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """The workbook.
 
     Raises
@@ -47,7 +45,7 @@ def workbook_file(
         from xlsxwriter import Workbook
     except ImportError:
         raise MissingExtraError("sheets", "a workbook") from None
-    sheets = sheets_of(mission, verdict, options or ExportOptions(), plan)
+    sheets = sheets_of(mission, verdict, options, plan)
     written = BytesIO()
     book = Workbook(written, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False})
     book.set_properties({"title": mission.name, "author": "Muster", "created": _EPOCH})

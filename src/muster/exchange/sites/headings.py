@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from muster.exchange.sites.cells import CellError, NoValue, is_bare_number, moment, pairs
 from muster.exchange.sites.features import Feature, Layer
-from muster.exchange.sites.key_words import OF_ROBOTS
+from muster.exchange.sites.key_words import MOST, OF_ROBOTS, SUBJECTS
 from muster.exchange.sites.keys import ROLES, SiteKey, keys_of
 from muster.exchange.sites.units import ALL_UNITS, UNITS, units_text
 from muster.mission.errors import Finding, ParameterError
@@ -18,30 +18,11 @@ from muster.mission.near_matches import did_you_mean
 _BRACKETED = re.compile(r"^(.*?)\s*[(\[]\s*([^)\]]*?)\s*[)\]]\s*$")
 _WORD = re.compile(r"[^\W_]+|°")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
-_SUBJECTS = frozenset(
-    (
-        "task",
-        "robot",
-        "panel",
-        "point",
-        "site",
-        "station",
-        "zone",
-        "waypoint",
-        "poi",
-        "target",
-        "asset",
-        "lane",
-        "start",
-        *OF_ROBOTS,
-    )
-)
+_SUBJECTS = frozenset((*SUBJECTS, *OF_ROBOTS))
 """Words before a name that say of what it is: `Panel name`. Where no other column has names, one alone is the name."""
 
 _OF_LIMITS = frozenset(("endurance_s", "range_m", "speed_mps", "load_capacity"))
-_MOST = frozenset(
-    ("max", "maximum", "maximal", "maximale", "maximaler", "maximo", "máximo", "máxima", "massima", "макс")
-)
+_MOST = frozenset(MOST)
 """Words beside the name of what is a greatest value anyway: `Max. range (km)`."""
 
 

@@ -17,6 +17,7 @@ from muster.exchange.sites.energy_cells import COLUMNS
 from muster.exchange.sites.units import UNITS, Dimension
 from muster.exchange.sites.vocabulary import moves
 from muster.mission.action_keys import ACTION_KEYS
+from muster.mission.packaged_files import packaged_data
 from muster.mission.records import key_of, specified
 from muster.mission.value_types import Choice, Flag, Kind, Many, Number, OneOrMany, Text, Whole
 
@@ -59,24 +60,6 @@ class SiteKey:
     rare: frozenset[str] = frozenset()
 
 
-def _length(name: str, *names: str) -> SiteKey:
-    return SiteKey(name, partial(_number, "length"), "length", names)
-
-
-def _level(name: str, *names: str) -> SiteKey:
-    """A height of a zone; storeys and the like, under the same headings, are not read: all heights are closed then."""
-    read = partial(_number, "length")
-    return SiteKey(name, read, "length", names, needs_unit=True, rare=frozenset(names))
-
-
-def _angle(name: str, read: Read, *names: str) -> SiteKey:
-    return SiteKey(name, read, "angle", names, is_free=True)
-
-
-def _mass(name: str, *names: str) -> SiteKey:
-    return SiteKey(name, cells.amount, "mass", names, is_free=True)
-
-
 def _number(dimension: Dimension, value: object, factor: float = 1.0) -> float:
     return cells.number(value, dimension, factor)
 
@@ -100,148 +83,105 @@ def _choices(value: object) -> list[str]:
     return [part for one in cells.words(value) for part in one.casefold().split()]
 
 
+_HEADINGS: Mapping[str, Mapping[str, str]] = packaged_data("muster.exchange.sites", "headings.yaml")
+
+
+def _key(subject: str, name: str, read: Read, dimension: Dimension = "", *names: str, **others: Any) -> SiteKey:
+    """The key of a subject, with its headings of `headings.yaml`, then `names`."""
+    listed = _HEADINGS[subject].get(name, "").split()
+    rare = frozenset(word.removesuffix("?") for word in listed if word.endswith("?"))
+    headings = (*(word.removesuffix("?") for word in listed), *names)
+    return SiteKey(name, read, dimension, headings, rare=rare, **others)
+
+
+def _angle(name: str, read: Read) -> SiteKey:
+    return _key("place", name, read, "angle", is_free=True)
+
+
+def _length(subject: str, name: str, **others: Any) -> SiteKey:
+    return _key(subject, name, partial(_number, "length"), "length", **others)
+
+
+def _mass(subject: str, name: str) -> SiteKey:
+    return _key(subject, name, cells.amount, "mass", is_free=True)
+
+
+def _id(subject: str) -> SiteKey:
+    """The id of a subject, whose headings are those of any id, and its own."""
+    return SiteKey("id", cells.text, names=(*IDENTITY[0].names, *_HEADINGS[subject]["id"].split()))
+
+
 PLACE = (
-    _angle("lat", partial(cells.degrees, most=90.0), "latitude", "latdeg", "latitudedeg", "latwgs84", "gpslat"),
-    _angle(
-        "lon",
-        partial(cells.degrees, most=180.0),
-        *("lng", "long", "longitude", "londeg", "lngdeg", "longitudedeg", "lonwgs84", "gpslon", "gpslong"),
-    ),
-    _angle(
-        "lat_lon",
-        cells.lat_lon,
-        *("latlng", "latlong", "latitudelongitude", "coordinates", "coordinate", "coords", "gps"),
-    ),
-    _length("alt", "altitude", "elevation", "ele", "altm"),
-    _length("x", "east"),
-    _length("y", "north"),
-    _length("z", "height", "heightm"),
-    SiteKey("position", cells.point, names=("xy", "xyz")),
-    SiteKey("wkt", cells.text, names=("geometry", "geom", "wktgeom", "thegeom")),
+    _angle("lat", partial(cells.degrees, most=90.0)),
+    _angle("lon", partial(cells.degrees, most=180.0)),
+    _angle("lat_lon", cells.lat_lon),
+    *(_length("place", name) for name in ("alt", "x", "y", "z")),
+    _key("place", "position", cells.point),
+    _key("place", "wkt", cells.text),
 )
-IDENTITY = (
-    SiteKey("id", cells.text, names=("index", "no", "nr", "number", "key", "code", "ref")),
-    SiteKey("name", cells.text, names=words.NAMES),
-)
-ROLE = SiteKey("kind", _lower, names=("role", "feature", "featurekind"))
+IDENTITY = (_key("identity", "id", cells.text), SiteKey("name", cells.text, names=words.NAMES))
+ROLE = _key("role", "kind", _lower)
 _TASK = (
-    SiteKey("id", cells.text, names=(*IDENTITY[0].names, "task")),
-    SiteKey("type", cells.text, names=("category", "class")),
-    SiteKey(
-        "duration_s",
-        cells.duration,
-        "time",
-        ("duration", "durations", "servicetime", "service", "worktime", "staytime", "dwell", "dwelltime", "timeneeded"),
-        rare=frozenset(("service",)),
-    ),
-    SiteKey(
-        "opens",
-        cells.moment,
-        "time",
-        ("from", "open", "earliest", "earlieststart", "windowfrom", "windowstart", "notbefore", "readytime", "opensat"),
-        rare=frozenset(("from", "open")),
-    ),
-    SiteKey(
-        "closes",
-        cells.moment,
-        "time",
-        ("to", "until", "close", "latest", "lateststart", "windowto", "windowuntil", "windowend", "closesat"),
-        rare=frozenset(("to", "close")),
-    ),
-    SiteKey(
-        "window",
-        cells.pairs,
-        "time",
-        ("windows", "timewindow", "timewindows", "hours", "openinghours"),
-        rare=frozenset(("hours", "openinghours")),
-    ),
-    SiteKey(
-        "deadline",
-        cells.moment,
-        "time",
-        ("finishby", "mustend", "mustendby", "by", "endby", "doneby"),
-        rare=frozenset(("by",)),
-    ),
-    SiteKey("due", cells.moment, "time", ("duetime", "dueat", "duedate", "dueby")),
-    SiteKey("priority", cells.number, names=("prio", "weight", "importance"), rare=frozenset(("importance",))),
-    SiteKey(
-        "prerequisites",
-        cells.words,
-        names=("prerequisite", "after", "dependson", "dependencies", "predecessor", "predecessors"),
-    ),
-    SiteKey(
-        "requires",
-        cells.words,
-        names=("skills", "skill", "requiredskills", "requiredskill", "equipment", "capabilities"),
-    ),
-    SiteKey("actuation_cost", cells.number, names=("cost", "workcost"), rare=frozenset(("cost",))),
-    SiteKey("robots_needed", cells.whole, names=("robotsneeded", "teamsize", "crew"), rare=frozenset(("crew",))),
-    _mass("load", "demand", "amount", "quantity", "weight", "mass"),
+    _id("task"),
+    _key("task", "type", cells.text),
+    _key("task", "duration_s", cells.duration, "time"),
+    _key("task", "opens", cells.moment, "time"),
+    _key("task", "closes", cells.moment, "time"),
+    _key("task", "window", cells.pairs, "time"),
+    _key("task", "deadline", cells.moment, "time"),
+    _key("task", "due", cells.moment, "time"),
+    _key("task", "priority", cells.number),
+    _key("task", "prerequisites", cells.words),
+    _key("task", "requires", cells.words),
+    _key("task", "actuation_cost", cells.number),
+    _key("task", "robots_needed", cells.whole),
+    _mass("task", "load"),
 )
+_OF_ENERGY: dict[str, Any] = {"needs_unit": True, "right": COLUMNS}
 _ROBOT = (
-    SiteKey("id", cells.text, names=(*IDENTITY[0].names, "robot", "callsign")),
-    SiteKey("type", cells.text, names=("model", "class", *words.TYPES, *words.MODELS)),
-    SiteKey("moves", _lower, names=("domain",)),
-    SiteKey("speed_mps", partial(_number, "speed"), "speed", ("speed", "maxspeed", "velocity", "cruisespeed")),
+    _id("robot"),
+    _key("robot", "type", cells.text, "", *words.TYPES, *words.MODELS),
+    _key("robot", "moves", _lower),
+    _key("robot", "speed_mps", partial(_number, "speed"), "speed"),
     SiteKey("work_capacity", cells.limit),
-    SiteKey("skills", cells.words, names=("skill", "capabilities", "equipment")),
-    _length("radius_m", "radius"),
-    SiteKey("heading_deg", partial(_number, "angle"), "angle", ("heading", "yaw")),
-    SiteKey(
-        "endurance_s",
-        energy_cells.endurance,
-        "time",
-        (*words.ENDURANCE, *words.BATTERY),
-        needs_unit=True,
-        right=COLUMNS,
-    ),
-    SiteKey(
-        "range_m",
-        energy_cells.range_of,
-        "length",
-        (*words.RANGE, *words.BATTERY),
-        needs_unit=True,
-        right=COLUMNS,
-    ),
+    _key("robot", "skills", cells.words),
+    _length("robot", "radius_m"),
+    _key("robot", "heading_deg", partial(_number, "angle"), "angle"),
+    SiteKey("endurance_s", energy_cells.endurance, "time", (*words.ENDURANCE, *words.BATTERY), **_OF_ENERGY),
+    SiteKey("range_m", energy_cells.range_of, "length", (*words.RANGE, *words.BATTERY), **_OF_ENERGY),
     SiteKey("battery", energy_cells.battery, names=words.BATTERY, right=COLUMNS),
-    SiteKey("capacity", energy_cells.no_capacity, names=("budget",), right=COLUMNS),
-    _mass("load_capacity", "payload", "capacity"),
-    SiteKey("climb_mps", partial(_number, "speed"), "speed", ("climb", "climbspeed")),
-    SiteKey("starts", cells.moment, "time", ("from", "availablefrom", "shiftstart", "start", "earliest")),
-    SiteKey("ends", cells.moment, "time", ("to", "until", "availableuntil", "shiftend", "end", "latest")),
-    SiteKey("shift", cells.pairs, "time", ("shifts", "hours", "availability")),
+    _key("robot", "capacity", energy_cells.no_capacity, right=COLUMNS),
+    _mass("robot", "load_capacity"),
+    _key("robot", "climb_mps", partial(_number, "speed"), "speed"),
+    _key("robot", "starts", cells.moment, "time"),
+    _key("robot", "ends", cells.moment, "time"),
+    _key("robot", "shift", cells.pairs, "time"),
 )
 _STATION = (
-    SiteKey("id", cells.text, names=(*IDENTITY[0].names, "station")),
-    SiteKey("services", _choices, names=("service",)),
+    _id("station"),
+    _key("station", "services", _choices),
     SiteKey("charge_per_s", cells.number),
-    SiteKey("swap_s", cells.duration, "time", ("swap", "swaptime")),
+    _key("station", "swap_s", cells.duration, "time"),
 )
-_DOOR = SiteKey("door", cells.text, names=("doorid",))
+_DOOR = _key("zone", "door", cells.text)
 _ZONE = (
     _DOOR,
-    _level("floor_m", "floor", "minheight", "lowerlimit"),
-    _level("ceiling_m", "ceiling", "maxheight", "upperlimit"),
-    SiteKey("forbidden_to", _kinds_of_robots, names=("closedto", "forbidden"), rare=frozenset(("forbidden",))),
+    # Storeys and the like, under the same headings, are not read: all heights are closed then.
+    _length("zone", "floor_m", needs_unit=True),
+    _length("zone", "ceiling_m", needs_unit=True),
+    _key("zone", "forbidden_to", _kinds_of_robots),
 )
-ZONE_RADIUS = SiteKey(
-    "radius_m", cells.radius, "length", ("radius", "rad", "radio", "raggio", "rayon", "raio", "радиус")
-)
+ZONE_RADIUS = _key("zone", "radius_m", cells.radius, "length")
 """Of a closed area that is given by its middle."""
-_ROUND_ZONE = (ZONE_RADIUS, SiteKey("diameter_m", cells.radius, "length", ("diameter", "durchmesser")), *_ZONE)
+_ROUND_ZONE = (ZONE_RADIUS, _key("zone", "diameter_m", cells.radius, "length"), *_ZONE)
+_OF_OPENSTREETMAP = {"maxspeed": UNITS["speed"]["km/h"]}
 _LANE = (
     _DOOR,
-    _length("width_m", "width"),
-    SiteKey(
-        "speed_mps",
-        partial(_number, "speed"),
-        "speed",
-        ("speed", "maxspeed", "speedlimit"),
-        unstated={"maxspeed": UNITS["speed"]["km/h"]},  # that of OpenStreetMap
-    ),
+    _length("lane", "width_m"),
+    _key("lane", "speed_mps", partial(_number, "speed"), "speed", unstated=_OF_OPENSTREETMAP),
     SiteKey("capacity", cells.whole),
-    SiteKey("one_way", cells.flag, names=("oneway",)),
-    SiteKey("both_ways", cells.flag, names=("bothways", "bidirectional", "twoway")),
+    _key("lane", "one_way", cells.flag),
+    _key("lane", "both_ways", cells.flag),
 )
 _OF_ROLES: Mapping[str, tuple[SiteKey, ...]] = {
     "task": _TASK,
@@ -249,7 +189,7 @@ _OF_ROLES: Mapping[str, tuple[SiteKey, ...]] = {
     "station": _STATION,
     "zone": _ZONE,
     "boundary": (),
-    "survey": (_length("height_m", "height", "altitude", "flightaltitude", "flightheight", "agl", "flughöhe"), *_TASK),
+    "survey": (_length("survey", "height_m"), *_TASK),
     "lane": _LANE,
     "route": (),
 }

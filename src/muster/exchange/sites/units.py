@@ -2,50 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
+
+from muster.mission.packaged_files import packaged_data
 
 Dimension = Literal["", "time", "length", "speed", "angle", "mass"]
 
+_WORDS_OF: dict[Dimension, dict[float, str]] = packaged_data("muster.exchange.sites", "units.yaml")
 UNITS: dict[Dimension, dict[str, float]] = {
-    "": {},
-    "time": {
-        **dict.fromkeys(("s", "sec", "secs", "second", "seconds", "sek", "sekunden", "сек", "с", "秒", "초"), 1.0),
-        **dict.fromkeys(("min", "mins", "minute", "minutes", "minuten", "minuti", "minutos", "minut", "minuty"), 60.0),
-        **dict.fromkeys(
-            ("minutter", "minuter", "dk", "dakika", "мин", "минут", "хв", "分", "分钟", "分鐘", "분"), 60.0
-        ),
-        **dict.fromkeys(("h", "hr", "hrs", "hour", "hours", "std", "stunden", "heures", "horas", "ore", "uur"), 3600.0),
-        **dict.fromkeys(("timer", "timmar", "godz", "saat", "ч", "час", "год", "小时", "小時", "時間", "시간"), 3600.0),
-        **dict.fromkeys(("d", "day", "days"), 86400.0),
-        "ms": 0.001,
-    },
-    "length": {
-        **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
-        **dict.fromkeys(("м", "метров", "米", "メートル", "미터"), 1.0),
-        **dict.fromkeys(("km", "kms", "км", "公里", "千米", "キロ"), 1000.0),
-        "cm": 0.01,
-        "mm": 0.001,
-        **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
-        **dict.fromkeys(("yd", "yard", "yards"), 0.9144),
-        **dict.fromkeys(("mi", "mile", "miles"), 1609.344),
-        **dict.fromkeys(("nm", "nmi"), 1852.0),
-    },
-    "speed": {
-        **dict.fromkeys(("m/s", "mps", "ms", "m/sec", "м/с"), 1.0),
-        **dict.fromkeys(("km/h", "kmh", "kph", "km/u", "км/ч"), 1 / 3.6),
-        **dict.fromkeys(("ft/s", "fps"), 0.3048),
-        "mph": 0.44704,
-        **dict.fromkeys(("kn", "kt", "kts", "knot", "knots"), 1852 / 3600),
-    },
-    "mass": {
-        **dict.fromkeys(("kg", "kgs", "kilogram", "kilograms"), 1.0),
-        "g": 0.001,
-        "t": 1000.0,
-        "lb": 0.45359237,
-        "lbs": 0.45359237,
-    },
-    "angle": {**dict.fromkeys(("deg", "degree", "degrees", "°"), 1.0), "rad": 180 / math.pi},
+    dimension: {word: factor for factor, words in units.items() for word in words.split()}
+    for dimension, units in _WORDS_OF.items()
 }
 """By dimension the units by name; angles are in degrees, as in the names of a mission's keys; masses in kg."""
 

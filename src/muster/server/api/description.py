@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from html import escape
 from importlib.metadata import version
+from string import Template
 from typing import Any
 
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
+from muster.mission.packaged_files import packaged_text
 from muster.server.api.problems import Problem
 
 _SUMMARY = "Plan, watch and steer a team of robots"
@@ -24,20 +26,7 @@ _TAGS = {
     "actions": "What users did.",
     "about": "This server.",
 }
-_PAGE = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Muster API</title>
-<style>
-body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem }}
-body {{ color: #111; background: #fff }}
-td {{ padding: .2rem 1rem .2rem 0; vertical-align: top }}
-td:first-child {{ white-space: nowrap }}
-</style></head><body>
-<h1>Muster API</h1>
-<p>{summary}. The whole description is <a href="openapi.json">openapi.json</a> (OpenAPI 3.1).</p>
-{tables}
-</body></html>
-"""
+_PAGE = Template(packaged_text("muster.server.api", "description.html"))
 
 
 def describe(app: FastAPI) -> None:
@@ -86,4 +75,4 @@ def listing(app: FastAPI) -> str:
             if tag in told["tags"]
         ]
         tables.append(f"<h2>{tag}</h2>\n<p>{escape(text)}</p>\n<table>{''.join(rows)}</table>")
-    return _PAGE.format(summary=_SUMMARY, tables="\n".join(tables))
+    return _PAGE.substitute(summary=_SUMMARY, tables="\n".join(tables))

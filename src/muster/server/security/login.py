@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html import escape
+from string import Template
 from urllib.parse import parse_qs
 
 from starlette.requests import Request
@@ -10,6 +11,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
 from muster.exchange.mission_control import User
+from muster.mission.packaged_files import packaged_text
 from muster.server.security.authentication import SCOPE_KEY, Caller
 from muster.server.security.guard import GuardState
 from muster.server.security.refusal import RefusalError
@@ -17,40 +19,7 @@ from muster.server.security.sessions import COOKIE, SECURE_COOKIE
 
 _FORM_BYTES = 4096
 
-_PAGE = """<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Muster: login</title>
-<link rel="icon" href="data:,">
-<style>
-  body {{ font: 16px/1.5 system-ui, sans-serif; margin: 0; min-height: 100vh; display: grid; place-items: center;
-         background: #f4f6f8; color: #17202a; }}
-  form {{ background: #fff; padding: 2rem; border-radius: 8px; width: min(24rem, 85vw); box-sizing: border-box;
-         box-shadow: 0 1px 6px #0003; }}
-  h1 {{ font-size: 1.3rem; margin: 0 0 1rem; }}
-  label, input, button {{ display: block; width: 100%; box-sizing: border-box; font: inherit; }}
-  [hidden] {{ display: none; }}
-  input {{ padding: .5rem; margin: .3rem 0 1rem; border: 1px solid #5d6d7e; border-radius: 4px; }}
-  button {{ padding: .6rem; border: 0; border-radius: 4px; background: #0b5394; color: #fff; cursor: pointer; }}
-  :focus-visible {{ outline: 3px solid #e69f00; outline-offset: 2px; }}
-  p[role=alert] {{ border-left: 4px solid #b03a2e; padding-left: .7rem; }}
-  small {{ color: #4d5656; }}
-  @media (prefers-color-scheme: dark) {{ body {{ background: #17202a; color: #f4f6f8; }}
-    form {{ background: #212f3c; }} input {{ background: #17202a; color: inherit; }} small {{ color: #aeb6bf; }} }}
-</style>
-<form method="post" action="/login">
-  <h1>Mission control</h1>
-  {alert}
-  <label for="token">Your token</label>
-  <input name="username" autocomplete="username" value="muster" hidden>
-  <input id="token" name="token" type="password" autocomplete="current-password" required autofocus>
-  <input name="next" type="hidden" value="{next}">
-  <button>Log in</button>
-  <p><small>Whoever runs this server gives out tokens.</small></p>
-</form>
-</html>
-"""
+_PAGE = Template(packaged_text("muster.server.security", "login.html"))
 
 
 def login_routes(guard_state: GuardState) -> list[Route]:
@@ -125,7 +94,7 @@ async def _fields(request: Request) -> dict[str, str]:
 
 def _form(following: str, alert: str = "", status: int = 200) -> Response:
     told = f'<p role="alert">{escape(alert)}</p>' if alert else ""
-    return HTMLResponse(_PAGE.format(alert=told, next=escape(_own_path(following), quote=True)), status)
+    return HTMLResponse(_PAGE.substitute(alert=told, next=escape(_own_path(following), quote=True)), status)
 
 
 def _own_path(path: str) -> str:

@@ -11,22 +11,8 @@ from muster.mission.errors import ParameterError
 BACKENDS = {"egl": "libEGL.so.1", "osmesa": "libOSMesa.so.8"}
 """How MuJoCo may draw without a screen, and the library of each; the first is the faster."""
 _KNOWN = (
-    "",
-    *BACKENDS,
-    "glfw",
-    "glx",
-    "wgl",
-    "cgl",
-    "on",
-    "true",
-    "1",
-    "enable",
-    "enabled",
-    "off",
-    "false",
-    "0",
-    "disable",
-    "disabled",
+    *("", *BACKENDS, "glfw", "glx", "wgl", "cgl"),
+    *("on", "true", "1", "enable", "enabled", "off", "false", "0", "disable", "disabled"),
 )
 """What MuJoCo itself takes for `MUJOCO_GL`, on one system or another."""
 

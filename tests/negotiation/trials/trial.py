@@ -7,6 +7,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
+from tests.negotiation.trials.deadline import deadline_s, someone_is_left_out
+from tests.negotiation.trials.faults import Incident
+from tests.negotiation.trials.invariants import Invariants
+from tests.negotiation.trials.observer import Observer
+from tests.negotiation.trials.scenario import Scenario, scenario_of
+
 from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError, ParameterError
 from muster.negotiation.effects import Memory
@@ -15,11 +21,6 @@ from muster.negotiation.messages import Claim
 from muster.negotiation.methods import METHODS
 from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.participation import rules_of
-from muster.running.negotiation_trials.deadline import deadline_s, someone_is_left_out
-from muster.running.negotiation_trials.faults import Incident
-from muster.running.negotiation_trials.invariants import Invariants
-from muster.running.negotiation_trials.observer import Observer
-from muster.running.negotiation_trials.scenario import Scenario, scenario_of
 
 LONGEST_S = 120.0
 """The time limit of agreement after the last incident, seconds of virtual time; `deadline` has the stricter one."""

@@ -8,15 +8,16 @@ from itertools import permutations
 from random import Random
 from typing import Any
 
+from tests.negotiation.trials.faults import Incident, Links, incidents
+from tests.negotiation.trials.moving_partitions import moving_partitions
+from tests.negotiation.trials.random_missions import random_mission, with_times
+
 from muster.allocation import consensus_bundle
 from muster.allocation.auction import Parameters
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.mission.model import Mission
 from muster.negotiation.members import Timeouts
 from muster.negotiation.memory_network import LinkConditions
-from muster.running.negotiation_trials.faults import Incident, Links, incidents
-from muster.running.negotiation_trials.moving_partitions import moving_partitions
-from muster.running.negotiation_trials.random_missions import random_mission, with_times
 
 MOVING_PARTITIONS = 0.3
 """The share of scenarios with moving partitions."""

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
 
+from tests.negotiation.trials.random_missions import random_task
+
 from muster.mission.model import Mission, Task
-from muster.running.negotiation_trials.random_missions import random_task
 
 Links = frozenset[tuple[str, str]]
 """The direct links: (sender, receiver)."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from random import Random
 
 import numpy as np
+from tests.negotiation.simulated_figures import suspicion
+from tests.negotiation.simulated_figures.teams import DELAY_S, all_agree, settled_team, team, time_until
 
 from muster.allocation.problem import Problem
 from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
-from muster_studies.negotiation import suspicion
-from muster_studies.negotiation.teams import DELAY_S, all_agree, settled_team, team, time_until
 
 CUT_S = 15.0
 

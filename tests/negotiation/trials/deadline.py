@@ -12,11 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
+from tests.negotiation.trials.faults import Links
+from tests.negotiation.trials.scenario import Scenario
+
 from muster.negotiation.members import FAR
 from muster.negotiation.memory_network import TICK_S
 from muster.negotiation.negotiator import Negotiator
-from muster.running.negotiation_trials.faults import Links
-from muster.running.negotiation_trials.scenario import Scenario
 
 OTHER_WORDS = 3
 """Declarations, agreement and permanent facts: each takes as long as a round."""

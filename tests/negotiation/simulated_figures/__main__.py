@@ -1,14 +1,14 @@
-"""Print the figures of docs/negotiation.md: `python -m muster_studies.negotiation [RUNS]`."""
+"""Print the figures of docs/negotiation.md: `python -m tests.negotiation.simulated_figures [RUNS]`."""
 
 import argparse
 import sys
 
-from muster_studies.negotiation.figures import lines
+from tests.negotiation.simulated_figures.figures import lines
 
 
 def main() -> None:
     """Print the figures, each as soon as it is known."""
-    parser = argparse.ArgumentParser(prog="python -m muster_studies.negotiation", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.negotiation.simulated_figures", description=__doc__)
     parser.add_argument("runs", type=int, nargs="?", default=100)
     for line in lines(parser.parse_args().runs):
         sys.stdout.write(f"{line}\n")

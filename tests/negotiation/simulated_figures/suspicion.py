@@ -13,9 +13,10 @@ from functools import partial
 from random import Random
 from statistics import NormalDist, fmean, stdev
 
+from tests.negotiation.simulated_figures.teams import DELAY_S, all_agree, team, time_until
+
 from muster.negotiation.members import Timeouts
 from muster.negotiation.memory_network import TICK_S, LinkConditions, MemoryNetwork
-from muster_studies.negotiation.teams import DELAY_S, all_agree, team, time_until
 
 BIASED_LOSS = 0.95
 """The loss while silence is provoked; sixteen words in a row are lost in 4 of 9 trials."""

@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from random import Random
 
+from tests.negotiation.trials.faults import Incident, Links, orders
+from tests.negotiation.trials.random_missions import random_task
+
 from muster.mission.model import Mission
-from muster.running.negotiation_trials.faults import Incident, Links, orders
-from muster.running.negotiation_trials.random_missions import random_task
 
 _MOVING = ("next majority",) * 3 + ("ambush",)
 _MIXED = ("next majority", "any cut", "block", "block", "heal", "ambush")

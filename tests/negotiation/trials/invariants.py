@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
+from tests.negotiation.trials.observer import Observer, is_of_one_sale
+from tests.negotiation.trials.scenario import Scenario
+
 from muster.allocation.problem import Problem
 from muster.mission.model import Mission, Task
 from muster.mission.plan import Plan, Route
@@ -16,8 +19,6 @@ from muster.negotiation.negotiator import Negotiator
 from muster.negotiation.new_tasks import task_of
 from muster.negotiation.participation import rules_of
 from muster.negotiation.valuation import Valuer
-from muster.running.negotiation_trials.observer import Observer, is_of_one_sale
-from muster.running.negotiation_trials.scenario import Scenario
 from muster.verification import verify
 
 
