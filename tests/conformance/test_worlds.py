@@ -1,5 +1,6 @@
 """What every world keeps, whatever moves the robots in it."""
 
+import json
 import math
 from importlib.util import find_spec
 
@@ -165,3 +166,48 @@ def test_the_observer_sees_every_step(world_of):
 def test_what_is_out_of_range_is_told(world_of, wrong, message):
     with pytest.raises(ParameterError, match=message):
         world_of(mission(robot()), **wrong)
+
+
+@every_kind
+def test_a_world_made_of_a_snapshot_goes_on_as_the_one_of_which_it_is(world_of, kind):
+    team = mission(robot("a", **kind), robot("b", position=(0.0, 5.0), **kind), robot("c", position=(0.0, 9.0), **kind))
+    world = world_of(team)
+    for k, port in enumerate(world.ports.values()):
+        port.send([Waypoint((6.0, 5.0 * k, 0.0), label="there")])
+    world.advance(2.0)
+    world.fail("b")
+    world.silence("c")
+    snapshot = json.loads(json.dumps(world.snapshot()))
+    again = world_of(team, snapshot=snapshot)
+    assert again.time_s == pytest.approx(world.time_s)
+    for name in ("positions", "headings", "velocities", "frames", "axes"):
+        np.testing.assert_allclose(getattr(again, name), getattr(world, name), atol=1e-9, err_msg=name)
+    assert again.distances_m == world.distances_m
+    assert again.min_distance_m == world.min_distance_m
+    for one in (world, again):
+        one.ports["a"].send([Waypoint((6.0, 0.0, 0.0))])
+        one.ports["b"].send([Waypoint((6.0, 5.0, 0.0))])  # it is out of order
+        one.advance(5.0)
+    near_m = 1e-9 if world_of is KinematicWorld else 0.3  # forces, and what bodies would still go on, begin anew
+    np.testing.assert_allclose(again.positions[:2], world.positions[:2], atol=near_m)
+    assert again.ports["c"].telemetry().time_s < again.time_s
+    again.recover("b")
+    again.ports["b"].send([Waypoint((6.0, 5.0, 0.0))])
+    before = again.positions[1, 0]
+    again.advance(7.0)
+    assert again.positions[1, 0] > before + 0.1
+
+
+def test_batteries_and_contacts_are_in_a_snapshot(world_of):
+    team = mission(*(robot(f"r_{k}", position=(float(k), 0.0), radius_m=0.3, work_capacity=100.0) for k in range(2)))
+    world = world_of(team, batteries={"all": 0.5}, avoidance="none")
+    world.ports["r_0"].send([Waypoint((3.0, 0.0, 0.0))])
+    world.advance(4.0)
+    assert len(world.contacts) == 1
+    again = world_of(team, avoidance="none", snapshot=json.loads(json.dumps(world.snapshot())))
+    charges = [[one.ports[name].telemetry().charge for name in one.ports] for one in (world, again)]
+    assert charges[0] == pytest.approx(charges[1])
+    assert charges[0][0] < 0.5
+    assert again.contacts == world.contacts
+    again.advance(5.0)
+    assert len(again.contacts) == 1

@@ -4,7 +4,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
-from tests.running.run_log import Log
+from tests.running.run_log import Log, resumed_run
 from tests.running.test_live import WorldAsFleet
 
 import muster
@@ -190,7 +190,7 @@ def test_a_deadline_passes_while_no_process_runs(starts):
         run.go_on()
     before, lasted = list(log.entries), run.time_s
     wall.more_s += 40.0
-    again = RealRun(there, plan, wall.fleet(there), log, request=request, wall=wall, log=before)
+    again = resumed_run(there, plan, wall.fleet(there), log, before, request=request, wall=wall)
     assert again.time_s == pytest.approx(lasted + 40.0, abs=0.5)
     assert again.starts_at == run.starts_at
     while not again.done:

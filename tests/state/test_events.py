@@ -90,7 +90,7 @@ DATA = {
         "left_out": {"t_3": "why"},
     },
     "event_refused": {"event": {"cancel_task": "t_99"}, "reason": "task: 't_99'; expected another"},
-    "resumed": {"how": "from where robots stand", "again": ["t_0"]},
+    "resumed": {"how": "from where robots stand", "again": ["t_0"], "used": {"r_0": 7.5}},
 }
 """For each kind data in which no field is as by default."""
 

@@ -777,6 +777,11 @@ class CrowdWorld:
         The trajectory of the order sent last: (k, 4) of x, y, z, heading each `step` seconds, and when it passes each way point.
         """
 
+    def resume(self, steps: int, motions: Sequence[Sequence[float]]) -> None:
+        """
+        Continue another world from a step, with a row of `motions` for each robot.
+        """
+
     def fail(self, robot: int) -> None: ...
 
     def recover(self, robot: int) -> None: ...
@@ -857,6 +862,9 @@ class CrowdWorld:
     def velocities(self) -> NDArray[numpy.float64]: ...
 
     def headings(self) -> NDArray[numpy.float64]: ...
+
+    def motions(self) -> NDArray[numpy.float64]:
+        """Of each robot its velocity, its speed ahead and its yaw rate."""
 
     def travelled(self) -> NDArray[numpy.float64]: ...
 

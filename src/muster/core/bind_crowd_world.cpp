@@ -159,6 +159,15 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           "robot"_a, "poses"_a, "step"_a, "times"_a,
           "The trajectory of the order sent last: (k, 4) of x, y, z, heading each `step` seconds, and when it passes "
           "each way point.")
+      .def(
+          "resume",
+          [](CrowdWorld& w, long steps, const std::vector<std::array<double, 5>>& motions) {
+            if (motions.size() != w.robots().size()) throw std::invalid_argument("expected a row for each robot");
+            std::vector<Motion> rows;
+            for (const auto& m : motions) rows.push_back({Vec<3>{{m[0], m[1], m[2]}}, m[3], m[4]});
+            w.resume(steps, rows);
+          },
+          "steps"_a, "motions"_a, "Continue another world from a step, with a row of `motions` for each robot.")
       .def("fail", &CrowdWorld::fail, "robot"_a)
       .def("recover", &CrowdWorld::recover, "robot"_a)
       .def("slow", &CrowdWorld::slow, "robot"_a, "factor"_a)
@@ -284,6 +293,15 @@ void bind_crowd_world(nb::module_& m) {
            [](const CrowdWorld& w) {
              return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.facing()); });
            })
+      .def(
+          "motions",
+          [](const CrowdWorld& w) {
+            return table(w, 5, [](const CrowdRobot& r, auto& to) {
+              to.insert(to.end(), r.velocity.at.begin(), r.velocity.at.end());
+              to.insert(to.end(), {r.ahead, r.yaw_rate});
+            });
+          },
+          "Of each robot its velocity, its speed ahead and its yaw rate.")
       .def("travelled", [](const CrowdWorld& w) {
         return table(w, 1, [](const CrowdRobot& r, auto& to) { to.push_back(r.travelled); });
       });

@@ -85,6 +85,18 @@ void CrowdWorld::believe(int i, const Vec<3>& place, double heading, double spre
   for (std::size_t k = robot.next; k < robot.way.size(); ++k) robot.way[k] = robot.belief.true_of(robot.told[k]);
 }
 
+void CrowdWorld::resume(long steps, const std::vector<Motion>& motions) {
+  steps_ = steps;
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    CrowdRobot& robot = robots_[i];
+    robot.velocity = robot.velocity_before = robot.commanded = motions[i].velocity;
+    robot.heading_before = robot.heading;
+    robot.ahead = motions[i].ahead;
+    robot.yaw_rate = motions[i].yaw_rate;
+    robot.stopping = robot.under_way();
+  }
+}
+
 void CrowdWorld::fail(int i) {
   robots_[i].failed = true;
   robots_[i].way.clear();

@@ -60,6 +60,12 @@ struct Command {
   double yaw_rate;
 };
 
+// How a robot moved when a world was left: its velocity, and of one that faces its way its speed ahead and yaw rate.
+struct Motion {
+  Vec<3> velocity;
+  double ahead, yaw_rate;
+};
+
 // Where a robot's body is, and by how much it would go on and turn on, were it told to stand now; and the metres and
 // radians that its wheels counted in the step, NaN of one without wheels.
 struct Carried {
@@ -90,6 +96,8 @@ class CrowdWorld {
   void recover(int i) { robots_[i].failed = false; }
   void slow(int i, double factor) { robots_[i].slowed = factor; }
   void leave_to_traffic(int i) { robots_[i].in_traffic = true; }
+  // A world that continues another: its clock, and how each robot moved; none has an order.
+  void resume(long steps, const std::vector<Motion>& motions);
   // Where a robot takes itself to be at the end of the last step, and within which spread (metres, one standard
   // deviation). It goes where its way points are by that, until it is told anew. Others, walls and work at a place it
   // perceives from where it is.

@@ -14,7 +14,8 @@ from muster.mission.errors import MusterError
 
 Role = Literal["watch", "command"]
 JobState = Literal["queued", "running", "done", "failed", "cancelled"]
-RunState = Literal["starting", "running", "paused", "ended", "cancelled", "failed"]
+RunState = Literal["starting", "resuming", "running", "paused", "ended", "cancelled", "failed"]
+"""`resuming`: the run goes on soon where a crash has stopped it; what it is asked meanwhile waits, in order."""
 World = str
 """kinematic, physics, ros1, ros2, mavlink, or a world or fleet of an installed package."""
 
@@ -179,6 +180,8 @@ class Run:
         one line for the user: why the run failed, or that it is not recorded.
     report
         as `muster simulate --format json` prints it, after the end.
+    share
+        which share of going on is done while it is resuming, 0 to 1; else null.
     """
 
     id: int
@@ -196,14 +199,16 @@ class Run:
     resumed: int = 0
     remark: str = ""
     report: Mapping[str, Any] | None = None
+    share: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Entry:
     """One entry of a run's log, which only grows. `seq` counts from 1 within a run.
 
-    Kinds are those of a record's events (docs/records.md), and: `plan` (data: `plan`, `lines`), `command` (a user's
-    action took effect; data: `action`, its id), `report` (data: the report), `resumed`.
+    Kinds are those of a record's events (docs/records.md), and: `plan` (data: what it changes of the plan before,
+    `routes`, `lines`, `left_out`; of the first one `plan`, `lines`), `command` (a user's action took effect; data:
+    `action`, its id), `report` (data: the report), `resumed`.
     """
 
     run: int
@@ -223,6 +228,26 @@ class Stretch:
     from_s: float
     until_s: float
     data: bytes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checkpoint:
+    """The state of a run after an entry of its log: with the entries that follow, all that is needed to go on.
+
+    Parameters
+    ----------
+    seq
+        of the last entry that is in it.
+    data
+        the mission's state, packed by the runner.
+    facts
+        `state`, `speed` and `resumed` of the run.
+    """
+
+    run: int
+    seq: int
+    data: bytes
+    facts: Mapping[str, Any]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -47,6 +47,7 @@ from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
 from muster.state import ExecutionEvent, MissionState, OtherEvent
+from muster.state.mission_state import AT_MOST_ONCE
 from muster.state.quantiles import Quantiles
 from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck
 from muster.state.run_events import IMPROVED, EventRefused, MissionEnded, PlanAdopted, Replanned, Resumed
@@ -76,8 +77,9 @@ class Executor:
         receives all events.
     now
         seconds of the mission's clock at which it begins.
-    state
-        what is known of a mission that goes on after a stop; None: it begins.
+    state, used
+        what is known of a mission that goes on after a stop, None: it begins; and by robot its usage then, where that
+        is known better than from events.
     peers
         the other robots' say, where this is the executor of those alone that have a port: then the mission is not over
         when they have nothing to do.
@@ -108,6 +110,7 @@ class Executor:
         observer: Observer | None = None,
         now: float = 0.0,
         state: MissionState | None = None,
+        used: Mapping[str, float] | None = None,
         peers: Peers | None = None,
         standing: Standing | None = None,
         on_doors: Callable[[Collection[str]], None] = lambda closed: None,
@@ -187,7 +190,7 @@ class Executor:
         if begins:
             self.state.apply(PlanAdopted.of(plan, self.state).at(now))
         else:
-            self._recall()
+            self._recall(used or {})
         for name, hand in self.crew.items():
             hand.route = [] if hand.out else list(self.state.routes.get(name, ()))
         ahead = first_ahead(self._rest(), self._travel, planned if begins else {})
@@ -195,7 +198,10 @@ class Executor:
             self.crew[name].calls = list(one.calls)
         self._dispatch.ahead = {name: one.usage for name, one in ahead.items()}
         self._punctuality.expect(self._forecast, now)
-        self.usage_planned = {robot: ahead[""] for robot, ahead in self._dispatch.ahead.items()}
+        planned_ahead = {name: ahead[""] for name, ahead in self._dispatch.ahead.items() if math.isfinite(ahead[""])}
+        self.usage_planned = {
+            name: hand.known.planned + planned_ahead.get(name, 0.0) for name, hand in self.crew.items()
+        }
         if not begins:
             self._follow_script()  # what was due while nothing ran
         self._observer.on_plan(now, self.plan if not begins else plan)
@@ -381,14 +387,15 @@ class Executor:
     def _capacity(self, state: RobotState) -> float | None:
         return None if "capacity" in self.planned.ignored else state.capacity
 
-    def _recall(self) -> None:
+    def _recall(self, used: Mapping[str, float]) -> None:
         """Robots keep the open tasks of their routes; all of them are planned again from the robots' positions."""
+        at_work = [task for name, task in self.ledger.tasks.items() if self.ledger.at_work(name)]
+        again = tuple(task.id for task in at_work if task.across_partition != AT_MOST_ONCE)
+        self._ask(Resumed(how="from where robots stand", again=again, used=used))
         for robot in self.crew.values():
             robot.recall_known()
         if self.state.doors.known:
             self._changes.close_doors()
-        again = [name for name in self.ledger.starts_s if self.ledger.at_work(name)]
-        self._ask(Resumed(how="from where robots stand", again=tuple(again)))
 
     def _get_on(self) -> None:
         """When no robot gets on, or has a task any more, see what another plan can do."""

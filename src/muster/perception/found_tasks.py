@@ -46,6 +46,10 @@ class FoundTasks:
         """What was found did not become this task after all."""
         self._tasks = {find: name for find, name in self._tasks.items() if name != task}
 
+    def resume(self, find: FoundPoint, task: str) -> None:
+        """Take over the task that a find has become before."""
+        self._tasks[find.tag, find.number] = task
+
     def _place(self, find: FoundPoint) -> tuple[float, ...]:
         x, y = (round(float(value), 4) for value in find.point.position[:2])
         return (x, y) if self._mission.dimensions == 2 else (x, y, self._ground_m)

@@ -7,6 +7,7 @@ points. A point counts as found when it has enough sightings and a small enough 
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,6 +100,15 @@ class PointSearch:
         for find in new:
             self._reported[find.tag, find.number] = find.point
         return tuple(new)
+
+    def resume(self, finds: Iterable[FoundPoint]) -> None:
+        """Take over what was found before; each point counts from then on as one estimate with its covariance."""
+        for find in finds:
+            point, where = find.point, np.atleast_2d(find.point.position)
+            self._finds[find.tag].append(find)
+            self._reported[find.tag, find.number] = point
+            tags, times = np.array([find.tag]), np.array([find.at_s])
+            self._seen[find.tag].append(RawEstimates(where, point.covariance[None], tags, point.robots[:1], times))
 
     def _known(self, tag: int, now: float) -> list[FoundPoint]:
         """The latest estimates of the points with a tag; points that were found before stay found."""

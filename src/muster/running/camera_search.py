@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
@@ -25,7 +25,7 @@ from muster.perception.detection import TagDetector
 from muster.perception.found_tasks import FoundTasks
 from muster.perception.localisation import Uncertainty
 from muster.perception.point_search import FoundCriteria, FoundPoint, PointSearch
-from muster.perception.points_of_interest import remarks
+from muster.perception.points_of_interest import PointOfInterest, remarks
 from muster.simulation import KinematicWorld, Noise, SimulatedWorld
 from muster.simulation.cameras import Cameras, GeometricCameras, Look, true_body
 
@@ -167,6 +167,28 @@ class CameraSearch:
     def refused(self, task: str) -> None:
         """What was found did not become this task after all."""
         self.tasks.refused(task)
+
+    def snapshot(self) -> list[dict[str, Any]]:
+        """Return what was found so far, as plain data for `resume`."""
+        return [
+            {
+                **asdict(self._told(find)),
+                "number": find.number,
+                "position": find.point.position.tolist(),
+                "covariance": find.point.covariance.tolist(),
+            }
+            for find in self.search.finds
+        ]
+
+    def resume(self, snapshot: Iterable[Mapping[str, Any]]) -> None:
+        """Take over what was found before a run was interrupted; what was seen and not found is to be seen again."""
+        for row in snapshot:
+            position, covariance = np.array(row["position"]), np.array(row["covariance"])
+            point = PointOfInterest(position, covariance, row["sightings"], tuple(row["robots"]), row["tag"])
+            find = FoundPoint(row["tag"], row["number"], row["found_s"], point)
+            self.search.resume([find])
+            if row["task"] is not None:
+                self.tasks.resume(find, row["task"])
 
     def close(self) -> None:
         """Give back what cameras hold."""

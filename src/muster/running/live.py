@@ -220,7 +220,7 @@ class Live:
     def tell_places(self) -> None:
         """Tell the recorder where robots say that they are."""
         if self._recorder is not None:
-            _tell_places(self._recorder, self.time_s, self.executor.crew, self._fleet.ports)
+            _tell_places(self._recorder, self.time_s, self.executor.state.robots, self._fleet.ports)
 
     def pause(self) -> None:
         """Robots stop where they are until `resume`; the mission's clock goes on."""
@@ -310,7 +310,7 @@ def _tell_places(recorder: Recorder, now: float, robots: Iterable[str], ports: M
     """A step of a record, by the robots' last telemetry; NaN for robots without any."""
     rows = []
     for robot in robots:
-        said = ports[robot].telemetry()
+        said = ports[robot].telemetry() if robot in ports else None
         rows.append([np.nan] * 7 if said is None else [*said.position, said.heading, *said.velocity])
     states = np.array(rows, dtype=float).reshape(-1, 7)
     recorder.on_step(now, states[:, :3], states[:, 3], states[:, 4:])

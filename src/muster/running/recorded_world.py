@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
@@ -20,8 +21,10 @@ if TYPE_CHECKING:
     from muster.simulation import SimulatedWorld
 
 
-def recorded_world(mission: Mission, request: RunRequest, recorder: Recorder | None) -> SimulatedWorld:
-    """The world of a request for a mission, which tells a recorder where bodies are.
+def recorded_world(
+    mission: Mission, request: RunRequest, recorder: Recorder | None, snapshot: Mapping[str, Any] | None = None
+) -> SimulatedWorld:
+    """The world of a request for a mission, which tells a recorder where bodies are, and goes on from a snapshot.
 
     Raises
     ------
@@ -38,6 +41,9 @@ def recorded_world(mission: Mission, request: RunRequest, recorder: Recorder | N
         value = getattr(request, field)
         if value and value not in (PROFILE, CALM):
             how[field] = _taken(make, field, value, lacks.format(name))
+    if snapshot is not None:
+        _taken(make, "snapshot", "of bodies", f"expected none: the world {name} cannot be resumed")
+        how["snapshot"] = snapshot
     return make(mission, **how)
 
 

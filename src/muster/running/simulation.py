@@ -23,6 +23,7 @@ from muster.execution import (
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.robot_paths import RobotPaths
+from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
@@ -32,7 +33,7 @@ from muster.running.run_request import RunRequest
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
 from muster.simulation import NO_NOISE, SimulatedWorld
-from muster.state import OtherEvent
+from muster.state import MissionState, OtherEvent
 from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
 
@@ -59,6 +60,8 @@ class Simulation:
         receives each look of a camera; cameras are used where the mission has tags.
     on_world
         receives the world when it is made, to read the states of bodies.
+    begun
+        where the run was interrupted, if it was; then robots go on from where they stood.
 
     Raises
     ------
@@ -77,10 +80,13 @@ class Simulation:
         recorder: Recorder | None = None,
         on_look: OnLook | None = None,
         on_world: OnWorld | None = None,
+        begun: Begun | None = None,
         **how: Any,
     ) -> None:
         request = ObservedRun(**how) if request is None else request
-        require_open_ways(mission, plan)
+        if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
+            require_open_ways(mission, plan)
+        there = mission if begun is None else begun.standing(mission)
         require_geometry(mission, "a simulated run")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         travel, seed = travel_of(mission, robot_paths), request.seed
@@ -93,12 +99,12 @@ class Simulation:
             exact=_is_exact(request),
             world=None if robot_paths is None else robot_paths.world,
         )
-        self._world = recorded_world(mission, request, recorder)
+        self._world = recorded_world(there, request, recorder, None if begun is None else begun.snapshot)
         if on_world is not None:
             on_world(self._world)
-        robots = with_state_estimation(self._world, mission, pose=request.pose, localise=request.localise, seed=seed)
+        robots = with_state_estimation(self._world, there, pose=request.pose, localise=request.localise, seed=seed)
         self._estimated = robots if isinstance(robots, EstimatedWorld) else None
-        self._traffic = None if manager is None else RobotsInTraffic(robots, self._world, manager, mission)
+        self._traffic = None if manager is None else RobotsInTraffic(robots, self._world, manager, there)
         self._robots: RobotsInWorld = robots if self._traffic is None else self._traffic
         replan, self._standing = planning_of(mission, request.duty, request.planning, travel, seed)
         self._executor = Executor(
@@ -109,7 +115,9 @@ class Simulation:
             travel=travel,
             replan=replan,
             observer=recorder,
-            now=self._world.time_s,
+            now=self.time_s,
+            state=None if begun is None else begun.state,
+            used={} if begun is None else begun.bodies["used"],
             standing=self._standing,
             on_doors=self._close,
             leader=manager,
@@ -117,16 +125,23 @@ class Simulation:
         if manager is not None:
             manager.expect(self._executor.outlook)
         self._camera_search = camera_search_for(
-            mission, self._world, self._robots.ports, noise=request.noise, seed=seed, on_look=on_look
+            there, self._world, self._robots.ports, noise=request.noise, seed=seed, on_look=on_look
         )
         self._recorder = recorder
-        self._ahead = sorted(mission.events, key=lambda event: event.at_s)
-        self._executor.tick(self.time_s)
+        self._ahead = sorted(there.events, key=lambda event: event.at_s)
+        if begun is not None and self._camera_search is not None:
+            self._camera_search.resume(begun.bodies["found"])
+        self._tick()
 
     @property
     def world(self) -> SimulatedWorld:
         """To look at; who moves it otherwise than by `advance` breaks the mission's clock."""
         return self._world
+
+    @property
+    def state(self) -> MissionState:
+        """What is known of the mission; to look at."""
+        return self._executor.state
 
     @property
     def robots(self) -> RobotsInWorld:
@@ -202,6 +217,14 @@ class Simulation:
     def replan(self) -> None:
         """Plan the rest again at once if events that were reported ask for that, and send robots on."""
         self._tick()
+
+    def snapshot(self) -> dict[str, Any] | None:
+        """Return where bodies are and what cameras have found, as `Begun.bodies`; None if the world does not tell."""
+        if not hasattr(self._world, "snapshot"):
+            return None
+        found = [] if self._camera_search is None else self._camera_search.snapshot()
+        used = {name: state.used for name, state in self._executor.crew.items()}
+        return {**self._world.snapshot(), "found": found, "used": used}
 
     def result(self) -> Report:
         """What it took, so far or in all."""

@@ -93,7 +93,8 @@ class Metrics:
 
 def _of_database(found: Statistics) -> Iterator[Metric]:
     yield _by("muster_jobs", "Jobs by state.", "state", {**dict.fromkeys(get_args(JobState), 0), **found.jobs})
-    yield _by("muster_runs", "Runs by state.", "state", {**dict.fromkeys(get_args(RunState), 0), **found.runs})
+    states = dict.fromkeys((state for state in get_args(RunState) if state != "resuming"), 0)  # which no database has
+    yield _by("muster_runs", "Runs by state.", "state", {**states, **found.runs})
     means = (
         ("muster_job_seconds_mean", "How long the newest 20 jobs took.", found.job_s),
         ("muster_plan_gap_mean", "(objective - bound) / objective of the newest 20 plans made here.", found.gap),

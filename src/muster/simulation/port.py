@@ -148,6 +148,11 @@ class SimulatedPort:
         """Freeze telemetry."""
         self._last_word = self.telemetry()
 
+    @property
+    def muted(self) -> bool:
+        """Whether telemetry is frozen."""
+        return self._last_word is not None
+
     def unmute(self) -> None:
         """Let telemetry change again."""
         self._last_word = self._said = None

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
 
 from muster.mission.model import Robot
 from muster.motion.grid import Floats
@@ -47,6 +48,12 @@ class Contact:
     time_s: float
     robots: tuple[str, str]
     least_distance_m: float
+
+
+def standing(robot: Robot, snapshot: Mapping[str, Any]) -> Robot:
+    """Return a robot that starts where it stood, and heads as it did, in a snapshot of a world; its end stays."""
+    *place, heading = snapshot["robots"][robot.id][:4]
+    return replace(robot, position=tuple(place[: len(robot.position)]), heading_deg=math.degrees(heading))
 
 
 class SimulatedWorld(Protocol):

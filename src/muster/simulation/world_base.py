@@ -9,7 +9,9 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -44,7 +46,7 @@ from muster.simulation.batteries import (
 from muster.simulation.port import Serving, SimulatedPort
 from muster.simulation.station_service import LOOK_S, WorldStations
 from muster.simulation.walls import Slab, faces_and_slabs
-from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed
+from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed, standing
 
 NEIGHBOURS = 10
 FLIGHT_M = 1.5
@@ -105,6 +107,8 @@ class WorldBase(SimulatedWorld, ABC):
         how many times as fast as by usage batteries drain, by id or for `all`.
     observer, observe_s
         called at the beginning and then at each step, or at most this often; costs time.
+    snapshot
+        of the world that this one continues, with the same robots in the same order; see `snapshot`.
 
     Raises
     ------
@@ -134,6 +138,7 @@ class WorldBase(SimulatedWorld, ABC):
         drain: Drains = NO_DRAINS,
         observer: Observer | None = None,
         observe_s: float = 0.0,
+        snapshot: Mapping[str, Any] | None = None,
     ) -> None:
         require_law(law)
         _require(seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
@@ -164,6 +169,9 @@ class WorldBase(SimulatedWorld, ABC):
             odometry_noise=noise.odometry,
             seed=seed,
         )
+        if snapshot is not None:
+            batteries = {**batteries, **snapshot["charges"]}
+            self._crowd.resume(math.ceil(snapshot["time_s"] / dt_s - 1e-6), [])
         require_charges(batteries, [robot.id for robot in mission.all_robots])
         require_drains(drain, [robot.id for robot in mission.all_robots])
         self._batteries, self._drain = batteries, drain
@@ -177,8 +185,12 @@ class WorldBase(SimulatedWorld, ABC):
         self._numbers: dict[str, int] = {}
         self._robots: list[Robot] = []
         self._ports: dict[str, SimulatedPort] = {}
+        self._failed: set[str] = set()
+        self._before: Mapping[str, Any] = snapshot or {"least_m": None, "contacts": (), "distances_m": {}}
         for robot in mission.robots:
-            self.join(robot)
+            self.join(robot if snapshot is None else standing(robot, snapshot))
+        if snapshot is not None:
+            self._resume(snapshot)
         self._observe()
 
     @property
@@ -254,13 +266,42 @@ class WorldBase(SimulatedWorld, ABC):
             self._moving_s[robot.id] = 0.0
             port.battery = Battery(robot.battery.capacity, at_start, self._usage_of(robot), drain)
 
+    def snapshot(self) -> dict[str, Any]:
+        """Return plain data from which a world is made whose bodies stand, move and are charged as they do here.
+
+        Faults of robots, contacts and the clock are in it. What is random begins anew by the seed, and so does what a
+        station has given to a robot that it serves.
+        """
+        poses, motions = np.column_stack([self.positions, self.headings]), self._crowd.motions()
+        batteries = {name: port.battery for name, port in self._ports.items()}
+        return {
+            "time_s": self.time_s,
+            "robots": dict(zip(self._numbers, np.hstack([poses, motions]).tolist(), strict=True)),
+            "distances_m": dict(self.distances_m),
+            "charges": {name: battery.charge for name, battery in batteries.items() if battery is not None},
+            "failed": sorted(self._failed),
+            "muted": [name for name, port in self._ports.items() if port.muted],
+            "least_m": self.min_distance_m,
+            "contacts": [[one.time_s, *one.robots, one.least_distance_m] for one in self.contacts],
+        }
+
+    def _resume(self, snapshot: Mapping[str, Any]) -> None:
+        motions = [snapshot["robots"][robot][4:] for robot in self._numbers]
+        self._crowd.resume(self._crowd.steps, motions)
+        for robot in snapshot["failed"]:
+            self.fail(robot, silent=False)
+        for robot in snapshot["muted"]:
+            self.silence(robot)
+
     def fail(self, robot: str, *, silent: bool = True) -> None:
         self._crowd.fail(self._number(robot))
+        self._failed.add(robot)
         if silent:
             self._ports[robot].mute()
 
     def recover(self, robot: str) -> None:
         self._crowd.recover(self._number(robot))
+        self._failed.discard(robot)
         self._ports[robot].unmute()
         battery = self._ports[robot].battery
         if robot in self._empty and battery is not None:
@@ -350,17 +391,23 @@ class WorldBase(SimulatedWorld, ABC):
 
     @property
     def distances_m(self) -> Mapping[str, float]:
-        return dict(zip(self._numbers, self._crowd.travelled().tolist(), strict=True))
+        before = self._before["distances_m"]
+        return {name: before.get(name, 0.0) + float(self._crowd.travelled()[k]) for name, k in self._numbers.items()}
 
     @property
     def min_distance_m(self) -> float | None:
-        least = self._crowd.least_distance
+        before = self._before["least_m"]
+        least = min(self._crowd.least_distance, math.inf if before is None else before)
         return None if math.isinf(least) else least
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
         ids = list(self._numbers)
-        return tuple(Contact(time, (ids[a], ids[b]), least) for a, b, time, least in self._crowd.contacts())
+        found = {(a, b): Contact(time, (a, b), least) for time, a, b, least in self._before["contacts"]}
+        for a, b, time, least in self._crowd.contacts():
+            one = found.setdefault((ids[a], ids[b]), Contact(time, (ids[a], ids[b]), least))
+            found[one.robots] = replace(one, least_distance_m=min(least, one.least_distance_m))
+        return tuple(found.values())
 
     @property
     def tracking_error_m(self) -> tuple[float, float] | None:

@@ -113,10 +113,14 @@ class EventRefused(ExecutionEvent):
 
 @happens("resumed", words.resumed, mark=words.CHANGE)
 class Resumed(ExecutionEvent):
-    """A run goes on after a stop; work on `again` is begun again."""
+    """A run goes on after a stop; work on `again` is begun again. `used` is by robot its usage, where that is known."""
 
+    written = ("again",)
     how: str = ""
     again: tuple[str, ...] = ()
+    used: Mapping[str, float] = field(default_factory=dict)
 
     def change(self, state: MissionState) -> None:
         state.resume()
+        for robot, used in self.used.items():
+            state.note_used(robot, used)

@@ -10,6 +10,7 @@ def entry(seq, kind, time_s=0.0, **data):
     return {"type": "entry", "seq": seq, "time_s": time_s, "kind": kind, "data": data, "line": ""}
 
 
+TICK = json.dumps({"type": "tick", "bodies": None}, separators=(",", ":"))
 PLAN = entry(1, "plan", plan={"routes": []}, lines={})
 REPORT = {"tasks_done": [], "tasks_lost": [], "mission_time_s": 0.0}
 
@@ -38,6 +39,8 @@ def play(monkeypatch, script):
         async def messages(self):
             async for message in script(self, await self.told.get()):
                 yield json.dumps(message, separators=(",", ":"))
+                if message["type"] == "entry" and message.pop("whole", True):
+                    yield TICK
 
         def dismiss(self):
             self.gone.set()

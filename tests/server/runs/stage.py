@@ -1,14 +1,15 @@
 """A run without processes: what users ask for comes at moments of the mission's clock, what is told is collected."""
 
+from collections import Counter
+from collections.abc import Callable
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
-
-import numpy as np
+from itertools import pairwise
 
 from muster.mission.clock import VirtualClock
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.run_loop import RunLoop
-from muster.server.runs.simulated_run import SimulatedRun
+from muster.server.runs.runner import _known, _world_run
 from muster.server.runs.tracks import unpacked
 
 
@@ -27,18 +28,30 @@ class Kept:
     tracks: list = field(default_factory=list)
     others: list = field(default_factory=list)
     most: int | None = None
+    bodies: dict | None = None
+    checkpoint: dict | None = None
+    tick: list = field(default_factory=list)
     full = False
+    on_tick: Callable = lambda: None
 
     def entry(self, message):
-        if len(self.log) == self.most:
+        if len(self.log) + len(self.tick) == self.most:
             raise Killed
-        self.log.append({key: message[key] for key in ("seq", "time_s", "kind", "data")})
+        self.tick.append({key: message[key] for key in ("seq", "time_s", "kind", "data")})
 
     def stretch(self, from_s, until_s, data):
         self.tracks.append((from_s, until_s, unpacked(data)))
 
     def send(self, message):
-        self.others.append(message)
+        if message["type"] == "tick":  # entries of one that is not ended never were
+            self.log += self.tick
+            self.tick = []
+            self.bodies = message["bodies"]
+            self.on_tick()
+        elif message["type"] == "checkpoint":
+            self.checkpoint = message
+        else:
+            self.others.append(message)
 
     send_if_room = send
 
@@ -66,45 +79,66 @@ def performed(
     asked=(),
     *,
     world="kinematic",
-    log=(),
-    tracked_s=0.0,
+    before=None,
     settings=None,
     ended=lambda: False,
-    until_s=None,
     killed_after=None,
+    paused=False,
+    cancelled=False,
+    on_tick=lambda state: None,
 ):
-    """Carry a plan out to its end, or until it is killed; returns what was told, behind the log that there was."""
-    kept = Kept(most=killed_after)
-    recorder = LogRecorder(mission, kept, log=log, tracked_s=tracked_s)
-    with suppress(Killed), closing(SimulatedRun(mission, plan, world, settings or {}, recorder)) as world_run:
+    """Carry a plan out to its end, or until it is killed, after what is `Kept` of `before`; returns what was told."""
+    kept, before = Kept(most=killed_after), before or Kept()
+    kept.on_tick = lambda: on_tick(recorder.state)
+    begin = {
+        "world": world,
+        "settings": settings or {},
+        "seq": len(before.log),
+        "checkpoint": before.checkpoint and before.checkpoint["data"],
+        "log": before.log[before.checkpoint["seq"] if before.checkpoint else 0 :],
+        "bodies": before.bodies,
+        "until_s": max((one["time_s"] for one in (*before.log, *before.others) if "time_s" in one), default=0.0),
+    }
+    state = _known(begin, mission, plan)
+    tracked_s = before.tracks[-1][1] if before.tracks else 0.0
+    recorder = LogRecorder(mission, kept, state, seq=begin["seq"], tracked_s=tracked_s)
+    with suppress(Killed), closing(_world_run(begin, mission, plan, recorder, None)) as world_run:
         script = Script(world_run, asked)
         how = {"speed": None, "starts_at": mission.starts_at, "ended": ended, "clock": VirtualClock(step_s=1.0)}
-        run_loop = RunLoop(world_run, recorder, script, kept, **how)
-        run_loop.catch_up(log, max([until_s or 0.0, *(entry["time_s"] for entry in log)]) if log else 0.0)
-        run_loop.run()
+        how |= {"paused": paused, "cancelled": cancelled, "checkpoint": len(before.log) - len(begin["log"])}
+        RunLoop(world_run, recorder, script, kept, **how).run()
     return kept
 
 
 def performed_with_crashes(mission, plan, asked, crashes, **how):
-    """The log and the tracks of a run that is killed each time when so many entries are kept, and resumed."""
-    log, tracks = [], []
+    """All that is kept of a run that is killed each time when so many more entries are kept, and resumed."""
+    whole = Kept()
     for crash in [*crashes, None]:
-        more = None if crash is None else max(crash - len(log), 0)
-        tracked_s = tracks[-1][1] if tracks else 0.0
-        kept = performed(mission, plan, asked, log=log, tracked_s=tracked_s, killed_after=more, **how)
-        log, tracks = [*log, *kept.log], [*tracks, *kept.tracks]
-    return log, tracks
+        if whole.log and whole.log[-1]["kind"] == "report":
+            break  # it was over before it could be killed
+        commands = [entry["data"] for entry in whole.log if entry["kind"] == "command"]
+        done = [one["verb"] for one in commands if one["outcome"] == "done" and one["verb"] in ("pause", "resume")]
+        how["paused"] = done[-1:] == ["pause"]
+        kept = performed(mission, plan, asked[len(commands) :], before=whole, killed_after=crash, **how)
+        bodies, checkpoint = kept.bodies or whole.bodies, kept.checkpoint or whole.checkpoint
+        parts = [getattr(whole, name) + getattr(kept, name) for name in ("log", "tracks", "others")]
+        whole = Kept(*parts, bodies=bodies, checkpoint=checkpoint)
+    return whole
 
 
-def require_same(log, tracks, whole):
-    """What is killed and resumed leaves the log and the tracks of what never was."""
-    assert story(log) == story(whole.log)
+def require_whole(kept, mission):
+    """What is killed and resumed has no gap, and accounts for each task once."""
+    log, tracks = kept.log, kept.tracks
     assert [entry["seq"] for entry in log] == list(range(1, len(log) + 1))
-    assert [(a, b) for a, b, _ in tracks] == [(a, b) for a, b, _ in whole.tracks]
-    for one, other in zip(tracks, whole.tracks, strict=True):
-        np.testing.assert_array_equal(one[2].states, other[2].states)
-
-
-def story(log):
-    """A log without what tells of crashes, and without numbers."""
-    return [(entry["time_s"], entry["kind"], entry["data"]) for entry in log if entry["kind"] != "resumed"]
+    assert all(a["time_s"] <= b["time_s"] for a, b in pairwise(log))
+    assert all(a[1] < b[0] for a, b in pairwise(tracks))
+    assert [entry["kind"] for entry in log].count("report") == 1
+    report = log[-1]["data"]
+    tasks = [task.id for task in mission.tasks]
+    tasks += [entry["data"]["task"]["id"] for entry in log if entry["kind"] == "new_task"]
+    told = [*report["tasks_done"], *(lost["task"] for lost in report["tasks_lost"])]
+    assert sorted(told) == sorted(tasks)
+    ended = Counter(entry["data"]["task"] for entry in log if entry["kind"] == "ends")
+    again = {entry["data"]["task"] for entry in log if entry["kind"] == "load_lies"}
+    assert all(count == 1 or task in again for task, count in ended.items())
+    assert set(report["tasks_done"]) <= ended.keys()

@@ -1,6 +1,7 @@
 """What may happen to a run between two moments: crashes, an end, a closing server, a database that refuses."""
 
 import asyncio
+import base64
 import threading
 
 import pytest
@@ -9,8 +10,9 @@ from tests.server.runs.played import PLAN, REPORT, entry, play
 from tests.server.runs.store import ADA, planned, settings_of
 
 import muster
-from muster.exchange.mission_control import ConflictError, Entry, NotFoundError, StoreError
+from muster.exchange.mission_control import Checkpoint, ConflictError, Entry, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
+from muster.server.runs.checkpoints import packed_state, unpacked_state
 from muster.server.services.runs import Runs
 
 
@@ -313,3 +315,157 @@ def test_what_no_pipe_can_carry_is_refused(store, run, monkeypatch):
 
     carried(store, story)
     assert store.actions.list(run=run) == []
+
+
+def packed(run, seq):
+    return {"type": "checkpoint", "seq": seq, "data": base64.b64encode(packed_state({"of": seq})).decode()}
+
+
+async def until(holds):
+    while not holds():
+        await asyncio.sleep(0.01)
+
+
+def test_a_checkpoint_takes_the_place_of_the_entries_before_it(store, run, monkeypatch):
+    begins = []
+
+    async def dies(runner, begin):
+        begins.append(begin)
+        yield {"type": "mission", "mission": {}}
+        if len(begins) == 1:
+            yield PLAN
+            yield {"type": "going"}
+            yield command(2, store.actions.add(ADA, "run.pause", {}, run=run).id)
+            yield packed(run, 2)
+            yield entry(3, "arrives", 4.0, robot="r_0", task="7")
+            yield {"type": "entry", "seq": 4, "time_s": 5.0, "kind": "starts", "data": {}, "line": "", "whole": False}
+            return
+        yield entry(begin["seq"] + 1, "resumed", 4.0, how="")
+        await runner.gone.wait()
+
+    play(monkeypatch, dies)
+
+    async def once_more(runs):
+        await until(lambda: len(begins) == 2 and runs.subscribers(run).seq == 4)
+
+    carried(store, once_more)
+    again, seen = begins[1], [(one["seq"], one["kind"]) for one in begins[1]["log"]]
+    assert (again["seq"], seen, again["paused"]) == (3, [(3, "arrives")], True)  # what a crash cut short never was
+    assert unpacked_state(base64.b64decode(again["checkpoint"])) == {"of": 2}
+    carried(store, lambda runs: until(lambda: len(begins) == 3))  # of another server, from the database
+    last = begins[2]
+    assert (last["seq"], [one["seq"] for one in last["log"]], last["checkpoint"]) == (4, [3, 4], again["checkpoint"])
+    assert last["paused"]
+    assert store.runs.get(run).resumed == sum(one.kind == "resumed" for one in store.log.entries(run)) > 0
+
+
+def test_where_the_last_checkpoint_is_damaged_the_one_before_is_used(store, run, monkeypatch, caplog):
+    logged(store, run, PLAN, entry(2, "arrives"), entry(3, "starts"))
+    facts = {"state": "running", "speed": None, "resumed": 0}
+    whole = packed_state({"of": 1})
+    for seq, data in ((1, whole), (3, whole[:-3])):
+        store.log.add_checkpoint(Checkpoint(run=run, seq=seq, data=data, facts=facts))
+    begins = []
+
+    async def begin_only(runner, begin):
+        begins.append(begin)
+        yield {"type": "mission", "mission": {}}
+        await runner.gone.wait()
+
+    play(monkeypatch, begin_only)
+    carried(store, lambda runs: until(lambda: begins))
+    assert [one["seq"] for one in begins[0]["log"]] == [2, 3]
+    assert "its checkpoint of entry 3 is damaged" in caplog.text
+
+
+def test_while_the_database_is_away_the_newest_checkpoint_waits_alone(store, run, monkeypatch):
+    monkeypatch.setattr("muster.server.runs.log_writer.AGAIN_S", 0.05)
+    begins, add, written = [], store.log.add_checkpoint, []
+
+    async def goes_on(runner, begin):
+        begins.append(begin)
+        yield {"type": "mission", "mission": {}}
+        if len(begins) == 1:
+            for seq in range(1, 40):
+                yield PLAN if seq == 1 else entry(seq, "arrives", seq / 10)
+                if seq % 10 == 0:
+                    yield packed(run, seq)
+            return
+        await runner.gone.wait()
+
+    def kept(checkpoint):
+        written.append(checkpoint.seq)
+        add(checkpoint)
+
+    monkeypatch.setattr(store.log, "add_checkpoint", kept)
+    play(monkeypatch, goes_on)
+
+    async def story(runs):
+        refused(store, store.log, "append", 10)
+        await until(lambda: len(begins) == 2)
+        await until(lambda: not runs.troubles and store.log.checkpoints(run))
+
+    carried(store, story)
+    assert [one["seq"] for one in begins[1]["log"]] == list(range(31, 40))
+    assert written == [30]
+
+
+def test_a_run_that_goes_on_is_resuming_and_what_it_is_asked_waits_in_order(store, run, monkeypatch):
+    logged(store, run, PLAN, entry(2, "arrives"))
+    store.runs.set(run, state="running")
+    going = asyncio.Event()
+
+    async def slow(runner, begin):
+        yield {"type": "mission", "mission": {}}
+        yield {"type": "resuming", "share": 0.6}
+        await going.wait()
+        yield {"type": "going"}
+        for seq in (3, 4):
+            asked = await runner.told.get()
+            yield command(seq, asked["id"], asked["verb"], **asked["data"])
+        await runner.gone.wait()
+
+    play(monkeypatch, slow)
+
+    async def story(runs):
+        while (await runs.get(run)).share != 0.6:
+            await asyncio.sleep(0.01)
+        seen = await runs.get(run)
+        assert (seen.state, [one.state for one in runs.present()]) == ("resuming", ["resuming"])
+        assert '"state":"resuming"' in runs.subscribers(run).newest("run")
+        orders = [{"new_task": {"id": name, "position": [0, 0]}} for name in ("a", "b")]
+        asked = [await runs.act(ADA, run, "orders", {"orders": [one]}) for one in orders]
+        assert (await runs.get(run)).state == "resuming"
+        going.set()
+        await until(lambda: runs.subscribers(run).seq == 4)
+        now = await runs.get(run)
+        assert (now.state, now.share) == ("running", None)
+        return asked
+
+    asked = carried(store, story)
+    commands = [one.data["action"] for one in store.log.entries(run) if one.kind == "command"]
+    assert commands == [action.id for action in asked]
+
+
+def test_what_a_run_was_asked_that_cannot_go_on_is_refused_with_the_reason(store, run, monkeypatch):
+    logged(store, run, PLAN)
+    asking = asyncio.Event()
+
+    async def fails(runner, begin):
+        yield {"type": "mission", "mission": {}}
+        asking.set()
+        await runner.told.get()
+        yield {"type": "failed", "reason": "world odd: it cannot be resumed"}
+
+    play(monkeypatch, fails)
+
+    async def story(runs):
+        await asking.wait()
+        assert (await runs.get(run)).state == "resuming"
+        await runs.act(ADA, run, "pause")
+        await gone(runs, run)
+
+    carried(store, story)
+    found = store.runs.get(run)
+    assert (found.state, found.remark) == ("failed", "world odd: it cannot be resumed")
+    assert [action.outcome for action in store.actions.list(run=run)] == ["the run was over before"]

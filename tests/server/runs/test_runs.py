@@ -75,7 +75,14 @@ def test_a_run_is_told_to_watchers_as_it_is_logged_and_becomes_a_record(store):
         kept = store.log.entries(run)
         assert [(e["seq"], e["kind"], e["data"]) for e in entries] == [(e.seq, e.kind, e.data) for e in kept]
         assert {message["type"] for message in messages} == {"hello", "entry", "states", "status", "run"}
-    assert messages[-1] == {"type": "run", "state": "ended", "speed": None, "time_s": kept[-1].time_s, "remark": ""}
+    assert messages[-1] == {
+        "type": "run",
+        "state": "ended",
+        "speed": None,
+        "time_s": kept[-1].time_s,
+        "remark": "",
+        "share": None,
+    }
     found = store.runs.get(run)
     assert (found.state, found.report) == ("ended", kept[-1].data)
     assert {row["task"] for row in flown["tasks"]} == {task.id for task in mission.tasks}
@@ -272,11 +279,13 @@ def test_what_the_database_took_late_is_not_done_again_after_a_crash(store):
     late = store.actions.add(ADA, "run.pause", {}, run)
     store.actions.keep([late])  # once is enough
     data = {"action": -late.id, "verb": "pause", "data": {}, "who": "ada", "outcome": "done"}
-    kept = performed(muster.load("31T-6R50"), plan_from(plan.plan, "plan"), ((0.0, "pause", {}), (9e9, "resume", {})))
+    asked = ((0.0, "pause", {}), (9e9, "resume", {}))
+    job = muster.load("31T-6R50"), plan_from(plan.plan, "plan"), asked
+    pause, resume = (k for k, one in enumerate(performed(*job).log) if one["kind"] == "command")
+    kept = performed(*job, killed_after=resume)
     log = [Entry(run=run, **one) for one in kept.log]
-    commands = [k for k, one in enumerate(log) if one.kind == "command"]
-    log[commands[0]] = replace(log[commands[0]], data=data)
-    store.log.append(run, 0.0, log[: commands[1]])
+    log[pause] = replace(log[pause], data=data)
+    store.log.append(run, 0.0, log, bodies=kept.bodies)
 
     async def story():
         async with opened(store) as runs:

@@ -96,13 +96,17 @@ class Publisher(ABC):
     def on_plan(self, now: float, plan: Plan) -> None:
         """Publish a plan, with the bids that led to it where they are known, and the routes as lines."""
         lines = self._routes.of(plan, self._mission_state, self._places)
-        self._write("/muster/plan", now, {"time_s": now, "plan": plan.as_dict(), "lines": lines})
+        self._write("/muster/plan", now, {"time_s": now, **self._plan_data(plan, lines)})
         for award in plan.book.awards if plan.book is not None else ():
             self._write("/muster/bid", now, {"time_s": now, **award.as_dict()})
         order = list(self._mission_state.robots)
         routes = [scene.route_entity(now, robot, order.index(robot), line) for robot, line in lines.items()]
         self._write("/scene", now, scene.update(routes))
         self._flush()
+
+    def _plan_data(self, plan: Plan, lines: Mapping[str, Sequence[Point]]) -> Mapping[str, Any]:
+        """Return what is published of a plan: all of it, for viewers that come late."""
+        return {"plan": plan.as_dict(), "lines": lines}
 
     def on_report(self, report: Mapping[str, Any]) -> None:
         """Publish the report at the mission's end."""

@@ -56,9 +56,8 @@ class RouteLines:
         if leg not in self._found:
             if len(self._found) >= _MOST_LEGS:
                 self._found.clear()
-            self._found[leg] = tuple(
-                tuple(point) for point in self._path(mission_state.robots[name].robot, start, goal)
-            )[1:]
+            robot = mission_state.robots[name].robot
+            self._found[leg] = tuple(tuple(point) for point in self._path(robot, start, goal))[1:]
         return self._found[leg]
 
     def _flat(self, place: Point) -> Point:
@@ -66,15 +65,21 @@ class RouteLines:
         return tuple(float(value) for value in (*place, 0.0)[: self._dimensions])
 
 
+def names_ahead(names: Sequence[str], mission_state: MissionState) -> list[str]:
+    """Return the stops of a route that are ahead: tasks that are not over, and stations after the last that is."""
+    stations = {station.id for station in mission_state.mission.stations}
+    over = {k for k, name in enumerate(names) if name not in stations and is_over(name, mission_state)}
+    last = max(over, default=-1)
+    return [name for k, name in enumerate(names) if (k > last if name in stations else k not in over)]
+
+
 def _left(names: Sequence[str], mission_state: MissionState, robot: Robot, here: Point) -> Iterator[Sequence[Point]]:
-    """The points of each stop that is still ahead of a robot: stations after the last task that is over, too."""
+    """The points of each stop that is still ahead of a robot."""
     stations = {station.id: station.position for station in mission_state.mission.stations}
-    over = [k for k, name in enumerate(names) if name not in stations and _is_over(name, mission_state)]
-    for k, name in enumerate(names):
+    for name in names_ahead(names, mission_state):
         if name in stations:
-            if k > max(over, default=-1):
-                yield (stations[name],)
-        elif k not in over:
+            yield (stations[name],)
+        else:
             task = mission_state.tasks[name]
             yield _lanes_left(mission_state, task, robot, here) if has_area(task) else _passed(task)
 
@@ -101,5 +106,6 @@ def _gap(place: Point, start: Point, end: Point) -> float:
     return math.dist(place, [a + share * value for a, value in zip(start, along, strict=True)])
 
 
-def _is_over(task: str, mission_state: MissionState) -> bool:
+def is_over(task: str, mission_state: MissionState) -> bool:
+    """Return whether a task is done, lost or cancelled."""
     return task not in mission_state.tasks or mission_state.stage(task) in _OVER

@@ -6,6 +6,8 @@ what Muster writes is here: a viewer knows a schema by its name.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 Schema = dict[str, Any]
@@ -16,8 +18,8 @@ _FLAG: Schema = {"type": "boolean"}
 _COUNT: Schema = {"type": "integer", "minimum": 0}
 
 
-def _record(title: str, **fields: Schema) -> Schema:
-    return {"title": title, "type": "object", "properties": fields, "required": list(fields)}
+def _record(title: str, *, maybe: Mapping[str, Schema] = MappingProxyType({}), **fields: Schema) -> Schema:
+    return {"title": title, "type": "object", "properties": {**fields, **maybe}, "required": list(fields)}
 
 
 def _many(item: Schema) -> Schema:
@@ -132,7 +134,12 @@ SCHEMAS: dict[str, Schema] = {
         ),
         _record("muster.State", time_s=_NUMBER, robots={"type": "object", "additionalProperties": _STATE}),
         _record("muster.Event", time_s=_NUMBER, kind=_TEXT, data={"type": "object"}),
-        _record("muster.Plan", time_s=_NUMBER, plan={"type": "object"}, lines=_LINES),
+        _record(
+            "muster.Plan",
+            time_s=_NUMBER,
+            lines=_LINES,
+            maybe={key: {"type": "object"} for key in ("plan", "routes", "stops", "left_out")},
+        ),
         _record(
             "muster.Bid", time_s=_NUMBER, round=_COUNT, task=_TEXT, robot=_TEXT, price=_NUMBER, bids={"type": "object"}
         ),

@@ -7,7 +7,7 @@ and `read_record` reads them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
@@ -18,9 +18,11 @@ import numpy.typing as npt
 
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MissingExtraError
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Point
+from muster.mission.plan import Plan
 from muster.mission.yaml_writer import yaml_text
 from muster.report.record import json_messages
+from muster.report.record.plan_changes import PlanChanges
 from muster.report.record.publisher import Publisher
 from muster.report.record.schemas import MISSION_FILE, SCHEMAS, TOPICS
 
@@ -62,6 +64,7 @@ class RecordWriter(Publisher):
         clock: Clock | None = None,
     ) -> None:
         super().__init__(mission, rate_hz)
+        self._plan_changes = PlanChanges()
         require_mcap()
         self._clock: Clock = clock or SystemClock()
         self._flush_s, self._flushed = flush_s, self._clock.now()
@@ -88,6 +91,9 @@ class RecordWriter(Publisher):
         if not self._file.closed:
             with self._named_errors(), self._file:
                 self._writer.finish()
+
+    def _plan_data(self, plan: Plan, lines: Mapping[str, Sequence[Point]]) -> Mapping[str, Any]:
+        return self._plan_changes.of(plan, lines, self._mission_state)
 
     def _write_mission(self, mission: Mission) -> None:
         self._writer.add_metadata("muster", {"schema": mission.schema, "mission": mission.name})

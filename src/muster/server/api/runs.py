@@ -144,5 +144,5 @@ async def _past(runs: Runs, run: int, after: int) -> AsyncIterator[str]:
             said = {"seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": entry.data}
             yield message("entry", said | words_of(entry.kind, entry.data))
         after = entries[-1].seq
-    ended = {"state": found.state, "speed": found.speed, "time_s": found.time_s, "remark": found.remark}
+    ended = {key: getattr(found, key) for key in ("state", "speed", "time_s", "remark", "share")}
     yield message("run", ended)

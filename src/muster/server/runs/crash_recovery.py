@@ -1,4 +1,4 @@
-"""Recovers a run of real robots from its log after a crash."""
+"""Recovers what was known in a run after a crash: from its last checkpoint, and the entries of its log after it."""
 
 from __future__ import annotations
 
@@ -7,13 +7,15 @@ from typing import Any
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.state import MissionState, event_of
+from muster.state import MissionState, event_of, restored
 
 _OF_THE_RUN = ("report", "command")
 """Entries that are no events of the mission."""
 
 
-def recovered_from(mission: Mission, plan: Plan, log: Iterable[Mapping[str, Any]]) -> MissionState:
+def recovered_from(
+    mission: Mission, plan: Plan, log: Iterable[Mapping[str, Any]], checkpoint: Mapping[str, Any] | None = None
+) -> MissionState:
     """Recover what was known of a mission.
 
     Parameters
@@ -23,14 +25,16 @@ def recovered_from(mission: Mission, plan: Plan, log: Iterable[Mapping[str, Any]
     plan : Plan
         The plan at the beginning, with the rules that do not hold.
     log : iterable of mappings
-        The entries of the log, with `time_s`, `kind` and `data`.
+        The entries of the log, with `time_s`, `kind` and `data`; those after the checkpoint, if there is one.
+    checkpoint : mapping or None
+        What `checkpoint_of` returned.
 
     Returns
     -------
     MissionState
         What was known after the last entry.
     """
-    state = MissionState(mission, plan.ignored)
+    state = MissionState(mission, plan.ignored) if checkpoint is None else restored(mission, checkpoint)
     for entry in log:
         if entry["kind"] not in _OF_THE_RUN:
             state.apply(event_of(float(entry["time_s"]), entry["kind"], entry["data"]))

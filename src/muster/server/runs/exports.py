@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 from xml.etree import ElementTree as Tree
@@ -23,24 +23,26 @@ from muster.exchange.geojson import one_or_many
 from muster.exchange.xml_text import add, decimal, text_of
 from muster.report.record import Recording
 
-Log = Sequence[Mapping[str, Any]]
+Log = Iterable[Mapping[str, Any]]
 
 
 def csv_files(recording: Recording, _: Log) -> dict[str, str]:
     """`tracks.csv` with a line a robot and step, `events.csv` with a line an event."""
+    events = [(event.time_s, cell(event.kind), cell(event.line)) for event in recording.events]
+    return {
+        "tracks.csv": _csv(("time_s", "robot", "x", "y", "z", "heading_rad", "speed_mps"), _track_rows(recording)),
+        "events.csv": _csv(("time_s", "kind", "what"), events),
+    }
+
+
+def _track_rows(recording: Recording) -> Iterator[Sequence[Any]]:
     tracks = recording.tracks
-    rows = []
     for i, now in enumerate(tracks.times_s.tolist()):
         for k, robot in enumerate(tracks.robots):
             place = tracks.positions[i, k]
             if np.isfinite(place).all():
                 speed = float(np.linalg.norm(tracks.velocities[i, k]))
-                rows.append((now, cell(robot), *place.tolist(), float(tracks.headings[i, k]), round(speed, 4)))
-    events = [(event.time_s, cell(event.kind), cell(event.line)) for event in recording.events]
-    return {
-        "tracks.csv": _csv(("time_s", "robot", "x", "y", "z", "heading_rad", "speed_mps"), rows),
-        "events.csv": _csv(("time_s", "kind", "what"), events),
-    }
+                yield now, cell(robot), *place.tolist(), float(tracks.headings[i, k]), round(speed, 4)
 
 
 def geojson_file(recording: Recording, _: Log) -> dict[str, str]:
@@ -132,7 +134,7 @@ def _below_180(lon: float) -> float:
     return -180.0 if lon >= 180 else lon
 
 
-def _csv(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
+def _csv(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(heads)

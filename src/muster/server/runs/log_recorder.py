@@ -1,34 +1,23 @@
-"""The recorder of a run: writes events as log entries, and positions as tracks.
-
-A run that is simulated again after a crash produces the same events again. They are compared with the log and not
-written twice.
-"""
+"""The recorder of a run: writes events as log entries, and positions as tracks."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections import deque
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 
-from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.report.record.json_messages import json_bytes
+from muster.report.record.plan_changes import PlanChanges
 from muster.report.record.routes import RouteLines
 from muster.server.runs.tracks import Floats, Row, Steps, Track, packed
-from muster.state import MissionState, event_of
+from muster.state import MissionState
 from muster.state.words import words_of
-
-RESUMED = "resumed"
-
-
-class DivergedError(MusterError):
-    """The repeated simulation differs from the log."""
 
 
 class Out(Protocol):
@@ -47,65 +36,47 @@ class LogRecorder:
         the mission of the run.
     out
         receives new entries and stretches.
-    log
-        the entries that the log has already: `seq`, `time_s`, `kind`, `data`.
+    state
+        what is known of the mission, to look at; once there is an executor its state takes the place of this one.
+    seq
+        the last entry of the log.
     tracked_s
         the time up to which tracks are written already.
     stretch_s
         seconds of mission time per stretch.
-    again
-        whether the entries of the log are produced again and compared; otherwise new entries follow them.
     """
 
     def __init__(
         self,
         mission: Mission,
         out: Out,
+        state: MissionState,
         *,
-        log: Iterable[Mapping[str, Any]] = (),
+        seq: int = 0,
         tracked_s: float = 0.0,
         stretch_s: float = 5.0,
-        again: bool = True,
     ) -> None:
-        entries = list(log)
-        self._out = out
-        self._mission_state = MissionState(mission)
-        self._routes = RouteLines(mission)
-        self._said = deque(entries if again else ())
-        self._seq = 0 if again or not entries else int(entries[-1]["seq"])
+        self._out, self.state, self.seq = out, state, seq
+        self._routes, self._plan_changes = RouteLines(mission), PlanChanges(whole=seq == 0)
         self._track = Track(stretch_s)
-        self._tracked_s = tracked_s
+        self.tracked_s = tracked_s if seq else -1.0
         self._held: list[Callable[[], None]] | None = None
-        self._now = float(entries[-1]["time_s"]) if entries and not again else 0.0
+        self._now = max(0.0, state.now_s)
         self.rows: dict[str, Row] = {}
         self.rows_s = 0.0
-        for entry in entries if not again else ():
-            if entry["kind"] not in (RESUMED, "plan", "command", "report"):
-                self._mission_state.apply(event_of(entry["time_s"], entry["kind"], entry["data"]))
-
-    def keep_robots(self, robots: Collection[str]) -> None:
-        """Forget all other robots: those that joined before a crash and cannot be reached join again."""
-        known = self._mission_state.robots
-        self._mission_state.robots = {name: known[name] for name in robots}
-
-    @property
-    def catching_up(self) -> bool:
-        """Whether the log still has entries that were not produced again."""
-        self._skip_resumed()
-        return bool(self._said)
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         """See `Recorder`."""
         states = np.column_stack([positions, headings, velocities])
-        rows = zip(self._mission_state.robots, states.tolist(), strict=True)
+        rows = zip(self.state.robots, states.tolist(), strict=True)
         self.rows = {name: row for name, row in rows if all(map(math.isfinite, row))}
         self.rows_s = float(now)
         self._now = max(self._now, self.rows_s)
-        self._keep(self._track.add(self.rows_s, self.rows))
+        if self.rows_s > self.tracked_s + 1e-6:
+            self._keep(self._track.add(self.rows_s, self.rows))
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         """See `Recorder`."""
-        self._mission_state.apply(event_of(now, kind, data))
         self.write(now, kind, data)
 
     def on_telemetry(self, now: float, robot: str, telemetry: object) -> None:
@@ -114,9 +85,10 @@ class LogRecorder:
     def on_plan(self, now: float, plan: Plan) -> None:
         """See `Recorder`; the entry also has the routes as lines from the robots' positions."""
         places = {name: tuple(row[:3]) for name, row in self.rows.items()}
-        lines = self._routes.of(plan, self._mission_state, places)
-        stations = [station.id for station in self._mission_state.mission.stations]
-        self.write(now, "plan", {"plan": plan.as_dict(), "lines": lines, "stations": stations})
+        data = self._plan_changes.of(plan, self._routes.of(plan, self.state, places), self.state)
+        if "plan" in data:
+            data["stations"] = [station.id for station in self.state.mission.stations]
+        self.write(now, "plan", data)
 
     def on_report(self, report: Mapping[str, Any]) -> None:
         """See `Recorder`."""
@@ -135,39 +107,15 @@ class LogRecorder:
             write()
 
     def write(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        """Write the next entry of the log.
-
-        Raises
-        ------
-        DivergedError
-            if the log has another in its place.
-        """
+        """Write the next entry of the log."""
         if self._held is not None:
             self._held.append(partial(self.write, now, kind, data))
             return
-        if kind != RESUMED:
-            self._skip_resumed()
-        self._seq += 1
+        self.seq += 1
         self._now = max(self._now, float(now))
         plain = json.loads(json_bytes(data))
-        entry = {"seq": self._seq, "time_s": round(self._now, 9), "kind": kind, "data": plain}
-        if self._said:
-            self._compare(entry, self._said.popleft())
-        else:
-            self._out.entry({"type": "entry", **entry, **words_of(kind, plain)})
-
-    def _skip_resumed(self) -> None:
-        """Skip entries of earlier resumes, which are not produced again."""
-        while self._said and self._said[0]["kind"] == RESUMED:
-            self._said.popleft()
-            self._seq += 1
-
-    def _compare(self, made: Mapping[str, Any], said: Mapping[str, Any]) -> None:
-        for key in ("seq", "kind", "time_s", "data"):
-            if made[key] != said[key]:
-                was, now = (f"{one['kind']} at {one['time_s']:g} s" for one in (said, made))
-                where = f" ({key} differs)" if was == now else f", not {now}"
-                raise DivergedError(f"simulated again, entry {said['seq']} of the log should be {was}{where}")
+        entry = {"time_s": round(self._now, 9), "kind": kind, "data": plain}
+        self._out.entry({"type": "entry", "seq": self.seq, **entry, **words_of(kind, plain)})
 
     def _keep(self, steps: Steps | None) -> None:
         if steps is None:
@@ -175,6 +123,5 @@ class LogRecorder:
         if self._held is not None:
             self._held.append(partial(self._keep, steps))
             return
-        first, last = float(steps.times_s[0]), float(steps.times_s[-1])
-        if last > self._tracked_s + 1e-6:
-            self._out.stretch(first, last, packed(steps))
+        self.tracked_s = float(steps.times_s[-1])
+        self._out.stretch(float(steps.times_s[0]), self.tracked_s, packed(steps))

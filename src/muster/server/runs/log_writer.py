@@ -9,12 +9,12 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import Action, ConflictError, Entry, Stretch
+from muster.exchange.mission_control import Action, Checkpoint, ConflictError, Entry, Stretch
 from muster.mission.errors import MusterError
 
 if TYPE_CHECKING:
@@ -68,8 +68,11 @@ class LogWriter:
         self._on_trouble, self._on_lost = on_trouble, on_lost
         self._entries: list[Entry] = []
         self._stretches: list[Stretch] = []
+        self.bodies: Mapping[str, Any] | None = None
+        """Where bodies are, after an entry `seq`: written once that entry is, and with it."""
         self._fields: dict[str, Any] = {}
         self._actions: dict[int, Action] = {}
+        self._checkpoint: Checkpoint | None = None
         self._given = self._saved = 0
         self._last_stretch: int | None = None
         self._dropped = 0
@@ -96,6 +99,11 @@ class LogWriter:
     def set(self, **fields: Any) -> None:
         """Set fields of the run."""
         self._fields |= fields
+        self._ask()
+
+    def keep_checkpoint(self, checkpoint: Checkpoint) -> None:
+        """Write a checkpoint, after all entries and actions that were added so far; of several that wait the newest."""
+        self._checkpoint = checkpoint
         self._ask()
 
     def keep(self, action: Action) -> None:
@@ -161,7 +169,7 @@ class LogWriter:
             self._wake.clear()
             begun = time.monotonic()
             works = await self._write()
-            if works and not (self._entries or self._stretches or self._fields or self._actions):
+            if works and not (self._entries or self._stretches or self._fields or self._actions or self._checkpoint):
                 self._drained.set()
                 if not self._lost:
                     self._journal.release(self._run)
@@ -179,22 +187,15 @@ class LogWriter:
         if self._lost:
             self._forget()
             return True
-        entries, stretches = self._entries[:_AT_ONCE], self._stretches[:_AT_ONCE]
-        fields, actions = dict(self._fields), list(self._actions.values())
+        entries, stretches = self._batch(), self._stretches[:_AT_ONCE]
+        fields, actions, checkpoint = dict(self._fields), list(self._actions.values()), self._checkpoint
         whole = len(entries) == len(self._entries)
         trouble = ""
         try:
             if entries or stretches:
                 await self._append_patiently(entries, stretches)
-            if actions and whole:
-                await self._patiently(self._store.actions.keep, actions)
-                for one in actions:
-                    if self._actions[one.id] is one:  # no outcome came meanwhile
-                        del self._actions[one.id]
-                self._on_actions(actions)
-            if fields and whole:
-                await self._patiently(partial(self._store.runs.set, self._run, **fields))
-                self._fields = {key: value for key, value in self._fields.items() if fields.get(key, self) != value}
+            if whole:
+                await self._write_rest(actions, checkpoint, fields)
         except ConflictError as error:  # another try would fail too
             self._lost = True
             self._forget()
@@ -213,6 +214,30 @@ class LogWriter:
         if self._entries or self._stretches:
             self._wake.set()
         return not trouble
+
+    async def _write_rest(
+        self, actions: Sequence[Action], checkpoint: Checkpoint | None, fields: Mapping[str, Any]
+    ) -> None:
+        """Write what comes after entries: actions, then a checkpoint, then fields of the run."""
+        if actions:
+            await self._patiently(self._store.actions.keep, actions)
+            for one in actions:
+                if self._actions[one.id] is one:  # no outcome came meanwhile
+                    del self._actions[one.id]
+            self._on_actions(actions)
+        if checkpoint is not None:
+            await self._patiently(self._store.log.add_checkpoint, checkpoint)
+            self._checkpoint = None if self._checkpoint is checkpoint else self._checkpoint
+        if fields:
+            await self._patiently(partial(self._store.runs.set, self._run, **fields))
+            self._fields = {key: value for key, value in self._fields.items() if fields.get(key, self) != value}
+
+    def _batch(self) -> list[Entry]:
+        """The first entries that wait, cut where the mission's time changes: what happens at once is kept as one."""
+        count = _AT_ONCE
+        while count < len(self._entries) and self._entries[count].time_s == self._entries[count - 1].time_s:
+            count += 1
+        return self._entries[:count]
 
     async def _append_patiently(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
         """Write the first entries and stretches, which are not dropped meanwhile."""
@@ -280,7 +305,9 @@ class LogWriter:
             self._last_stretch = self._store.log.last_stretch(self._run)
         numbered = [replace(one, seq=self._last_stretch + k) for k, one in enumerate(stretches, start=1)]
         time_s = max([*(one.time_s for one in entries), *(one.until_s for one in stretches)])
-        self._store.log.append(self._run, time_s, entries, numbered)
+        bodies, last = self.bodies, entries[-1].seq if entries else self._given
+        bodies = None if bodies is None or bodies["seq"] > last else bodies
+        self._store.log.append(self._run, time_s, entries, numbered, bodies)
         self._last_stretch += len(numbered)
 
     def _give(self, entries: Sequence[Entry]) -> None:

@@ -2,34 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 from muster.bridges.final_state import final_states_of
 from muster.bridges.fleet import Fleet
-from muster.execution import Recorder, Report, Status, broken_off
+from muster.execution import Recorder, Report, broken_off
 from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.running.live import Live, elsewhere, with_reported_starts
 from muster.running.run_request import OPEN_FLEET, RunRequest
-from muster.server.runs.crash_recovery import recovered_from
+from muster.state import MissionState
 from muster.state.robot_events import Elsewhere, FinalStates
 
 LOOK_S = 0.1
 """Seconds between two looks at the robots, where nothing is heard before."""
 
 
-class RealRun:
-    """See `run_loop.WorldRun`.
+class RealRun(Live):
+    """A run that `RunLoop` carries to its end.
 
     Parameters
     ----------
     request
         how the plan is carried out; by default as `RunRequest` says. A run that resumes keeps its start.
-    log
-        the log before a crash; empty for a new run.
+    state
+        what is known of a run that goes on after a crash.
     wall
         the wall clock; see `Live`.
     at_end
@@ -46,96 +45,78 @@ class RealRun:
         recorder: Recorder,
         *,
         request: RunRequest | None = None,
-        log: Sequence[Mapping[str, Any]] = (),
+        state: MissionState | None = None,
         wall: Clock | None = None,
         at_end: Callable[[], None] = lambda: None,
     ) -> None:
-        self._fleet, self._recorder, self._at_end = fleet, recorder, at_end
-        self._paused = False
-        state = recovered_from(mission, plan, log) if log else None
-        there = mission if log else with_reported_starts(mission, fleet)
-        self._live = Live(
-            there,
-            plan,
-            fleet,
-            replace(request or RunRequest(world=OPEN_FLEET), ignore=plan.ignored),
-            recorder=recorder,
-            state=state,
-            wall=wall,
-        )
-        for line in () if log else elsewhere(mission, there):
-            self._live.executor.emit(Elsewhere(what=line))
+        there = with_reported_starts(mission, fleet) if state is None else mission
+        request = replace(request or RunRequest(world=OPEN_FLEET), ignore=plan.ignored)
+        super().__init__(there, plan, fleet, request, recorder=recorder, state=state, wall=wall)
+        self._at_end, self._paused, self._told = at_end, False, recorder
+        for line in elsewhere(mission, there) if state is None else ():
+            self.executor.emit(Elsewhere(what=line))
+
+    @property
+    def state(self) -> MissionState:
+        """What is known of the mission; to look at."""
+        return self.executor.state
 
     @property
     def starts_at(self) -> str | None:
-        """See `run_loop.WorldRun`."""
-        return self._live.start.mission.starts_at
-
-    @property
-    def robots(self) -> Collection[str]:
-        """Ids of the robots that take part, or did, in the order of their rows in records."""
-        return self._live.executor.crew.keys()
-
-    @property
-    def time_s(self) -> float:
-        return self._live.time_s
+        """The start of the mission as its file has it, moved to when it began."""
+        return self.start.mission.starts_at
 
     @property
     def next_s(self) -> float:
         return self.time_s
 
-    @property
-    def done(self) -> bool:
-        return self._live.done
-
-    @property
-    def status(self) -> Status:
-        return self._live.status
-
     def go_on(self) -> None:
         """Receive telemetry for a while, and send robots on unless the run is paused."""
-        self._live.hear(self.time_s + LOOK_S)
+        self.hear(self.time_s + LOOK_S)
         if self._paused:
-            self._live.tell_places()
+            self.tell_places()
             return
-        self._live.look()
+        self.look()
         if self.done:
-            self._fleet.stop()
+            self.stop()
             self._at_end()
             self._tell_final_states()
-            self._recorder.on_report(self._live.result().as_dict())
+            self._told.on_report(self.result().as_dict())
 
     def report(self, event: Event) -> None:
-        self._live.executor.come_to(self.time_s)
-        self._live.executor.report(event)
+        self.executor.come_to(self.time_s)
+        self.executor.report(event)
 
     def replan(self) -> None:
         """Nothing: the rest is planned again at the next look at the robots."""
 
     def break_off(self, reason: str) -> Report:
-        self._fleet.stop()
+        self.stop()
         self._tell_final_states()
-        report = broken_off(self._live.result(), self._live.executor.account, reason)
-        self._recorder.on_report(report.as_dict())
+        report = broken_off(self.result(), self.executor.account, reason)
+        self._told.on_report(report.as_dict())
         return report
 
     def _tell_final_states(self) -> None:
         """Log where each robot is at the end, what it does, and whether it still flies, drives or is armed."""
-        states = final_states_of(self._fleet, self._live.start.mission)
+        states = final_states_of(self._robots, self.start.mission)
         robots = [{"robot": one.robot, "moving": one.moving, "words": str(one)} for one in states]
-        self._live.executor.emit(FinalStates(robots=tuple(robots)))
+        self.executor.emit(FinalStates(robots=tuple(robots)))
 
     def pause(self) -> None:
-        self._live.pause()
+        super().pause()
         self._paused = True
 
     def resume(self) -> None:
-        self._live.resume()
+        super().resume()
         self._paused = False
+
+    def snapshot(self) -> None:
+        """Nothing: robots say themselves where they are."""
 
     def close(self) -> None:
         """Stop the robots, whatever ended the run."""
         try:
-            self._fleet.stop()
+            self.stop()
         finally:
-            self._fleet.close()
+            self._robots.close()

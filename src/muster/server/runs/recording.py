@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import base64
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,11 +15,13 @@ from typing import Any
 import numpy as np
 
 from muster.mission.model import Mission
-from muster.mission.plan_reader import plan_from
+from muster.report.page.data import MOST_SAMPLES
 from muster.report.page.page import page_text
 from muster.report.record import Recording, RecordWriter, read_record
+from muster.report.record.plan_changes import ReadPlan
 from muster.server.runs.exports import EXPORTS
-from muster.server.runs.tracks import VALUES, Steps, unpacked
+from muster.server.runs.record_files import read_log, read_tracks
+from muster.server.runs.tracks import VALUES, Steps
 from muster.server.work.missions import mission_of
 from muster.state import MissionState, event_of
 
@@ -30,37 +32,39 @@ _WAY_POINTS = 2000
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
-    """`{"mission", "log", "stretches", "to"}` -> `{"files"}`, or the figures where `to` is `flown`.
+    """`{"mission", "folder", "to"}` -> `{"files"}`, or the figures where `to` is `flown`.
 
-    `stretches` are in base64; `to` is `page`, `mcap`, `flown`, or one of `exports.EXPORTS`.
+    The folder has log and tracks (`record_files`); `to` is `page`, `mcap`, `flown`, or one of `exports.EXPORTS`.
     """
-    mission, log, to = mission_of(arguments["mission"]), arguments["log"], arguments["to"]
-    stretches = [unpacked(base64.b64decode(data)) for data in arguments["stretches"]]
+    mission, source, to = mission_of(arguments["mission"]), Path(arguments["folder"]), arguments["to"]
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "record.mcap"
-        write_record(file, mission, log, stretches)
-        recording = replace(read_record(file), mission=mission)  # messages name the mission, not this file
-        if to == "flown":
-            return flown(recording)
-        if to in EXPORTS:
-            found = {name: text.encode() for name, text in EXPORTS[to](recording, log).items()}
-        elif to == "page":
-            found = {"page.html": page_text(recording).encode()}
-        else:
-            found = {"record.mcap": file.read_bytes()}
+        write_record(file, mission, read_log(source), read_tracks(source))
+        if to == "mcap":
+            return _files({"record.mcap": file.read_bytes()})
+        most = MOST_SAMPLES if to == "page" else None
+        recording = replace(read_record(file, most), mission=mission)  # messages name the mission, not this file
+    if to == "flown":
+        return flown(recording)
+    if to == "page":
+        return _files({"page.html": page_text(recording).encode()})
+    return _files({name: text.encode() for name, text in EXPORTS[to](recording, read_log(source)).items()})
+
+
+def _files(found: Mapping[str, bytes]) -> dict[str, Any]:
     return {"files": {name: base64.b64encode(data).decode() for name, data in found.items()}}
 
 
-def write_record(file: Path, mission: Mission, log: Sequence[Logged], stretches: Sequence[Steps]) -> None:
+def write_record(file: Path, mission: Mission, log: Iterable[Logged], stretches: Iterable[Steps]) -> None:
     """Pass a run's log and tracks to a recorder in the order of time, steps before events."""
-    mission_state, steps = MissionState(mission, forgets=False), _steps(stretches)
+    mission_state, steps, plan = MissionState(mission, forgets=False), _steps(stretches), ReadPlan("the log")
     with RecordWriter(file, mission) as writer:
         step = next(steps, None)
         for entry in log:
             while step is not None and step[0] <= entry["time_s"] + 1e-6:
                 _tell_step(writer, list(mission_state.robots), *step)
                 step = next(steps, None)
-            _tell(writer, entry)
+            _tell(writer, entry, plan)
             if entry["kind"] not in _OURS:
                 mission_state.apply(event_of(entry["time_s"], entry["kind"], entry["data"]))
         while step is not None:
@@ -101,10 +105,10 @@ def flown(recording: Recording) -> dict[str, Any]:
     }
 
 
-def _tell(writer: RecordWriter, entry: Logged) -> None:
+def _tell(writer: RecordWriter, entry: Logged, plan: ReadPlan) -> None:
     kind, data, now = entry["kind"], entry["data"], entry["time_s"]
     if kind == "plan":
-        writer.on_plan(now, plan_from(data["plan"], "the log"))
+        writer.on_plan(now, plan.take(data))
     elif kind == "report":
         writer.on_report(data)
     else:
@@ -117,7 +121,7 @@ def _tell_step(writer: RecordWriter, robots: Sequence[str], now: float, rows: Ma
     writer.on_step(now, states[:, :3], states[:, 3], states[:, 4:])
 
 
-def _steps(stretches: Sequence[Steps]) -> Iterator[tuple[float, Mapping[str, Any]]]:
+def _steps(stretches: Iterable[Steps]) -> Iterator[tuple[float, Mapping[str, Any]]]:
     for stretch in stretches:
         for now, rows in zip(stretch.times_s.tolist(), stretch.states, strict=True):
             yield now, dict(zip(stretch.robots, rows, strict=True))

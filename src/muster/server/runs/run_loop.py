@@ -2,49 +2,31 @@
 
 from __future__ import annotations
 
+import base64
 import time
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from muster.execution import Report, RobotStatus, Status
+from muster.execution import RobotStatus, Status
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MusterError, ParameterError
-from muster.mission.model import Event
-from muster.server.runs.log_recorder import RESUMED, DivergedError, LogRecorder
+from muster.server.runs.checkpoints import Schedule, packed_state
+from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pacing import Pace
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.user_events import event_given
+from muster.state import checkpoint_of
 
-STATES_S, STATUS_S, SHARE_S = 0.095, 0.5, 0.5
-"""Seconds of the wall clock between two tellings of where robots are, what they do, how far a crash is made good."""
+if TYPE_CHECKING:
+    from muster.server.runs.real_run import RealRun
+    from muster.server.runs.simulated_run import SimulatedRun
+
+STATES_S, STATUS_S = 0.095, 0.5
+"""Seconds of the wall clock between two tellings of where robots are, and what they do."""
 HEAR_S = 0.05
 STEPS_FIRST_S = 0.5
 """After orders time goes on for so many seconds of the wall clock, if it is behind its pace, before more are heard."""
 CANCELLED = "not done when the run was cancelled"
-
-
-class WorldRun(Protocol):
-    """A run in its world: simulated, or with real robots."""
-
-    real: bool
-
-    @property
-    def starts_at(self) -> str | None: ...
-    @property
-    def time_s(self) -> float: ...
-    @property
-    def next_s(self) -> float: ...
-    @property
-    def done(self) -> bool: ...
-    @property
-    def status(self) -> Status: ...
-    def go_on(self) -> None: ...
-    def report(self, event: Event) -> None: ...
-    def replan(self) -> None: ...
-    def break_off(self, reason: str) -> Report: ...
-    def pause(self) -> None: ...
-    def resume(self) -> None: ...
-    def close(self) -> None: ...
 
 
 class RunLoop:
@@ -53,7 +35,7 @@ class RunLoop:
     Parameters
     ----------
     world_run, recorder
-        the run in its world, and the recorder of its log.
+        the run in its world, simulated or with real robots, and the recorder of its log.
     inbox, outbox
         messages from and to the server.
     speed
@@ -62,11 +44,15 @@ class RunLoop:
         when the mission starts, from which clock times in events are counted; None: it does not say so.
     ended
         tells whether the server is gone.
+    paused, cancelled
+        whether users had paused or cancelled the run when it was interrupted.
+    checkpoint
+        the entry of the last checkpoint, 0 for none.
     """
 
     def __init__(
         self,
-        world_run: WorldRun,
+        world_run: SimulatedRun | RealRun,
         recorder: LogRecorder,
         inbox: Inbox,
         outbox: Outbox,
@@ -74,55 +60,30 @@ class RunLoop:
         speed: float | None,
         starts_at: str | None,
         ended: Callable[[], bool],
+        paused: bool = False,
+        cancelled: bool = False,
+        checkpoint: int = 0,
         clock: Clock | None = None,
     ) -> None:
         self._world_run, self._recorder, self._inbox, self._outbox = world_run, recorder, inbox, outbox
+        recorder.state = world_run.state
         self._clock, self._ended, self._starts_at = clock or SystemClock(), ended, starts_at
         self._pace = Pace(self._clock, speed, world_run.time_s)
-        self._paused = self._cancelled = self._must_replan = False
+        self._paused, self._cancelled, self._must_replan = paused, cancelled, False
+        self._schedule, self._kept = Schedule(self._clock, checkpoint), (-1, -1.0)
         self._steps_until = -1e9
         self._obeyed: set[int] = set()
         self._told: Mapping[str, Any] | None = None
-        self._states_at = self._status_at = self._share_at = -1e9
-
-    def catch_up(self, log: Sequence[Mapping[str, Any]], until_s: float) -> None:
-        """Simulate the run of the log again after a crash, up to a mission time.
-
-        Raises
-        ------
-        DivergedError
-            if the simulation differs from the log.
-        """
-        for entry in log:
-            if entry["kind"] == "command":
-                self._go_to(entry["time_s"], until_s)
-                self._obey(_asked(entry["data"]), more=entry["data"].get("more", False))
-        self._go_to(until_s, until_s)
-        if self._recorder.catching_up:
-            raise DivergedError("simulated again, it ends before the log does")
-        if log and not self._over:  # a report is the last entry
-            self._recorder.write(self._world_run.time_s, RESUMED, {"how": "simulated again up to here"})
-
-    def recall(self, log: Sequence[Mapping[str, Any]]) -> None:
-        """Restore the effect of commands before a crash, for runs that are not simulated again."""
-        for entry in log:
-            if entry["kind"] == "command":
-                self._obeyed.add(entry["data"]["action"])
-                if entry["data"]["outcome"] == "done":
-                    self._recall(entry["data"]["verb"])
-        if self._cancelled:  # the log has no report, or the run would not be resumed
-            self._world_run.break_off(CANCELLED)
-        elif self._paused:
-            self._world_run.pause()
-
-    def _recall(self, verb: str) -> None:
-        if verb in ("pause", "resume"):
-            self._paused = verb == "pause"
-        self._cancelled = self._cancelled or verb == "cancel"
+        self._states_at = self._status_at = -1e9
 
     def run(self) -> None:
         """Advance until the run is over, or the server is gone."""
         self._pace.set(self._pace.speed, self._world_run.time_s)
+        if self._cancelled:  # the log has no report, or the run would not be resumed
+            self._world_run.break_off(CANCELLED)
+        elif self._paused:
+            self._world_run.pause()
+        self._keep()
         self._tell(at_once=True)
         while not self._over and not self._ended():
             orders = self._waiting_orders()
@@ -132,7 +93,9 @@ class RunLoop:
                 time.sleep(HEAR_S)
             elif self._world_run.real or not (self._paused or self._pace.wait_s(self._world_run.next_s) > 0):
                 self._world_run.go_on()
+                self._keep()
                 self._tell()
+        self._keep()
         self._tell(at_once=True)
 
     @property
@@ -158,32 +121,22 @@ class RunLoop:
         while order is not None:
             orders.append(order)
             order = self._inbox.take(0.0)
-        return [order for order in orders if order["id"] not in self._obeyed]
+        return orders
 
     def _obey_all(self, orders: Sequence[Mapping[str, Any]]) -> None:
         """Execute commands in order, then plan the rest once for all of them."""
-        for order, *later in (orders[k:] for k in range(len(orders))):
-            self._obey(order, more=bool(later))
+        for order in orders:
+            if order["id"] not in self._obeyed and not self._over:
+                self._obey(order)
+        if self._must_replan and not self._over:
+            self._must_replan = False
+            self._world_run.replan()
         self._steps_until = self._clock.now() + STEPS_FIRST_S
+        self._keep()
         self._tell(at_once=True)
 
-    def _go_to(self, time_s: float, until_s: float) -> None:
-        while not self._over and self._world_run.time_s < time_s - 1e-9:
-            self._world_run.go_on()
-            if self._clock.now() - self._share_at >= SHARE_S:
-                self._share_at = self._clock.now()
-                self._outbox.send({"type": "resuming", "share": round(self._world_run.time_s / max(until_s, 1e-9), 3)})
-
-    def _obey(self, asked: Mapping[str, Any], *, more: bool) -> None:
-        """Execute a command; its log entry comes before those of its consequences.
-
-        Parameters
-        ----------
-        more
-            whether planning waits for the next command; the log keeps that for repeated simulations.
-        """
-        if asked["id"] in self._obeyed or self._over:
-            return
+    def _obey(self, asked: Mapping[str, Any]) -> None:
+        """Execute a command; its log entry comes before those of its consequences."""
         self._obeyed.add(asked["id"])
         self._recorder.hold()
         try:
@@ -192,11 +145,21 @@ class RunLoop:
         except MusterError as error:
             outcome = str(error)
         said = {"action": asked["id"], "verb": asked["verb"], "data": asked["data"], "who": asked["who"]}
-        said |= {"outcome": outcome} | ({"more": True} if more else {})
-        self._recorder.write_first(self._world_run.time_s, "command", said)
-        if self._must_replan and not more and not self._over:
-            self._must_replan = False
-            self._world_run.replan()
+        self._recorder.write_first(self._world_run.time_s, "command", said | {"outcome": outcome})
+
+    def _keep(self) -> None:
+        """End a tick: say where bodies are after its entries and tracks, and send a checkpoint if one is due.
+
+        The server takes the entries of a tick all or none: a command with what follows from it.
+        """
+        seq = self._recorder.seq
+        if self._kept != (seq, self._recorder.tracked_s):
+            self._kept = seq, self._recorder.tracked_s
+            bodies = self._world_run.snapshot()
+            self._outbox.send({"type": "tick", "bodies": None if bodies is None else {**bodies, "seq": seq}})
+        if self._schedule.take(seq):
+            data = base64.b64encode(packed_state(checkpoint_of(self._recorder.state))).decode()
+            self._outbox.send({"type": "checkpoint", "seq": seq, "data": data})
 
     def _do(self, verb: str, data: Mapping[str, Any]) -> None:
         if verb == "pause":
@@ -242,22 +205,17 @@ class RunLoop:
     def _tell(self, *, at_once: bool = False) -> None:
         """Send states and status at their intervals."""
         now = self._clock.now()
-        if (at_once or now - self._states_at >= STATES_S) and not self._recorder.catching_up:
+        if at_once or now - self._states_at >= STATES_S:
             self._states_at = now
             robots = {name: _state(row) for name, row in self._recorder.rows.items()}
             said = {"type": "states", "time_s": round(self._world_run.time_s, 3), "sent_at": round(time.time(), 4)}
             self._outbox.send_if_room(said | {"robots": robots})
-        if (at_once or now - self._status_at >= STATUS_S) and not self._recorder.catching_up:
+        if at_once or now - self._status_at >= STATUS_S:
             self._status_at = now
             status = _status(self._world_run.status)
             if status != self._told:
                 self._told = status
                 self._outbox.send({"type": "status", "time_s": round(self._world_run.time_s, 3), **status})
-
-
-def _asked(command: Mapping[str, Any]) -> dict[str, Any]:
-    """A command from its log entry."""
-    return {"id": command["action"], "verb": command["verb"], "data": command["data"], "who": command["who"]}
 
 
 def _state(row: Sequence[float]) -> list[float]:

@@ -12,7 +12,7 @@ from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import OVER, Action, Entry, Run, RunState, StoreError
+from muster.exchange.mission_control import OVER, Action, Checkpoint, Entry, Run, RunState, StoreError
 from muster.running.worlds import WORLDS
 from muster.server.runs.crash_history import CrashHistory
 from muster.server.runs.journal import Journal
@@ -59,9 +59,12 @@ class RunSession:
         self._mission: Mapping[str, Any] | None = None
         self._noted_at = -NOTED_S
         self._closing = self._cancelled = self._reported = False
-        self._failed = self._trouble = self._resuming = ""
+        self._failed = self._trouble = ""
+        self._share = None if run.state == "starting" else 0.0  # of going on after a crash, while that lasts
+        self._checkpoint: tuple[int, bytes] | None = None  # of an entry that is not written yet
         self._ended_at: datetime | None = None
         self._texts: dict[int, str] = {}
+        self._tick: list[tuple[Mapping[str, Any], str]] = []  # entries of the tick that has not ended yet
         self.log_writer = LogWriter(
             store,
             run.id,
@@ -77,6 +80,13 @@ class RunSession:
     def over(self) -> bool:
         """Whether the run is over."""
         return self.run.state in OVER
+
+    @property
+    def shown(self) -> Run:
+        """The run as users see it: also whether it is resuming."""
+        if self._share is None or self.over:
+            return self.run
+        return replace(self.run, state="resuming", share=self._share)
 
     @property
     def pid(self) -> int | None:
@@ -133,8 +143,7 @@ class RunSession:
             if self._reported or self._failed or self._closing:
                 return
             await self.log_writer.given()
-            reached = (self.run.time_s, self.subscribers.seq - self.run.resumed)  # a resume is no progress
-            if crashes.too_often(reached, killed=self._runner.killed):
+            if crashes.too_often(self.run.time_s, killed=self._runner.killed):
                 words, at_s = self._runner.last_words or "without a word", f"{self.run.time_s:.1f} s"
                 self._failed = f"its process ended {crashes.count} times in a row, at {at_s} of the mission: {words}"
                 return
@@ -163,15 +172,27 @@ class RunSession:
         if not self._runner_input.known:
             unsettled = await asyncio.to_thread(self._store.actions.unsettled, self.run.id)
             await self._runner_input.read()
-            self._restore(await asyncio.to_thread(self._runner_input.log), unsettled)
+            self._restore(unsettled)
         self._texts.clear()
-        return None if self._reported else await asyncio.to_thread(self._runner_input.line, self.run)
+        self._tick.clear()
+        if self._reported:
+            return None
+        if self._runner_input.goes_on:
+            self._resume(0.0)
+        return await asyncio.to_thread(self._runner_input.line, self.run, self._cancelled)
 
-    def _restore(self, log: Sequence[Entry], unsettled: Sequence[Action]) -> None:
-        """Restore the state from the log after a restart of the server; open actions are settled or pending."""
-        self.run = replace(self.run, resumed=0)
+    def _resume(self, share: float) -> None:
+        """Publish which share of going on is done."""
+        self._share = share
+        self._publish_run()
+
+    def _restore(self, unsettled: Sequence[Action]) -> None:
+        """Restore the state from checkpoint and log after a restart of the server; actions are settled or pending."""
+        log, checkpoint = self._runner_input.log, self._runner_input.checkpoint
+        self.run = replace(self.run, **({"resumed": 0} if checkpoint is None else checkpoint.facts))
         for entry in log:
             self._apply(entry)
+        self.subscribers.seq = 0 if checkpoint is None else checkpoint.seq
         if log:
             self.subscribers.publish([(entry.seq, _entry_text(entry)) for entry in log[-100:]])
         applied = {entry.data["action"]: entry for entry in log if entry.kind == "command"}
@@ -192,23 +213,40 @@ class RunSession:
                 return
         said = json.loads(text)
         if said["type"] == "entry":
-            self._add_entry(said, text)
+            self._tick.append((said, text))
+        elif said["type"] == "tick":
+            self._end_tick(said["bodies"])
             while self.log_writer.behind:
                 await asyncio.sleep(0.05)
-        elif said["type"] == "stretch":
-            self._runner_input.tracked(said["until_s"])
-            self.log_writer.add_stretch(said["from_s"], said["until_s"], base64.b64decode(said["data"]))
+        elif said["type"] in ("checkpoint", "stretch"):
+            self._take_state(said["type"], said)
         elif said["type"] == "mission":
             self._mission = said["mission"]
             self.subscribers.ready()
-        elif said["type"] == "resuming":
-            self._resuming = f"resuming ({said['share']:.0%})"
-            self._publish_run()
+        elif said["type"] == "resuming" and self._share is not None:
+            self._resume(said["share"])
         elif said["type"] == "going":
-            self._resuming = ""
+            self._share = None
             self._change(state="running" if self.run.state == "starting" else self.run.state)
         elif said["type"] == "failed":
+            self._end_tick(self._runner_input.bodies)
             self._failed = said["reason"]
+
+    def _end_tick(self, bodies: Mapping[str, Any] | None) -> None:
+        """Add the entries of a tick, all at once; those of a tick that a crash cuts short never were."""
+        for said, text in self._tick:
+            self._add_entry(said, text)
+        self._tick.clear()
+        self._runner_input.bodies = self.log_writer.bodies = bodies
+
+    def _take_state(self, kind: str, said: Mapping[str, Any]) -> None:
+        """Take a checkpoint, or tracks."""
+        if kind == "checkpoint":
+            self._checkpoint = said["seq"], base64.b64decode(said["data"])
+            self._keep_checkpoint()
+        else:
+            self._runner_input.tracked(said["until_s"])
+            self.log_writer.add_stretch(said["from_s"], said["until_s"], base64.b64decode(said["data"]))
 
     def _note_time(self, text: str) -> None:
         """Store the mission time that subscribers have seen now and then: a resumed run continues from there."""
@@ -240,6 +278,17 @@ class RunSession:
         for entry in entries:
             if entry.kind == "command":
                 self._settle(entry)
+        self._keep_checkpoint()
+
+    def _keep_checkpoint(self) -> None:
+        """Keep a checkpoint once all entries before it are published, and their actions are settled."""
+        if self._checkpoint is None or self._checkpoint[0] > self.subscribers.seq:
+            return
+        (seq, data), self._checkpoint = self._checkpoint, None
+        facts = {key: getattr(self.run, key) for key in ("state", "speed", "resumed")}
+        checkpoint = Checkpoint(run=self.run.id, seq=seq, data=data, facts=facts)
+        self._runner_input.replace_log(checkpoint)
+        self.log_writer.keep_checkpoint(checkpoint)
 
     def _apply(self, entry: Entry) -> None:
         """Apply an entry to the state of the run."""
@@ -285,7 +334,7 @@ class RunSession:
         for action in self._pending.values():
             self._write_outcome(action, TOO_LATE)
         self._pending.clear()
-        self._resuming = ""
+        self._share = None
         self._change(state=state, ended_at=self._ended_at or datetime.now(UTC))
 
     def _on_trouble(self, why: str) -> None:
@@ -315,13 +364,12 @@ class RunSession:
         self._publish_run()
 
     def _publish_run(self) -> None:
-        run = self.run
-        said = {"state": run.state, "speed": run.speed, "time_s": run.time_s, "remark": self._resuming or run.remark}
+        run = self.shown
+        said = {key: getattr(run, key) for key in ("state", "speed", "time_s", "remark", "share")}
         self.subscribers.tell("run", json.dumps({"type": "run", **said}, ensure_ascii=False, separators=(",", ":")))
 
     def _hello(self) -> Mapping[str, Any]:
-        run = replace(self.run, remark=self._resuming or self.run.remark)
-        return {"run": plain_run(run), "mission": self._mission}
+        return {"run": plain_run(self.shown), "mission": self._mission}
 
     async def _read_texts(self, after: int) -> list[tuple[int, str]]:
         return [(entry.seq, _entry_text(entry)) for entry in await self.log_writer.entries(after, 500)]

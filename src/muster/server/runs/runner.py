@@ -1,13 +1,14 @@
 """The runner process of a run, `python -m muster.server.runs.runner MEMORY_MB`, connected to the server by pipes.
 
 The first line is the run: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`, `settings`, `speed`,
-`lock`, and of a resumed run `log`, `until_s`, `tracked_s`. The other lines are users' actions: `id`, `verb`, `data`,
-`who`. When the pipe ends the server is gone: the runner stops real robots and ends. The memory limit is for simulated
-worlds only.
+`lock`, and of a run that goes on `checkpoint`, the entries of the `log` after it up to `seq`, `bodies`, `until_s`,
+`tracked_s`, `paused`, `cancelled`. The other lines are users' actions: `id`, `verb`, `data`, `who`. When the pipe ends
+the server is gone: the runner stops real robots and ends. The memory limit is for simulated worlds only.
 """
 
 from __future__ import annotations
 
+import base64
 import os
 import shutil
 import signal
@@ -18,23 +19,31 @@ from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
+from muster.running.begun import Begun
 from muster.running.claim_locks import robots_claimed
 from muster.running.robot_claims import claims_as_far_as_known
 from muster.running.worlds import WORLDS
+from muster.server.runs.checkpoints import unpacked_state
+from muster.server.runs.crash_recovery import recovered_from
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
-from muster.server.runs.run_loop import RunLoop, WorldRun
+from muster.server.runs.run_loop import RunLoop
 from muster.server.runs.runner_lock import alone
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
+from muster.state import MissionState
+
+if TYPE_CHECKING:
+    from muster.server.runs.real_run import RealRun
+    from muster.server.runs.simulated_run import SimulatedRun
 
 _ENDS_WITHIN_S = 30.0
 """Seconds within which another run of the same robots, which is over, tells them to stand and ends."""
@@ -76,7 +85,7 @@ def _obey(folder: str, memory_mb: int) -> int:
 
 
 def _end(ended: threading.Event, real: threading.Event, folder: str) -> None:
-    """End, as the server is gone: a simulated run is simulated again later; real robots are stopped first."""
+    """End, as the server is gone: a simulated run goes on later; real robots are stopped first."""
     ended.set()
     if not real.is_set():
         shutil.rmtree(folder, ignore_errors=True)
@@ -84,7 +93,7 @@ def _end(ended: threading.Event, real: threading.Event, folder: str) -> None:
 
 
 def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outbox, ended: threading.Event) -> None:
-    real, log = begin["world"] not in WORLDS, begin["log"]
+    real = begin["world"] not in WORLDS
     with ExitStack() as stack:
         if real:
             stack.enter_context(alone(Path(begin["lock"]), begin["run"]))
@@ -92,25 +101,39 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
         os.chdir(folder)
         mission = mission_of(begin["mission"])
         outbox.send({"type": "mission", "mission": _shown(mission)})
+        outbox.send({"type": "resuming", "share": 0.4})
+        plan = plan_from(begin["plan"], "the plan")
+        state = _known(begin, mission, plan)
         recorder = LogRecorder(
             mission,
             outbox,
-            log=log,
+            state,
+            seq=begin["seq"],
             tracked_s=begin["tracked_s"],
             stretch_s=REAL_STRETCH_S if real else STRETCH_S,
-            again=not real,
         )
-        plan = plan_from(begin["plan"], "the plan")
+        outbox.send({"type": "resuming", "share": 0.6})
         with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
-            how = {"speed": begin["speed"], "starts_at": world_run.starts_at, "ended": ended.is_set}
-            run_loop = RunLoop(world_run, recorder, inbox, outbox, **how)
             if real:
                 outbox.send({"type": "mission", "mission": _shown(replace(mission, starts_at=world_run.starts_at))})
-                run_loop.recall(log)
-            else:
-                run_loop.catch_up(log, begin["until_s"])
+            how = {key: begin[key] for key in ("speed", "paused", "cancelled")}
             outbox.send({"type": "going"})
-            run_loop.run()
+            RunLoop(
+                world_run,
+                recorder,
+                inbox,
+                outbox,
+                starts_at=world_run.starts_at,
+                ended=ended.is_set,
+                checkpoint=begin["seq"] - len(begin["log"]),
+                **how,
+            ).run()
+
+
+def _known(begin: Mapping[str, Any], mission: Mission, plan: Plan) -> MissionState:
+    """What is known of the mission so far."""
+    checkpoint = None if begin["checkpoint"] is None else unpacked_state(base64.b64decode(begin["checkpoint"]))
+    return recovered_from(mission, plan, begin["log"], checkpoint)
 
 
 def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
@@ -120,22 +143,22 @@ def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
 
 def _world_run(
     begin: Mapping[str, Any], mission: Mission, plan: Plan, recorder: LogRecorder, ended: threading.Event
-) -> WorldRun:
-    settings, log = begin["settings"], begin["log"]
+) -> SimulatedRun | RealRun:
+    """The run in its world: from its beginning, or by what the recorder's state knows of it."""
+    from muster.server.runs.run_settings import request_of
+
+    request, state = request_of(begin["world"], begin["settings"], plan), recorder.state if begin["seq"] else None
     if begin["world"] in WORLDS:
         from muster.server.runs.simulated_run import SimulatedRun
 
-        return SimulatedRun(mission, plan, begin["world"], settings, recorder)
+        begun = None if state is None else Begun.of(state, begin["bodies"], begin["until_s"], begin["world"])
+        return SimulatedRun(mission, plan, request, recorder=recorder, begun=begun)
     from muster.running.fleets import fleet_ready
     from muster.server.runs.real_run import RealRun
-    from muster.server.runs.run_settings import request_of
 
-    request = request_of(begin["world"], settings, plan)
-    fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=bool(log))
+    fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=state is not None)
     try:
-        run = RealRun(mission, plan, fleet, recorder, request=request, log=log, at_end=at_end)
-        recorder.keep_robots(run.robots)
-        return run
+        return RealRun(mission, plan, fleet, recorder, request=request, state=state, at_end=at_end)
     except BaseException:
         fleet.close()
         raise

@@ -44,7 +44,7 @@ class RunnerProcess:
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.PIPE,
             limit=_LINE_BYTES,
-            env={**without_secrets(os.environ), "PYTHONHASHSEED": "0"},  # simulated again it must come out the same
+            env={**without_secrets(os.environ), "PYTHONHASHSEED": "0"},  # the same seed gives the same run
             start_new_session=True,
         )
         return cls(process, name)

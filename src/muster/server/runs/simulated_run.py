@@ -1,47 +1,31 @@
-"""A plan carried out in a simulated world, by steps of fixed length, so that the same happens each time.
+"""A plan carried out in a simulated world, by steps of fixed length; after a crash, the rest of it.
 
-What happens is a function of mission, plan, settings, and of what users did and when on the mission's clock: after a
-crash it is simulated again up to where the log reaches, and goes on.
+While no process simulates it the mission's clock stands still.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
 from typing import Any
 
-from muster.execution import Recorder, Report, Status
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.running.run_request import RunRequest
 from muster.running.simulation import Simulation
-from muster.server.runs.run_settings import request_of
 
 QUANTUM_S = 0.1
 """Seconds of mission time between two moments at which users can have a say."""
 
 
-class SimulatedRun:
-    """See `run_loop.WorldRun`."""
+class SimulatedRun(Simulation):
+    """A run that `RunLoop` carries to its end."""
 
     real = False
 
-    def __init__(
-        self, mission: Mission, plan: Plan, world: str, settings: Mapping[str, Any], recorder: Recorder
-    ) -> None:
-        self._simulation = Simulation(mission, plan, request_of(world, settings, plan), recorder=recorder)
-        self._quanta = 0
+    def __init__(self, mission: Mission, plan: Plan, request: RunRequest, **how: Any) -> None:
+        super().__init__(mission, plan, request, **how)
+        self._quanta = math.ceil(self.time_s / QUANTUM_S - 1e-9)
         self.starts_at = mission.starts_at
-
-    @property
-    def time_s(self) -> float:
-        return self._simulation.time_s
-
-    @property
-    def done(self) -> bool:
-        return self._simulation.done
-
-    @property
-    def status(self) -> Status:
-        return self._simulation.status
 
     @property
     def next_s(self) -> float:
@@ -53,23 +37,14 @@ class SimulatedRun:
         self._quanta += 1
         until_s = self._quanta * QUANTUM_S
         while not self.done and self.time_s < until_s - 1e-9:
-            self._simulation.advance(until_s)
+            self.advance(until_s)
 
-    def report(self, event: Event) -> None:
-        self._simulation.report(event, replan=False)
-
-    def replan(self) -> None:
-        """Plan the rest again if what was reported asks for that."""
-        self._simulation.replan()
-
-    def break_off(self, reason: str) -> Report:
-        return self._simulation.break_off(reason)
+    def report(self, event: Event, *, replan: bool = False) -> None:
+        """See `Simulation`; `RunLoop` has the rest planned again once for all events that come together."""
+        super().report(event, replan=replan)
 
     def pause(self) -> None:
         """Nothing moves where time stands still."""
 
     def resume(self) -> None:
         """Time goes on."""
-
-    def close(self) -> None:
-        self._simulation.close()

@@ -6,14 +6,20 @@ A worker makes a record from the log of a run on request; records are not stored
 from __future__ import annotations
 
 import base64
+import json
+import os
 from collections.abc import Mapping
 from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from muster.exchange.mission_control import OVER, ConflictError
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
+from muster.server.runs.record_files import LOG, TRACKS
 from muster.server.work.pool import Pool
+from muster.server.work.temporary_folders import OF_WORK
 
 if TYPE_CHECKING:
     from muster.server.services.runs import Runs
@@ -74,19 +80,24 @@ class Records:
         if state not in OVER:
             raise ConflictError(f"run {run} is {state}; expected one that is over")
         await self._runs.kept(run)
-        return await self._pool.run("record", partial(self._given, run, to))
+        with TemporaryDirectory(prefix=f"{OF_WORK}{os.getpid()}-", ignore_cleanup_errors=True) as folder:
+            return await self._pool.run("record", partial(self._given, run, to, Path(folder)))
 
-    def _given(self, number: int, to: str) -> dict[str, Any]:
-        """Read the worker's arguments from the database."""
+    def _given(self, number: int, to: str, folder: Path) -> dict[str, Any]:
+        """Read the worker's arguments from the database; log and tracks go by parts into files of a folder."""
         run = self._store.runs.get(number)
-        entries = self._store.log.entries(number)
-        if not entries:
+        if not self._store.log.entries(number, limit=1):
             raise ConflictError(f"run {number} has no log; expected one of which something was kept")
+        with (folder / LOG).open("w", encoding="utf-8") as file:
+            for entry in self._store.log.all_entries(number):
+                said = {"seq": entry.seq, "time_s": entry.time_s, "kind": entry.kind, "data": dict(entry.data)}
+                file.write(json.dumps(said, ensure_ascii=False) + "\n")
+        with (folder / TRACKS).open("wb") as file:
+            file.writelines(base64.b64encode(one.data) + b"\n" for one in self._store.log.stretches(number))
         version = self._store.missions.get(run.mission, run.mission_version)
         files = {name: base64.b64encode(data).decode() for name, data in version.files.items()}
         return {
             "mission": {"name": version.mission, "text": version.text, "files": files},
-            "log": [{"seq": e.seq, "time_s": e.time_s, "kind": e.kind, "data": dict(e.data)} for e in entries],
-            "stretches": [base64.b64encode(one.data).decode() for one in self._store.log.stretches(number)],
+            "folder": str(folder),
             "to": to,
         }

@@ -144,7 +144,9 @@ class Runs:
 
     def present(self) -> Sequence[Run]:
         """Runs under way, newest first, without asking the database."""
-        return [self._sessions[run].run for run in sorted(self._sessions, reverse=True) if not self._sessions[run].over]
+        return [
+            self._sessions[run].shown for run in sorted(self._sessions, reverse=True) if not self._sessions[run].over
+        ]
 
     async def over(
         self, limit: int = PAGE_ROWS, before: int | None = None, mission: str | None = None
@@ -167,7 +169,7 @@ class Runs:
         NotFoundError
         """
         session = self._sessions.get(run)
-        return session.run if session is not None else await asyncio.to_thread(self._store.runs.get, run)
+        return session.shown if session is not None else await asyncio.to_thread(self._store.runs.get, run)
 
     async def act(self, who: User, run: int, verb: str, data: Mapping[str, Any] | None = None) -> Action:
         """Command a run: `pause`, `resume`, `speed` {speed}, `cancel`, `event` {one without at_s}, `orders` {orders}.
@@ -345,7 +347,7 @@ class Runs:
 
     def _newest(self, run: Run) -> Run:
         session = self._sessions.get(run.id)
-        return run if session is None else session.run
+        return run if session is None else session.shown
 
     @property
     def _journal(self) -> Journal:

@@ -18,7 +18,6 @@ from muster.server.services.records import Records
 from muster.server.services.runs import Runs
 from muster.server.settings import Settings
 from muster.server.store.store import Store
-from muster.server.store.timed_log import TimedLog
 from muster.server.work.pool import Pool
 
 _THREADS = 12
@@ -69,7 +68,7 @@ async def open_services(
         store = await asyncio.to_thread(Store.open, settings.database)
         closing.push_async_callback(asyncio.to_thread, store.close)
         store.database.require = lock.require
-        store = replace(store, log=TimedLog(store.database, appended))
+        store.log.observe = appended
         pool = Pool(workers=settings.workers, memory_mb=settings.memory_mb)
         closing.push_async_callback(pool.close)
         runs = Runs(store, settings, refused)

@@ -1,4 +1,4 @@
-"""The append-only log of runs: entries, and stretches of tracks.
+"""The append-only log of runs: entries, and stretches of tracks; and the last checkpoints.
 
 Triggers of the database, in the first migration, refuse changes.
 """
@@ -6,21 +6,26 @@ Triggers of the database, in the first migration, refuse changes.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from typing import Any, TypeVar
 
-from sqlalchemy import Connection, Row, Table, func, insert, select, update
+from sqlalchemy import Connection, Row, Table, delete, func, insert, select, update
 
-from muster.exchange.mission_control import ConflictError, Entry, NotFoundError, Stretch
+from muster.exchange.mission_control import Checkpoint, ConflictError, Entry, NotFoundError, Stretch
 from muster.mission.errors import ParameterError
 from muster.server.store.columns import as_json
 from muster.server.store.database import Database
+from muster.server.store.schema import bodies as body_table
+from muster.server.store.schema import checkpoints, runs
 from muster.server.store.schema import entries as entry_table
-from muster.server.store.schema import runs
 from muster.server.store.schema import stretches as stretch_table
 
-_AT_ONCE = 64
+_AT_ONCE, _ENTRIES_AT_ONCE = 64, 1000
+_KEPT = 2
+"""Checkpoints of a run that are kept: the one before the last is used where the last is damaged."""
 
 Item = TypeVar("Item", Entry, Stretch)
 
@@ -28,13 +33,22 @@ Item = TypeVar("Item", Entry, Stretch)
 class LogTable:
     def __init__(self, database: Database) -> None:
         self._database = database
+        self.observe: Callable[[float], None] = lambda seconds: None
+        """Receives the seconds of each `append`, also of one that failed."""
 
-    def append(self, run: int, time_s: float, entries: Sequence[Entry], stretches: Sequence[Stretch] = ()) -> int:
+    def append(
+        self,
+        run: int,
+        time_s: float,
+        entries: Sequence[Entry],
+        stretches: Sequence[Stretch] = (),
+        bodies: Mapping[str, Any] | None = None,
+    ) -> int:
         """Append entries and stretches in one transaction; returns how many entries were new.
 
         Entries that exist are skipped, so a writer may repeat a write whose result it does not know; a different entry
         in their place is an error. Stretches are numbered by the writer and not compared. The run's `time_s` is raised
-        to `time_s`, and its report becomes the data of an entry `report`.
+        to `time_s`, and its report becomes the data of an entry `report`. `bodies` says where they are after all this.
 
         Raises
         ------
@@ -45,7 +59,7 @@ class LogTable:
         ParameterError
             if an entry or stretch is of another run.
         """
-        with self._database.writing() as connection:
+        with self._timed(), self._database.writing() as connection:
             row = connection.execute(select(runs.c.time_s).where(runs.c.id == run).with_for_update()).one_or_none()
             if row is None:
                 raise NotFoundError(f"no run {run}")
@@ -63,13 +77,56 @@ class LogTable:
                 changes["report"] = dict(report.data)
             if changes:
                 connection.execute(update(runs).where(runs.c.id == run).values(changes))
+            if bodies is not None:
+                connection.execute(delete(body_table).where(body_table.c.run == run))
+                connection.execute(insert(body_table).values(run=run, data=dict(bodies)))
         return len(new)
+
+    def add_checkpoint(self, checkpoint: Checkpoint) -> None:
+        """Write a checkpoint, and delete those that are no longer needed, in one transaction.
+
+        Raises
+        ------
+        ConflictError
+            if the log does not reach up to it, or the run has one of that entry.
+        """
+        run = checkpoint.run
+        with self._database.writing() as connection:
+            last, known = _last(connection, entry_table, run), _last(connection, checkpoints, run)
+            if not known < checkpoint.seq <= last:
+                expected = f"expected one after entry {known} up to {last}"
+                raise ConflictError(f"run {run}: a checkpoint of entry {checkpoint.seq}; {expected}")
+            connection.execute(insert(checkpoints).values(vars(checkpoint) | {"facts": dict(checkpoint.facts)}))
+            of_run = checkpoints.c.run == run
+            kept = select(checkpoints.c.seq).where(of_run).order_by(checkpoints.c.seq.desc()).limit(_KEPT)
+            connection.execute(delete(checkpoints).where(of_run, checkpoints.c.seq.not_in(kept.scalar_subquery())))
+
+    def checkpoints(self, run: int) -> list[Checkpoint]:
+        """The checkpoints of a run, the newest first."""
+        query = select(checkpoints).where(checkpoints.c.run == run).order_by(checkpoints.c.seq.desc())
+        with self._database.reading() as connection:
+            return [Checkpoint(**{**row._mapping, "data": bytes(row.data)}) for row in connection.execute(query)]
+
+    def bodies(self, run: int) -> Mapping[str, Any] | None:
+        """Where bodies are; None where that is not known."""
+        with self._database.reading() as connection:
+            found: Mapping[str, Any] | None = connection.execute(
+                select(body_table.c.data).where(body_table.c.run == run)
+            ).scalar()
+        return found
 
     def entries(self, run: int, after: int = 0, limit: int | None = None) -> list[Entry]:
         """Entries with a `seq` above `after`, in order."""
         query = select(entry_table).where(entry_table.c.run == run, entry_table.c.seq > after)
         with self._database.reading() as connection:
             return [Entry(**row._mapping) for row in connection.execute(query.order_by(entry_table.c.seq).limit(limit))]
+
+    def all_entries(self, run: int) -> Iterator[Entry]:
+        """All entries in order, read in portions, so that few are in memory at once."""
+        portion = self.entries(run, limit=_ENTRIES_AT_ONCE)
+        while portion:
+            yield from portion
+            portion = self.entries(run, portion[-1].seq, _ENTRIES_AT_ONCE)
 
     def stretches(self, run: int) -> Iterator[Stretch]:
         """The tracks in order, read in portions, so that no transaction stays open while they are processed."""
@@ -89,6 +146,14 @@ class LogTable:
         """The `seq` of the last stretch, 0 without any."""
         with self._database.reading() as connection:
             return _last(connection, stretch_table, run)
+
+    @contextmanager
+    def _timed(self) -> Iterator[None]:
+        began = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.observe(time.perf_counter() - began)
 
     def _rows(self, query: Any) -> Sequence[Row[Any]]:
         with self._database.reading() as connection:

@@ -31,6 +31,8 @@ from muster.server.store.backup import existing, require_newest
 from muster.server.store.schema import (
     actions,
     blobs,
+    bodies,
+    checkpoints,
     entries,
     jobs,
     mission_files,
@@ -165,6 +167,8 @@ def _counted(connection: Connection, old: _Old) -> Pruned:
 
 def _delete_run(connection: Connection, run: int) -> Pruned:
     connection.execute(insert(pruning).values(run=run))
+    for table in (checkpoints, bodies):
+        _delete(connection, table, table.c.run == run)
     pruned = Pruned(
         entries=_delete(connection, entries, entries.c.run == run),
         stretches=_delete(connection, stretches, stretches.c.run == run),

@@ -24,7 +24,7 @@ from sqlalchemy import (
 
 from muster.server.store.columns import Instant, Number, Text
 
-HEAD = "0003"
+HEAD = "0004"
 
 metadata = MetaData(
     naming_convention={
@@ -172,6 +172,24 @@ stretches = Table(
     _always("until_s", Number),
     _always("data", LargeBinary),
 )
+
+checkpoints = Table(
+    "checkpoints",
+    metadata,
+    Column("run", Integer, ForeignKey("runs.id"), primary_key=True),
+    Column("seq", Integer, primary_key=True),
+    _always("data", LargeBinary),
+    _always("facts", _json()),
+)
+"""The last checkpoints of each run, from which it is resumed with the entries that follow."""
+
+bodies = Table(
+    "bodies",
+    metadata,
+    Column("run", Integer, ForeignKey("runs.id"), primary_key=True),
+    _always("data", _json()),
+)
+"""Where the bodies of a simulated run are, as of its last entries and tracks."""
 
 actions = Table(
     "actions",

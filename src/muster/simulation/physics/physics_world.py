@@ -89,6 +89,12 @@ class PhysicsWorld(WorldBase):
         super().__init__(mission, **how)
         self._wind = WindField(wind, self._seed)
         self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
+        if (snapshot := how.get("snapshot")) is not None:
+            self.simulated.resume(snapshot["bodies"])
+
+    def snapshot(self) -> dict[str, Any]:
+        """See `WorldBase`."""
+        return {**super().snapshot(), "bodies": self.simulated.snapshot()}
 
     @property
     def simulated(self) -> SimulatedModel:

@@ -45,12 +45,6 @@ class RotorState:
                 speeds[k, : len(airframe.rotors)] = airframe.hover_radps
         return cls(speeds, np.zeros((count, 6)), np.zeros((count, 3)))
 
-    def take_over(self, before: RotorState) -> None:
-        """Take over the state of an earlier model, whose robots are the first of this one."""
-        count = len(before.speeds)
-        self.speeds[:count], self.disturbances[:count] = before.speeds, before.disturbances
-        self.wind[:count] = before.wind
-
 
 class Rotors:
     """Rotors of some airframes as arrays: (n, MOST_ROTORS), 0 where an airframe has fewer."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.motion.grid import Floats
+from muster.simulation.physics.airframes import MOST_ROTORS
 from muster.simulation.physics.bodies import BodyKind
 from muster.simulation.physics.model import PlacedRobot, mjcf
 from muster.simulation.physics.rotors import RotorState
@@ -109,15 +110,32 @@ class SimulatedModel:
 
     def take_over(self, before: SimulatedModel) -> None:
         """Take over the state of the robots of an earlier model, which are the first of this one."""
-        for k in range(len(before.robots)):
-            self.data.qpos[self.places[k]] = before.data.qpos[before.places[k]]
-            self.data.qvel[self.freedoms[k]] = before.data.qvel[before.freedoms[k]]
-            for (place, freedom), (old_place, old_freedom) in zip(self._wheels[k], before._wheels[k], strict=True):
-                self.data.qpos[place] = before.data.qpos[old_place]
-                self.data.qvel[freedom] = before.data.qvel[old_freedom]
-        self.rotors.take_over(before.rotors)
+        self.resume(before.snapshot())
         self.energy_j[: len(before.robots)] = before.energy_j
         self.data.time = before.data.time
+
+    def snapshot(self) -> list[dict[str, list[float]]]:
+        """Return how each robot stands and moves, its wheels and rotors too; what motors have done is not in it."""
+        data, rotors = self.data, self.rotors
+        return [
+            {
+                "pose": data.qpos[self.places[k]].tolist(),
+                "rates": data.qvel[self.freedoms[k]].tolist(),
+                "wheels": [float(value) for p, f in self._wheels[k] for value in (data.qpos[p], data.qvel[f])],
+                "rotors": [*rotors.speeds[k].tolist(), *rotors.disturbances[k].tolist(), *rotors.wind[k].tolist()],
+            }
+            for k in range(len(self.robots))
+        ]
+
+    def resume(self, snapshot: Sequence[Mapping[str, Sequence[float]]]) -> None:
+        """Let the first robots stand and move as those of a snapshot did."""
+        for k, row in enumerate(snapshot):
+            self.data.qpos[self.places[k]], self.data.qvel[self.freedoms[k]] = row["pose"], row["rates"]
+            for number, (place, freedom) in enumerate(self._wheels[k]):
+                self.data.qpos[place], self.data.qvel[freedom] = row["wheels"][2 * number : 2 * number + 2]
+            self.rotors.speeds[k], self.rotors.disturbances[k], self.rotors.wind[k] = np.split(
+                np.asarray(row["rotors"]), [MOST_ROTORS, MOST_ROTORS + 6]
+            )
         mujoco.mj_step1(self.model, self.data)
 
     def _set_published_inertias(self) -> None:

@@ -71,7 +71,8 @@ def _heading(words: str) -> None:
 
 def _facts(run: Run) -> tuple[str, ...]:
     speed = "as fast as it goes" if run.speed is None else f"{run.speed:g} times"
-    state = f"{run.state}: {run.remark}" if run.remark else run.state
+    state = run.state if run.share is None else f"{run.state} ({run.share:.0%})"
+    state = f"{state}: {run.remark}" if run.remark else state
     return run.mission, state, f"{run.time_s:.0f} s", speed, run.world, run.author, f"{run.at:%Y-%m-%d %H:%M} UTC"
 
 

@@ -40,9 +40,10 @@ export class Controls {
 
   show(team, undoable) {
     this.run = team.run;
-    const { state, speed, world, remark, resumed } = team.run;
+    const { state, speed, world, remark, resumed, share } = team.run;
     setText(this.title, `${team.run.mission}, run ${team.run.id}`);
-    setText(this.state, `${RUN_MARKS[state]} ${state}`);
+    const stage = state === "resuming" ? ` ${Math.round(100 * share)} %` : "";
+    setText(this.state, `${RUN_MARKS[state]} ${state}${stage}`);
     this.state.dataset.state = state;
     setText(this.clock, clockTime(team.time));
     this.clock.dataset.seconds = team.time.toFixed(1);
@@ -57,6 +58,7 @@ export class Controls {
     if (!SIMULATED.includes(world)) this.speedLabel.hidden = true;
     if (document.activeElement !== this.speed) this.showSpeed(speed);
     for (const one of [this.pause, this.speed, this.add, this.end]) one.disabled = !alive;
+    if (state === "resuming") this.pause.disabled = true; // it may have been paused
     this.undo.disabled = !undoable;
   }
 

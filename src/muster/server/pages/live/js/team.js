@@ -131,8 +131,8 @@ export class Team {
     }
   }
 
-  turn({ state, speed, time_s: time, remark }) {
-    Object.assign(this.run, { state, speed, remark });
+  turn({ state, speed, time_s: time, remark, share = null }) {
+    Object.assign(this.run, { state, speed, remark, share });
     this.time = Math.max(this.time, time ?? 0);
   }
 

@@ -2,7 +2,7 @@
 
 
 export const TASK_MARKS = { open: "○", "under way": "◉", done: "✓", lost: "✕", cancelled: "⊘" };
-export const RUN_MARKS = { starting: "…", running: "▶", paused: "❚❚", ended: "✓", cancelled: "⊘", failed: "✕" };
+export const RUN_MARKS = { starting: "…", resuming: "↻", running: "▶", paused: "❚❚", ended: "✓", cancelled: "⊘", failed: "✕" };
 
 // Why a robot takes no part. `takenOut`: robot -> who took it out; nobody did where it failed of itself.
 export function outOf(robot, takenOut) {
