@@ -6,7 +6,7 @@ with all that was done before each plan.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +15,7 @@ from muster.mission.plan import Plan, Reason, Route, Unassigned
 from muster.mission.plan_reader import plan_from
 from muster.report.record.routes import is_over, names_ahead
 from muster.state import MissionState
+from muster.state.reasons import reasons_in_one_line
 
 Lines = Mapping[str, Sequence[Point]]
 
@@ -78,7 +79,11 @@ class PlanChanges:
         """
         ahead = {route.robot: names_ahead(route.tasks, mission_state) for route in plan.routes}
         changed = [robot for robot in lines if self._is_new(robot, ahead[robot], lines[robot], mission_state)]
-        left_out = {one.task: words_of(one.reasons) for one in plan.unassigned if not is_over(one.task, mission_state)}
+        left_out = {
+            one.task: reasons_in_one_line(one.reasons)
+            for one in plan.unassigned
+            if not is_over(one.task, mission_state)
+        }
         back = {task: None for task in self._left_out if task not in left_out and not is_over(task, mission_state)}
         news = {task: why for task, why in left_out.items() if self._left_out.get(task) != why}
         self._left_out = left_out
@@ -103,8 +108,3 @@ class PlanChanges:
         before, rest = [name for name in self._routes[robot] if not is_over(name, mission_state)], line[1:]
         known = self._lines[robot]
         return list(ahead) != before or list(rest) != list(known[len(known) - len(rest) :])
-
-
-def words_of(reasons: Collection[Reason]) -> str:
-    """Return why no robot is to do a task."""
-    return "; ".join(": ".join(filter(None, (one.robot, one.detail))) for one in reasons)
