@@ -8,6 +8,7 @@ import muster
 MOST = 12
 MORE = {
     "muster/execution/executor.py:__init__": "the parts of a run that is assembled in two places, each by its name",
+    "muster/simulation/world_base.py:__init__": "what makers of worlds are called with, each by its name",
     "muster/planning/solve.py:solve": "users pass the options of planning beside any parameter of the allocator",
 }
 """Functions that have more, and why."""

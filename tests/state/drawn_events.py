@@ -85,6 +85,7 @@ class Drawn:
             "event": lambda: {"cancel_task": "no such"},
             "load": lambda: {"kg": 1.0},
             "again": list,
+            "used": lambda: {robots[0]: 1.0} if kind == "resumed" else 1.0,
             "usage": lambda: [1.0, 1.0],
             "waited_s": lambda: {robots[0]: 1.0},
             "services": lambda: ["unload"],
@@ -92,7 +93,7 @@ class Drawn:
         if name in made:
             return made[name]()
         kind_of = {"words": "waits", "cause": "team", "what": "elsewhere", "how": "", "waits_for": robots[0]}
-        numbers = ("by_s", "since_s", "until_s", "takes_s", "zero_s", "capacity", "charge", "missing", "drain", "used")
+        numbers = ("by_s", "since_s", "until_s", "takes_s", "zero_s", "capacity", "charge", "missing", "drain")
         if name in ("waits_for",) and kind == "standstill":
             return robots
         return 1.0 if name in numbers else kind_of.get(name, robots[0] if name in ("round", "makes_room_for") else None)

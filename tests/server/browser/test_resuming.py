@@ -11,7 +11,7 @@ TAKE = """message => {
   const { view } = getElement(Number(document.querySelector('.muster-live-frame').id.slice(1)));
   view.take(message);
   view.showPanels();
-  const { routes, leftOut, hopeless } = view.team;
+  const { routes, state: { leftOut }, hopeless } = view.team;
   return { routes: Object.fromEntries(routes), leftOut: Object.fromEntries(leftOut), hopeless };
 }"""
 
@@ -52,10 +52,10 @@ def test_a_later_plan_changes_what_it_says_and_nothing_else(page):
     reasons = [{"robot": "r_1", "reason": "skill", "detail": "no gripper"}]
     whole = {"routes": [], "unassigned": [{"task": "1", "reasons": reasons}]}
     lines = {"r_0": [[0, 0], [1, 1]], "r_1": [[5, 5], [6, 6]]}
-    assert plan(900, plan=whole, lines=lines)["leftOut"] == {"1": "r_1: no gripper"}
+    assert plan(900, plan=whole, lines=lines)["leftOut"] == {"1": "skill: no gripper (r_1)"}
     told = plan(901, routes={"r_0": ["2"]}, stops={}, lines={"r_0": [[0, 0], [3, 3]]}, left_out={"3": "no way"})
     assert told["routes"] == {"r_0": [[0, 0, 0], [3, 3, 0]], "r_1": [[5, 5, 0], [6, 6, 0]]}
-    assert told["leftOut"] == {"1": "r_1: no gripper", "3": "no way"}
+    assert told["leftOut"] == {"1": "skill: no gripper (r_1)", "3": "no way"}
     told = plan(902, routes={"r_1": []}, stops={}, lines={"r_1": []}, left_out={"1": None})
     assert told["routes"]["r_1"] == []
     assert told["leftOut"] == {"3": "no way"}

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from muster.server.runs.log_lines import line_of
 from tests.server.runs.stage import performed
 from tests.state.played import site
 
@@ -17,6 +16,7 @@ from muster.report.record import read_record
 from muster.server.runs.crash_recovery import recovered_from
 from muster.server.runs.recording import flown, write_record
 from muster.server.runs.tracks import VALUES, Steps, unpacked
+from muster.state.words import line_of
 
 FILES = Path(__file__).parents[2] / "data" / "format_1"
 

@@ -6,9 +6,10 @@ import base64
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from muster.server.runs.tracks import Steps, unpacked
+if TYPE_CHECKING:
+    from muster.server.runs.tracks import Steps
 
 LOG, TRACKS = "log.jsonl", "tracks.base64"
 """A line is an entry; a line is a stretch."""
@@ -22,5 +23,7 @@ def read_log(folder: Path) -> Iterator[Mapping[str, Any]]:
 
 def read_tracks(folder: Path) -> Iterator[Steps]:
     """Yield the stretches of tracks."""
+    from muster.server.runs.tracks import unpacked  # NumPy makes a server large, which reads no tracks itself
+
     with (folder / TRACKS).open("rb") as file:
         yield from (unpacked(base64.b64decode(line)) for line in file)
