@@ -77,7 +77,7 @@ def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and
 
     recording = read_record(file)
     assert recording.complete
-    assert {task: recording.outcome.states[task] for task in ("8", "new", "last")} == dict.fromkeys(
+    assert {task: recording.outcome.stage(task) for task in ("8", "new", "last")} == dict.fromkeys(
         ("8", "new", "last"), "done"
     )
     assert {robot.id for robot in recording.robots} == {"r_0", "r_1", "r_2", "j"}
