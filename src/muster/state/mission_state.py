@@ -255,24 +255,28 @@ class MissionState:
 
     def task_of(self, data: Mapping[str, Any] | str) -> Task:
         """A task from plain data, or by the id of one that there is or that the mission's own events bring."""
-        made: Task = self._made(Task, data, self.tasks, [event.new_task for event in self.mission.events])
+        made: Task = self._made(Task, self._there(data, "new_task", self.tasks), "new_task")
         return made
 
     def robot_of(self, data: Mapping[str, Any] | str) -> Robot:
         """A robot, likewise."""
-        there = {name: known.robot for name, known in self.robots.items()}
-        made: Robot = self._made(Robot, data, there, [event.robot_joins for event in self.mission.events])
+        there = {name: known.robot for name, known in self.robots.items()} if isinstance(data, str) else {}
+        made: Robot = self._made(Robot, self._there(data, "robot_joins", there), "robot_joins")
         return made
 
-    def _made(self, model: Any, data: Any, there: Mapping[str, Any], brought: Iterable[Any]) -> Any:
-        what = f"event {'new_task' if model is Task else 'robot_joins'}"
-        if isinstance(data, str):
-            data = {**there, **{one.id: one for one in brought if one is not None}}.get(data, data)
+    def _there(self, data: Any, kind: str, there: Mapping[str, Any]) -> Any:
+        """What an id stands for: one that the mission's own events bring, or that there is; plain data as they are."""
+        if not isinstance(data, str):
+            return data
+        brought = (getattr(event, kind) for event in self.mission.events)
+        return {**there, **{one.id: one for one in brought if one is not None}}.get(data, data)
+
+    def _made(self, model: Any, data: Any, kind: str) -> Any:
         faults: list[Fault] = []
         try:
             made = Record(model, f"a {model.__name__.lower()}").read(data, (), faults)
         except MissionError as error:
-            raise ParameterError(f"{what}: {error}") from None
+            raise ParameterError(f"event {kind}: {error}") from None
         if faults:
-            raise ParameterError(f"{what}: {faults[0].value}; expected {faults[0].expected}")
+            raise ParameterError(f"event {kind}: {faults[0].value}; expected {faults[0].expected}")
         return made
