@@ -94,10 +94,7 @@ def carry_out_live(
             live.hear(live.time_s + LOOK_S)
     finally:
         live.stop()
-    report = live.result()
-    if recorder is not None:
-        recorder.on_report(report.as_dict())
-    return report
+    return live.tell_report(live.result())
 
 
 class Live:
@@ -178,6 +175,11 @@ class Live:
             self._say_start(mission, begin_s)
 
     @property
+    def state(self) -> MissionState:
+        """What is known of the mission; to look at."""
+        return self.executor.state
+
+    @property
     def time_s(self) -> float:
         """The mission's clock; it goes on in a pause."""
         return self._fleet.time_s
@@ -220,7 +222,13 @@ class Live:
     def tell_places(self) -> None:
         """Tell the recorder where robots say that they are."""
         if self._recorder is not None:
-            _tell_places(self._recorder, self.time_s, self.executor.state.robots, self._fleet.ports)
+            _tell_places(self._recorder, self.time_s, self.state.robots, self._fleet.ports)
+
+    def tell_report(self, report: Report) -> Report:
+        """Tell the recorder what it took, and return that."""
+        if self._recorder is not None:
+            self._recorder.on_report(report.as_dict())
+        return report
 
     def pause(self) -> None:
         """Robots stop where they are until `resume`; the mission's clock goes on."""

@@ -52,14 +52,9 @@ class RealRun(Live):
         there = with_reported_starts(mission, fleet) if state is None else mission
         request = replace(request or RunRequest(world=OPEN_FLEET), ignore=plan.ignored)
         super().__init__(there, plan, fleet, request, recorder=recorder, state=state, wall=wall)
-        self._at_end, self._paused, self._told = at_end, False, recorder
+        self._at_end, self._paused = at_end, False
         for line in elsewhere(mission, there) if state is None else ():
             self.executor.emit(Elsewhere(what=line))
-
-    @property
-    def state(self) -> MissionState:
-        """What is known of the mission; to look at."""
-        return self.executor.state
 
     @property
     def starts_at(self) -> str | None:
@@ -81,7 +76,7 @@ class RealRun(Live):
             self.stop()
             self._at_end()
             self._tell_final_states()
-            self._told.on_report(self.result().as_dict())
+            self.tell_report(self.result())
 
     def report(self, event: Event) -> None:
         self.executor.come_to(self.time_s)
@@ -93,9 +88,7 @@ class RealRun(Live):
     def break_off(self, reason: str) -> Report:
         self.stop()
         self._tell_final_states()
-        report = broken_off(self.result(), self.executor.account, reason)
-        self._told.on_report(report.as_dict())
-        return report
+        return self.tell_report(broken_off(self.result(), self.executor.account, reason))
 
     def _tell_final_states(self) -> None:
         """Log where each robot is at the end, what it does, and whether it still flies, drives or is armed."""
