@@ -140,8 +140,7 @@ class TeamLog:
         """Every task that is not done, and why."""
         ledger = self.state.ledger
         reasons = {item.task: self._why(item) for item in self._plans[-1].unassigned} if self._plans else {}
-        missed = {**{task.id: self._tied_to_done(task.id) for task in ledger.open}, **ledger.expired}
-        return ledger.lost(lambda task: missed.get(task) or reasons.get(task) or "not done", self.state.gone)
+        return ledger.lost(lambda task: ledger.expired.get(task) or reasons.get(task) or "not done", self.state.gone)
 
     def _why(self, item: Unassigned) -> str:
         """Why a task is left out by the robots that take part: what kept them from it, which no plan knows, first."""
@@ -150,11 +149,6 @@ class TeamLog:
             return "no robot takes part any more"
         reasons = tuple(reason for reason in item.reasons if reason.robot in present)
         return why_left_out(replace(item, reasons=reasons), self.state.ledger.refusals.get(item.task, {}))
-
-    def _tied_to_done(self, task: str) -> str:
-        """Why a task cannot begin any more where one that begins with it is done; empty where none is."""
-        ledger = self.state.ledger
-        return ledger.too_late_to_begin_with([name for name in ledger.unit(task) if name in ledger.ends_s])
 
     @property
     def account(self) -> Account:
