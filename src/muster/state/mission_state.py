@@ -167,7 +167,7 @@ class MissionState:
 
     def take_out(self, robot: str, why: str, now: float) -> None:
         """A robot takes no part any more, and work on which it was is broken off."""
-        for task in [task for task in self.ledger.starts_s if robot in self.ledger.at_work(task)]:
+        for task in [task for task in self.ledger.under_way if robot in self.ledger.at_work(task)]:
             self.ledger.break_off(task)
         if robot in self.robots:
             self.robots[robot].out, self.robots[robot].out_s = why, now
@@ -248,7 +248,7 @@ class MissionState:
         """The run goes on after a stop: what robots were at is begun again, unless it may be begun but once."""
         for robot in self.robots.values():
             robot.came_to.clear()
-        for task in [name for name in self.ledger.starts_s if self.ledger.at_work(name)]:
+        for task in self.ledger.under_way:
             if self.tasks[task].across_partition == AT_MOST_ONCE:
                 self.ledger.expire(task, BARRED)
             self.ledger.break_off(task)

@@ -70,7 +70,7 @@ class PlanAdopted(ExecutionEvent):
         gone = {name: None for name in state.left_out if name not in why}
         return cls(
             routes={name: route for name, route in routes.items() if route != state.routes.get(name, ())},
-            left_out=gone | {task: words for task, words in why.items() if words != state.left_out.get(task)},
+            left_out=gone | {task: because for task, because in why.items() if because != state.left_out.get(task)},
         )
 
     def change(self, state: MissionState) -> None:

@@ -247,6 +247,11 @@ class Ledger:
         """The robots that have begun a task and not ended it."""
         return self.teams.get(task, ()) if task in self.starts_s and task not in self.ends_s else ()
 
+    @property
+    def under_way(self) -> list[str]:
+        """The tasks that have been begun and not ended."""
+        return [task for task in self.starts_s if self.at_work(task)]
+
     def break_off(self, task: str) -> None:
         """Work on a task, and on those that began with it, is broken off: what was done of it is lost."""
         if task not in self.tasks:
