@@ -16,6 +16,7 @@ from random import Random
 
 import httpx
 from tests.server.databases import PostgreSQL, postgresql_programs
+from tests.server.runs.campaign import tell
 from tests.server.runs.process import Serving, until
 
 from muster.server.store.store import Store
@@ -162,11 +163,6 @@ def _orders(users):
 
 def _faults(users):
     return [fault for user in users for fault in user.faults]
-
-
-def tell(counted):
-    sys.stdout.write(f"{counted}\n")
-    sys.stdout.flush()
 
 
 def main():
