@@ -28,7 +28,6 @@ GROUND, AIR, JOINS = ABILITIES = ("ground", "air", "joins")
 FLEETS: Registry[OpenFleet] = Registry(
     "fleet",
     "muster.fleets",
-    {name: f"muster.running.fleets:open_{name}" for name in ("ros1", "ros2", "mavlink")},
     function_expected("a function that opens a fleet"),
 )
 
