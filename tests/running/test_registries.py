@@ -8,9 +8,8 @@ import pytest
 import muster
 from muster.cli.main import run
 from muster.exchange.export_request import FORMATS
-from muster.mission.errors import ParameterError
-from muster.running.fleet_registry import FLEETS
-from muster.running.fleets import fleet_ready
+from muster.mission.errors import MissingExtraError, ParameterError
+from muster.running.fleet_registry import FLEETS, declares, fleet_ready
 from muster.running.worlds import WORLDS, world_named
 from muster.server.runs.run_settings import new_request
 from muster.simulation import KinematicWorld
@@ -80,6 +79,20 @@ def test_a_fleet_is_opened_with_the_settings_of_the_run(added, mission):
     new_request("barges", ("barges",), {"port": 3})
     with pytest.raises(ParameterError, match="world: barges; expected kinematic, physics"):
         new_request("barges", (), {})
+
+
+def test_what_a_fleet_needs_is_asked_for_before_it_is_opened_or_served(added, mission, capsys):
+    opened = []
+
+    def lacks():
+        raise MissingExtraError("barges", "fleet barges")
+
+    added(FLEETS, "barges", declares(require_installed=lacks)(lambda *given: opened.append(given)))
+    with pytest.raises(MissingExtraError, match="fleet barges"):
+        fleet_ready("barges", mission, {}, threading.Event(), again=False)
+    assert run(["serve", "--bridge", "barges"]) == 2
+    assert "fleet barges" in capsys.readouterr().err
+    assert not opened
 
 
 def test_a_format_is_exported_to(added, mission, tmp_path, capsys):

@@ -15,8 +15,8 @@ from muster.running.observed_run import ObservedRun, keywords_of_run
 from muster.running.recorded import recorded
 
 if TYPE_CHECKING:
-    from muster.bridges.fleet import Fleet
     from muster.execution import Report
+    from muster.execution.fleet import Fleet
 
 
 def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: ObservedRun) -> Report:
