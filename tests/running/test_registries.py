@@ -2,11 +2,13 @@
 
 import json
 import threading
+from pathlib import Path
 
 import pytest
 
 import muster
 from muster.cli.main import run
+from muster.cli.other_recordings import OTHER_RECORDINGS
 from muster.exchange.export_request import FORMATS
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.running.fleet_registry import FLEETS, declares, fleet_ready
@@ -38,9 +40,16 @@ def test_what_ships_is_there_in_order():
     assert list(WORLDS) == ["kinematic", "physics"]
     assert list(FLEETS) == ["ros1", "ros2", "mavlink"]
     assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv", "sol", "sheets", "overview", "xlsx", "ics"]
+    assert list(OTHER_RECORDINGS) == ["ros"]
     assert world_named("kinematic") is KinematicWorld
     assert all(callable(FLEETS[name]) for name in FLEETS)
     assert all(callable(FORMATS[name]) for name in FORMATS)
+    assert OTHER_RECORDINGS["ros"].is_recording(Path("nowhere.bag")) is False
+
+
+def test_recordings_that_lack_a_function_are_refused(added):
+    with pytest.raises(ParameterError, match="recordings radio: it has no add_options; expected a module"):
+        added(OTHER_RECORDINGS, "radio", object())
 
 
 def test_a_world_carries_a_plan_out(added, mission, tmp_path, capsys):
