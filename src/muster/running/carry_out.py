@@ -25,7 +25,7 @@ def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: Obser
     Parameters
     ----------
     fleet
-        the robots, behind a bridge of `muster.bridges`, which stays open; or the name of a registered fleet, which is
+        the robots, as a `muster.execution.fleet.Fleet`, which stays open; or the name of a registered fleet, which is
         opened with the `settings` of the request, and closed.
     request
         how the plan is carried out: the fields of `RunRequest` and `ObservedRun`, by name.
