@@ -2,15 +2,16 @@
 
 import json
 import threading
+from pathlib import Path
 
 import pytest
 
 import muster
 from muster.cli.main import run
+from muster.cli.other_recordings import OTHER_RECORDINGS
 from muster.exchange.export_request import FORMATS
-from muster.mission.errors import ParameterError
-from muster.running.fleet_registry import FLEETS
-from muster.running.fleets import fleet_ready
+from muster.mission.errors import MissingExtraError, ParameterError
+from muster.running.fleet_registry import FLEETS, declares, fleet_ready
 from muster.running.worlds import WORLDS, world_named
 from muster.server.runs.run_settings import new_request
 from muster.simulation import KinematicWorld
@@ -39,9 +40,16 @@ def test_what_ships_is_there_in_order():
     assert list(WORLDS) == ["kinematic", "physics"]
     assert list(FLEETS) == ["ros1", "ros2", "mavlink"]
     assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv", "sol", "sheets", "overview", "xlsx", "ics"]
+    assert list(OTHER_RECORDINGS) == ["ros"]
     assert world_named("kinematic") is KinematicWorld
     assert all(callable(FLEETS[name]) for name in FLEETS)
     assert all(callable(FORMATS[name]) for name in FORMATS)
+    assert OTHER_RECORDINGS["ros"].is_recording(Path("nowhere.bag")) is False
+
+
+def test_recordings_that_lack_a_function_are_refused(added):
+    with pytest.raises(ParameterError, match="recordings radio: it has no add_options; expected a module"):
+        added(OTHER_RECORDINGS, "radio", object())
 
 
 def test_a_world_carries_a_plan_out(added, mission, tmp_path, capsys):
@@ -80,6 +88,20 @@ def test_a_fleet_is_opened_with_the_settings_of_the_run(added, mission):
     new_request("barges", ("barges",), {"port": 3})
     with pytest.raises(ParameterError, match="world: barges; expected kinematic, physics"):
         new_request("barges", (), {})
+
+
+def test_what_a_fleet_needs_is_asked_for_before_it_is_opened_or_served(added, mission, capsys):
+    opened = []
+
+    def lacks():
+        raise MissingExtraError("barges", "fleet barges")
+
+    added(FLEETS, "barges", declares(require_installed=lacks)(lambda *given: opened.append(given)))
+    with pytest.raises(MissingExtraError, match="fleet barges"):
+        fleet_ready("barges", mission, {}, threading.Event(), again=False)
+    assert run(["serve", "--bridge", "barges"]) == 2
+    assert "fleet barges" in capsys.readouterr().err
+    assert not opened
 
 
 def test_a_format_is_exported_to(added, mission, tmp_path, capsys):
