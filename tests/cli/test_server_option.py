@@ -19,7 +19,7 @@ from muster.allocation.stop import Stop
 from muster.client import Client
 from muster.client.backend import awaited, followed
 from muster.client.uploads import packed_mission
-from muster.exchange.mission_control import ConflictError, Job
+from muster.server.contract import ConflictError, Job
 from muster.server.security.tokens import line_of, new_token
 
 VERBS = ("missions", "check", "solve", "verify", "explain", "simulate", "export")

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
     from muster.cli.local_backend import OnLine
     from muster.exchange.export_request import ExportOptions, Files
-    from muster.exchange.mission_control import MissionEntry
     from muster.execution import Report
     from muster.library import MissionSummary
     from muster.planning.explaining import Possible
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from muster.planning.solving import Solution
     from muster.running.negotiated.simulation import Negotiation
     from muster.running.observed_run import ObservedRun
+    from muster.server.contract import MissionEntry
     from muster.verification import Verdict
 
 Verb = Callable[..., Any]

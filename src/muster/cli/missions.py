@@ -9,7 +9,7 @@ import click
 
 from muster.cli.backend import Backend, server_option
 from muster.cli.options import format_option, quiet_option
-from muster.exchange.mission_control import MissionEntry
+from muster.server.contract import MissionEntry
 
 if TYPE_CHECKING:
     from muster.library import MissionSummary

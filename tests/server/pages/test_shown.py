@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from muster.exchange.mission_control import MissionVersion
 from muster.library.shipped import mission_path
 from muster.mission.yaml_reader import read_yaml
 from muster.mission.yaml_writer import plain
+from muster.server.contract import MissionVersion
 from muster.server.pages.map import scene_of
 from muster.server.pages.missions.new_mission import EMPTY, EMPTY_IN_SPACE, options_of, refused, sorted_out
 from muster.server.pages.missions.view import ago

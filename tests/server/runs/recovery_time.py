@@ -16,8 +16,8 @@ from tests.server.runs.stage import performed
 from tests.server.runs.store import planned
 
 import muster
-from muster.exchange.mission_control import Checkpoint, Entry
 from muster.mission.model import Mission, Robot, Rules
+from muster.server.contract import Checkpoint, Entry
 from muster.server.runs.checkpoints import MOST_ENTRIES, packed_state
 from muster.server.store.store import Store
 from muster.state import MissionState, checkpoint_of, event_of

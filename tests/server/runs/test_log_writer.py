@@ -8,7 +8,7 @@ import pytest
 from tests.server.runs.store import planned
 
 import muster
-from muster.exchange.mission_control import StoreError
+from muster.server.contract import StoreError
 from muster.server.runs import log_writer as module
 from muster.server.runs.journal import Journal
 from muster.server.runs.log_writer import LogWriter

@@ -10,8 +10,8 @@ from tests.server.runs.played import PLAN, REPORT, entry, play
 from tests.server.runs.store import ADA, planned, settings_of
 
 import muster
-from muster.exchange.mission_control import Checkpoint, ConflictError, Entry, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
+from muster.server.contract import Checkpoint, ConflictError, Entry, NotFoundError, StoreError
 from muster.server.runs.checkpoints import packed_state, unpacked_state
 from muster.server.services.runs import Runs
 

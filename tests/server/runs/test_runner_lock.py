@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from muster.exchange.mission_control import StoreError
 from muster.mission.errors import NetworkError
+from muster.server.contract import StoreError
 from muster.server.runs.runner_lock import alone
 from muster.server.services.database_lock import lock_of_runs
 from muster.server.settings import Settings

@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import User
 from muster.mission.errors import MissingExtraError
+from muster.server.contract import User
 from muster.server.pages.sockets import OwnUploads, guard_sockets
 from muster.server.pages.visitor import PageContext, WithServices
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, NotFoundError
+from muster.server.contract import OVER, Action, ConflictError, Entry, NotFoundError
 from muster.server.runs.journal import Journal
 
 if TYPE_CHECKING:

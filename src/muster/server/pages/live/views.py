@@ -7,8 +7,8 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import OVER, Run
 from muster.mission.errors import MusterError
+from muster.server.contract import OVER, Run
 from muster.server.pages.frame import frame
 from muster.server.pages.live.element import RunView
 from muster.server.pages.notices import errors_shown, words_of

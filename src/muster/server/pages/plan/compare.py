@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import PlanEntry
+from muster.server.contract import PlanEntry
 from muster.server.pages.frame import frame
 from muster.server.pages.map import MissionMap
 from muster.server.pages.notices import errors_shown

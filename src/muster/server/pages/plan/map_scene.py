@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
-from muster.exchange.mission_control import MissionVersion
+from muster.server.contract import MissionVersion
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.map import scene_of
 from muster.server.pages.visitor import the_services
