@@ -31,7 +31,6 @@ from muster.running.claim_locks import robots_claimed
 from muster.running.robot_claims import claims_as_far_as_known
 from muster.running.worlds import WORLDS
 from muster.server.runs.checkpoints import unpacked_state
-from muster.server.runs.crash_recovery import recovered_from
 from muster.server.runs.log_recorder import LogRecorder
 from muster.server.runs.pipe import Inbox, Outbox
 from muster.server.runs.run_loop import RunLoop
@@ -40,6 +39,7 @@ from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
 from muster.state import MissionState
+from muster.state.recovery import recovered_from
 
 if TYPE_CHECKING:
     from muster.server.runs.real_run import RealRun
