@@ -13,8 +13,8 @@ from tests.state.played import site
 import muster
 from muster.mission.model import Mission, Robot, Station, Task
 from muster.report.record import read_record
-from muster.server.runs.recording import flown, write_record
-from muster.server.runs.tracks import VALUES, Steps, unpacked
+from muster.server.runs.log.tracks import VALUES, Steps, unpacked
+from muster.server.runs.records.recording import flown, write_record
 from muster.state.recovery import recovered_from
 from muster.state.words import line_of
 

@@ -12,8 +12,8 @@ from tests.server.runs.store import ADA, planned, settings_of
 
 import muster
 from muster.server.contract import Entry, StoreError
-from muster.server.runs.journal import Journal
-from muster.server.runs.journal_replay import replay
+from muster.server.runs.log.journal import Journal
+from muster.server.runs.log.journal_replay import replay
 from muster.server.services.database_lock import journal_of
 from muster.server.services.runs import Runs
 from muster.server.store.actions import new_action

@@ -9,9 +9,9 @@ from tests.server.runs.store import planned
 
 import muster
 from muster.server.contract import StoreError
-from muster.server.runs import log_writer as module
-from muster.server.runs.journal import Journal
-from muster.server.runs.log_writer import LogWriter
+from muster.server.runs.log import writer as module
+from muster.server.runs.log.journal import Journal
+from muster.server.runs.log.writer import LogWriter
 
 PIECE = b"x" * 100
 

@@ -6,7 +6,7 @@ from tests.running.test_wall_time import ANY, DAY_S, SOON, Wall, mission
 
 import muster
 from muster.running.run_request import OPEN_FLEET, RunRequest
-from muster.server.runs.real_run import RealRun
+from muster.server.runs.runner.real_run import RealRun
 from muster.state.recovery import recovered_from
 
 

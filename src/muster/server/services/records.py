@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.server.contract import OVER, ConflictError
-from muster.server.runs.record_files import LOG, TRACKS
+from muster.server.runs.records.record_files import LOG, TRACKS
 from muster.server.work.pool import Pool
 from muster.server.work.temporary_folders import OF_WORK
 
