@@ -18,7 +18,7 @@ from muster.server.runs.records.recording import flown, write_record
 from muster.state.recovery import recovered_from
 from muster.state.words import line_of
 
-FILES = Path(__file__).parents[2] / "data" / "format_1"
+FILES = Path(__file__).parents[3] / "data" / "format_1"
 
 
 def told(name):
