@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from muster.exchange.export_request import ExportOptions, Files
     from muster.execution import ExecutionEvent, Report
     from muster.library import MissionSummary
+    from muster.negotiation.runs.simulation import Negotiation
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
     from muster.planning.request import Request
     from muster.planning.solving import Solution
-    from muster.running.negotiated.simulation import Negotiation
     from muster.running.observed_run import ObservedRun
     from muster.verification import Verdict
 

@@ -16,8 +16,8 @@ from muster.running.recorded import recorded
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
+    from muster.negotiation.runs.simulation import Negotiation
     from muster.report.film import Footage
-    from muster.running.negotiated.simulation import Negotiation
 
 
 def simulated(mission: Mission, plan: Plan | Negotiation, request: ObservedRun) -> Report:
@@ -82,7 +82,7 @@ def _require_possible(mission: Mission, negotiation: Negotiation) -> None:
     """Refuse, before any file is opened, what is no negotiation, and a mission on which robots cannot agree."""
     from muster.negotiation.capabilities import refuse_mission
     from muster.negotiation.methods import method_named
-    from muster.running.negotiated.simulation import Negotiation
+    from muster.negotiation.runs.simulation import Negotiation
 
     if not isinstance(negotiation, Negotiation):
         raise ParameterError(f"plan: {shown(negotiation)}; expected a Plan or a Negotiation")
@@ -95,6 +95,6 @@ def _carry_out(mission: Mission, plan: Plan | Negotiation, request: ObservedRun,
 
         return carry_out(mission, plan, request, recorder=recorder)
     from muster.allocation.problem import Problem
-    from muster.running.negotiated.simulation import negotiate_and_carry_out
+    from muster.negotiation.runs.simulation import negotiate_and_carry_out
 
     return negotiate_and_carry_out(Problem.compile(mission).ready(), plan, request, recorder)

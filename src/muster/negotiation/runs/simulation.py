@@ -18,11 +18,11 @@ from muster.mission.model import Event
 from muster.negotiation.keys import new_key
 from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
+from muster.negotiation.runs.robot_bodies import MOST_SPEED, RobotBodies
+from muster.negotiation.runs.robot_process import run_robot_process
+from muster.negotiation.runs.team_log import TeamLog
 from muster.negotiation.team import Team, timeouts_for
 from muster.running.camera_search import camera_search_for, with_found
-from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
-from muster.running.negotiated.robot_process import run_robot_process
-from muster.running.negotiated.team_log import TeamLog
 from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation

@@ -10,10 +10,10 @@ from muster.allocation.problem import Problem
 from muster.execution.record import NoObserver
 from muster.mission.model import MovedTask
 from muster.negotiation.messages import Stage
-from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, WorkReport
-from muster.running.negotiated.robot_bodies import RobotBodies
-from muster.running.negotiated.simulation import setup_of
-from muster.running.negotiated.team_log import TeamLog
+from muster.negotiation.runs.pipe_messages import BodyState, OperatorEvent, WorkReport
+from muster.negotiation.runs.robot_bodies import RobotBodies
+from muster.negotiation.runs.simulation import setup_of
+from muster.negotiation.runs.team_log import TeamLog
 from muster.running.state_estimation import with_state_estimation
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
 
