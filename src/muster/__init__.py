@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     )
     from muster.mission.plan import Plan, Route
     from muster.mission.plan_reader import read_plan
-    from muster.negotiation.runs.simulation import Negotiation
+    from muster.negotiation.runs.negotiation import Negotiation
     from muster.planning.exporting import export
     from muster.planning.importing import read_site
     from muster.planning.judging import verify
@@ -151,7 +151,7 @@ _NAMES_OF = {
     "muster.planning.questions": "check explain",
     "muster.planning.solve": "solve",
     "muster.running.carry_out": "carry_out",
-    "muster.negotiation.runs.simulation": "Negotiation",
+    "muster.negotiation.runs.negotiation": "Negotiation",
     "muster.running.simulate": "simulate",
     "muster.running.simulation": "Simulation",
     "muster.verification": "Verdict",

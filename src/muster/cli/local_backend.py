@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from muster.exchange.export_request import ExportOptions, Files
     from muster.execution import ExecutionEvent, Report
     from muster.library import MissionSummary
-    from muster.negotiation.runs.simulation import Negotiation
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
     from muster.planning.request import Request
     from muster.planning.solving import Solution
+    from muster.running.coordination import Coordination
     from muster.running.observed_run import ObservedRun
     from muster.verification import Verdict
 
@@ -75,7 +75,7 @@ class LocalBackend:
         return exported(mission, require_admissible(mission, plan, file, ignore), form, options, plan)
 
     def simulate(
-        self, mission: Mission, plan: Plan | Negotiation, request: ObservedRun, on_line: OnLine | None
+        self, mission: Mission, plan: Plan | Coordination, request: ObservedRun, on_line: OnLine | None
     ) -> tuple[Report, float | None]:
         from muster.running.simulate import simulated
         from muster.state.words import DETAIL
