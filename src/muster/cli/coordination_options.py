@@ -36,7 +36,7 @@ def coordination_options(verb: Verb) -> Verb:
 def coordination_parameters() -> Iterator[str]:
     """Yield the names of the parameters that `coordination_options` adds to a verb."""
     for name, of in _USABLE.items():
-        yield name
+        yield _parameter(name)
         yield from (f.name for f in specified(of))
 
 
@@ -45,10 +45,16 @@ def _with_options(verb: Verb, name: str, of: type[Coordination]) -> Verb:
 
     @wraps(verb)
     def with_flag(*, how: Mapping[str, Any], **given: Any) -> Any:
-        asked = given.pop(name)
+        asked = given.pop(_parameter(name))
         if how and not asked:
             raise ParameterError(f"{options[min(how)]} given; expected it together with --{name}")
+        if asked and "coordination" in given:
+            raise ParameterError(f"--{name} given; expected it without --{given['coordination'][0]}")
         return verb(**given | ({"coordination": (name, how)} if asked else {}))
 
-    flag = click.option(f"--{name}", name, is_flag=True, help=of.summary)
+    flag = click.option(f"--{name}", _parameter(name), is_flag=True, help=of.summary)
     return flag(request_options(of)(cast("Verb", with_flag)))
+
+
+def _parameter(name: str) -> str:
+    return name.replace("-", "_")
