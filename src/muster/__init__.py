@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     )
     from muster.mission.plan import Plan, Route
     from muster.mission.plan_reader import read_plan
+    from muster.negotiation.runs.negotiation import Negotiation
     from muster.planning.exporting import export
     from muster.planning.importing import read_site
     from muster.planning.judging import verify
@@ -63,7 +64,6 @@ if TYPE_CHECKING:
     from muster.planning.questions import check, explain
     from muster.planning.solve import solve
     from muster.running.carry_out import carry_out
-    from muster.running.negotiated.simulation import Negotiation
     from muster.running.simulate import simulate
     from muster.running.simulation import Simulation
     from muster.verification import Verdict
@@ -151,7 +151,7 @@ _NAMES_OF = {
     "muster.planning.questions": "check explain",
     "muster.planning.solve": "solve",
     "muster.running.carry_out": "carry_out",
-    "muster.running.negotiated.simulation": "Negotiation",
+    "muster.negotiation.runs.negotiation": "Negotiation",
     "muster.running.simulate": "simulate",
     "muster.running.simulation": "Simulation",
     "muster.verification": "Verdict",

@@ -17,8 +17,9 @@ from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
 from muster.negotiation.participation import plan_of_view
-from muster.negotiation.process_reports import TRANSPORTS, TeamSetup
+from muster.negotiation.process_reports import TeamSetup
 from muster.negotiation.team import Team, timeouts_for
+from muster.negotiation.transport import TRANSPORTS
 
 GUARD_S = 60.0
 

@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.auction_options import (
-    method_options,
-    result_options,
-    robot_options,
-    simulation_options,
-    terms_of,
-    terms_options,
-)
+from muster.cli.auction_options import result_options, robot_options, simulation_options, terms_options
 from muster.cli.auction_result import Agreement
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
 from muster.cli.options import (
@@ -27,11 +21,14 @@ from muster.cli.options import (
     objective_option,
     quiet_option,
     require_complete_option,
+    settings_of,
 )
 from muster.cli.outputs import require_csv, require_drawable, require_folder, require_writable
+from muster.cli.request_options import request_options
 from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
+from muster.negotiation.runs.negotiation import Negotiation
 from muster.planning.judging import judged
 
 if TYPE_CHECKING:
@@ -45,7 +42,7 @@ _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", 
 
 @click.command()
 @mission_argument
-@method_options
+@request_options(Negotiation)
 @objective_option
 @ignore_option
 @terms_options
@@ -69,8 +66,7 @@ _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", 
 @quiet_option
 def command(
     mission: MissionFile,
-    method: str,
-    transport: str,
+    how: Mapping[str, Any],
     objective: str | None,
     ignore: tuple[str, ...],
     settings: tuple[str, ...],
@@ -101,13 +97,14 @@ def command(
     require_drawable(plot, gantt)
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)
-    chosen = method_named(method)
-    terms = terms_of(chosen, others, settings)
+    words = {name: others[name] for name in ("bid", "placement", "winner")}
+    negotiation = Negotiation(**how, params=settings_of(settings, words))
+    chosen, terms = method_named(negotiation.method), negotiation.terms
     loaded = mission.load(verbose=verbose)
     problem = Problem.compile(loaded, objective, ignore)
     refuse_what_is_not_agreed(problem, chosen.can)
     problem = problem.ready()
-    agreement = _agree(problem, terms, chosen, transport, others, quiet=quiet, verbose=verbose)
+    agreement = _agree(problem, terms, chosen, negotiation.transport, others, quiet=quiet, verbose=verbose)
     first = next(iter(agreement.views.values()))
     plan = chosen.plan(problem, terms, first, agreement.took_s)
     show_plan(loaded, plan, judged(loaded, plan, ignore, objective), form=form, output=output, plot=plot, gantt=gantt)

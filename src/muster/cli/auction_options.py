@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import click
 
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.cli.options import Finite, settings_of
-
-if TYPE_CHECKING:
-    from muster.negotiation.methods import Method
+from muster.cli.options import Finite
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path)
@@ -28,17 +25,6 @@ def _group(*options: Callable[[Any], Any]) -> Callable[[Verb], Verb]:
 
     return add
 
-
-method_options = _group(
-    click.option("--method", default="auction", show_default=True, metavar="NAME", help="How robots agree."),
-    click.option(
-        "--transport",
-        type=click.Choice(["udp", "zenoh"]),
-        default="udp",
-        show_default=True,
-        help="What carries messages.",
-    ),
-)
 
 terms_options = _group(
     click.option("--bid", type=click.Choice(BIDS), help="What robots bid.  [default: the objective]"),
@@ -100,11 +86,3 @@ simulation_options = _group(
     click.option("--crashes", type=click.IntRange(min=0), metavar="N", help="Robots that crash on the way, there."),
     click.option("--cut", type=_SECONDS, metavar="S", help="Cut the team in two for so long, there."),
 )
-
-
-def terms_of(method: Method, others: Mapping[str, Any], settings: tuple[str, ...]) -> Any:
-    """The parameters of a method from the options of `terms_options`."""
-    from muster.allocation.allocator import make_parameters
-
-    words = {name: others[name] for name in ("bid", "placement", "winner")}
-    return make_parameters(method.allocator, settings_of(settings, words))

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from muster.planning.explaining.tables import Explanation
     from muster.planning.request import Request
     from muster.planning.solving import Solution
-    from muster.running.negotiated.simulation import Negotiation
+    from muster.running.coordination import Coordination
     from muster.running.observed_run import ObservedRun
     from muster.verification import Verdict
 
@@ -73,7 +73,7 @@ class Backend(Protocol):
         """An admissible plan as files of other tools."""
 
     def simulate(
-        self, mission: Mission, plan: Plan | Negotiation, request: ObservedRun, on_line: OnLine | None
+        self, mission: Mission, plan: Plan | Coordination, request: ObservedRun, on_line: OnLine | None
     ) -> tuple[Report, float | None]:
         """Carry a plan out; its report, and the mission's time at which Ctrl-C ended it, None where nothing did.
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from muster.planning.explaining.tables import Explanation
     from muster.planning.request import Request
     from muster.planning.solving import Solution
-    from muster.running.negotiated.simulation import Negotiation
+    from muster.running.coordination import Coordination
     from muster.running.observed_run import ObservedRun
     from muster.verification import Verdict
 
@@ -93,7 +93,7 @@ class LocalBackend:
         return exported(mission, require_admissible(mission, plan, file, ignore), form, options, plan)
 
     def simulate(
-        self, mission: Mission, plan: Plan | Negotiation, request: ObservedRun, on_line: OnLine | None
+        self, mission: Mission, plan: Plan | Coordination, request: ObservedRun, on_line: OnLine | None
     ) -> tuple[Report, float | None]:
         from muster.running.simulate import simulated
         from muster.state.words import DETAIL

@@ -51,7 +51,7 @@ def _with_planning_options(verb: Verb, time_limit_s: float | None, carries_out: 
     def with_options(*, settings: tuple[str, ...], **given: Any) -> Any:
         named = {name: given.pop(name) for name in _PARAMETERS}
         parameters = settings_of(settings, named)
-        if not given.get("negotiate"):  # then the method of the negotiation takes them
+        if given.get("coordination") is None:  # else its method takes them
             _require_taken(given["allocator"], named)
         if given["iterations"] is None and given["time_limit"] is None:
             given["time_limit"] = time_limit_s

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from muster.cli.auction_options import method_options
 from muster.cli.backend import Backend, server_option
+from muster.cli.coordination_options import coordination_options, coordination_parameters
 from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
@@ -35,11 +35,11 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
+from muster.running.coordination import COORDINATIONS, Coordination
 from muster.running.observed_run import ObservedRun
 from muster.running.run_request import SIMULATED, RunRequest
 
 if TYPE_CHECKING:
-    from muster import Negotiation
     from muster.report.camera_pictures import CameraPictures
     from muster.running.localisation import Localise
 
@@ -48,14 +48,11 @@ _OF_A_PLAN = (
     *("plan", "ignore", "time_limit", "iterations", "allocator", "objective", "threads", "ray"),
     *("bound", "start", "fixed", "rewire", "stay", "until_s", "orders"),
 )
-_OF_A_NEGOTIATION = ("method", "transport")
 _PROCESSES = "the robots' processes run on this machine"
 _PICTURES = "it keeps no pictures of cameras"
 _BODIES = "it keeps where bodies are, and not how they look"
 _IN_THIS_PROCESS = {
-    "method": _PROCESSES,
-    "transport": _PROCESSES,
-    "negotiate": _PROCESSES,
+    **dict.fromkeys(coordination_parameters(), _PROCESSES),
     "ray": "a server uses no cluster",
     "found": _PICTURES,
     "cameras": _PICTURES,
@@ -73,7 +70,7 @@ class _Asked:
     plan: Path | None
     start: Path | None
     fixed: Path | None
-    negotiate: bool
+    coordination: tuple[str, Mapping[str, Any]] | None
     record: Path | None
     html: Path | None
     plot: Path | None
@@ -83,8 +80,6 @@ class _Asked:
     film: Path | None
     film_speed: float | None
     still: Path | None
-    method: str
-    transport: str
     foxglove: int | None
     require_complete: bool
     form: str
@@ -95,8 +90,8 @@ class _Asked:
 @click.command()
 @mission_argument
 @click.option("--plan", type=_FILE, metavar="PLAN", help="The plan.  [default: one that the allocator makes]")
+@coordination_options
 @planning_options(time_limit_s=2.0, carries_out=True)
-@click.option("--negotiate", is_flag=True, help="No plan: each robot is a process, and they agree among themselves.")
 @request_options(RunRequest, SIMULATED)
 @record_option
 @drawing_options
@@ -110,7 +105,6 @@ class _Asked:
 )
 @click.option("--still", type=_FILE, metavar="FILE", help="Draw how it ended from above, in the physics world (.png).")
 @foxglove_option
-@method_options
 @require_complete_option
 @format_option
 @quiet_option
@@ -128,7 +122,8 @@ def command(
     each decides for itself what to do next. They exchange messages in real time.
     """
     asked = _Asked(**given)
-    _check_together(asked.negotiate)
+    if asked.coordination is not None:
+        _refuse_options_of_plans(asked.coordination[0])
     request = _request(asked, options, how)
     _require_outputs(asked, mission, request.world)
     loaded = mission.load(verbose=asked.verbose)
@@ -163,9 +158,9 @@ def command(
 
 def _request(asked: _Asked, options: PlanningOptions, how: Mapping[str, Any]) -> ObservedRun:
     """The request of the run; what is wrong with it is said before anything is read."""
-    if "speed" not in how and (asked.negotiate or asked.foxglove is not None):
+    if "speed" not in how and (asked.coordination or asked.foxglove is not None):
         how = {**how, "speed": 1.0}
-    rules: dict[str, Any] = {} if asked.negotiate else {"ignore": options.ignore, "planning": options}
+    rules: dict[str, Any] = {} if asked.coordination else {"ignore": options.ignore, "planning": options}
     return ObservedRun(**how, seed=options.seed, **rules)
 
 
@@ -177,25 +172,23 @@ def _require_outputs(asked: _Asked, mission: MissionFile, world: str) -> None:
     require_filmable(world, asked.film, asked.film_speed, asked.still)
 
 
-def _planned(backend: Backend, asked: _Asked, mission: Mission, options: PlanningOptions) -> Plan | Negotiation:
-    """What is carried out: the plan of --plan, one that is made now, or a negotiation."""
-    if asked.negotiate:
-        return _negotiation(mission, asked.method, asked.transport, options)
+def _planned(backend: Backend, asked: _Asked, mission: Mission, options: PlanningOptions) -> Plan | Coordination:
+    """What is carried out: the plan of --plan, one that is made now, or a coordination."""
+    if asked.coordination is not None:
+        return _coordination(mission, *asked.coordination, options)
     if asked.plan is None:
         return _plan(backend, request_of(options, mission, asked.start, asked.fixed), quiet=asked.quiet)
     plan = load_plan(asked.plan, mission, options.ignore, quiet=asked.quiet, verbose=asked.verbose)
     return _judged(mission, plan, asked.plan, options.ignore, quiet=asked.quiet)
 
 
-def _check_together(negotiate: bool) -> None:
-    """Refuse options that go only with --negotiate, or only without it."""
+def _refuse_options_of_plans(coordination: str) -> None:
+    """Refuse options that count only where a plan is carried out."""
     context = click.get_current_context()
-    wrong = _OF_A_PLAN if negotiate else _OF_A_NEGOTIATION
     for option in sorted(context.command.params, key=lambda option: str(option.name)):
         given = context.get_parameter_source(str(option.name)) is ParameterSource.COMMANDLINE
-        if given and option.name in wrong:
-            how = "without" if negotiate else "together with"
-            raise ParameterError(f"{option.opts[-1]} given; expected it {how} --negotiate")
+        if given and option.name in _OF_A_PLAN:
+            raise ParameterError(f"{option.opts[-1]} given; expected it without --{coordination}")
 
 
 def _require_possible(localise: Localise, mission: Mission) -> None:
@@ -222,17 +215,11 @@ def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | Non
     return CameraPictures(cameras)
 
 
-def _negotiation(mission: Mission, method: str, transport: str, options: PlanningOptions) -> Negotiation:
-    """How robots agree; a mission on which they cannot is refused before any file is opened."""
-    from muster import Negotiation
-    from muster.allocation.allocator import make_parameters
-    from muster.negotiation.capabilities import refuse_mission
-    from muster.negotiation.methods import method_named
-
-    chosen = method_named(method)
-    refuse_mission(mission, chosen.can)
-    terms = make_parameters(chosen.allocator, dict(options.parameters))
-    return Negotiation(method=method, transport=transport, params=terms)
+def _coordination(mission: Mission, name: str, how: Mapping[str, Any], options: PlanningOptions) -> Coordination:
+    """How robots decide without a plan; a mission on which they cannot is refused before any file is opened."""
+    coordination = COORDINATIONS[name](**how, params=options.parameters)
+    coordination.refuse_mission(mission)
+    return coordination
 
 
 def _judged(mission: Mission, plan: Plan, file: Path, ignore: tuple[str, ...], *, quiet: bool) -> Plan:

@@ -14,8 +14,6 @@ from muster.negotiation.messages import Stage
 from muster.negotiation.node import NodeStatus
 from muster.negotiation.robot_view import View
 
-TRANSPORTS = ("udp", "zenoh")
-
 GO, SHOW = "go", "show"
 """Commands to a robot: begin; send your view."""
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
+TRANSPORTS = ("udp", "zenoh")
+"""The names of the transports."""
+
 
 class Transport(Protocol):
     """A robot's connection to the others, used by one thread.

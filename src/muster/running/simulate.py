@@ -11,23 +11,23 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
 from muster.planning.request import require_mission
+from muster.running.coordination import Coordination
 from muster.running.observed_run import ObservedRun, keywords_of_run
 from muster.running.recorded import recorded
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
     from muster.report.film import Footage
-    from muster.running.negotiated.simulation import Negotiation
 
 
-def simulated(mission: Mission, plan: Plan | Negotiation, request: ObservedRun) -> Report:
+def simulated(mission: Mission, plan: Plan | Coordination, request: ObservedRun) -> Report:
     """Carry a plan out in a simulated world, in virtual time; the mission's events happen.
 
     Parameters
     ----------
     plan
-        what is carried out; or a `Negotiation`: then each robot is a process that decides for itself, without a
-        centre, and time passes as in reality.
+        what is carried out; or a coordination, such as a `Negotiation`, by which each robot is a process that decides
+        for itself, without a centre: then time passes as in reality.
     request
         the world, and how the plan is carried out: the fields of `RunRequest` and `ObservedRun`, by name.
 
@@ -48,10 +48,7 @@ def simulated(mission: Mission, plan: Plan | Negotiation, request: ObservedRun) 
     require_mission(mission)
     if request.is_real:
         raise ParameterError(f"world: {request.world}; expected a simulated one: muster.carry_out has real robots")
-    if isinstance(plan, Plan):
-        plan.require_whole(accept_partial=request.accept_partial)
-    else:
-        _require_possible(mission, plan)
+    _require_possible(mission, plan, request)
     film, observers = request.film, request.observers
     if film is not None:
         footage = _footage(mission, film)
@@ -78,23 +75,19 @@ def _footage(mission: Mission, film: str | Path | Footage) -> Footage:
     return Footage(mission)
 
 
-def _require_possible(mission: Mission, negotiation: Negotiation) -> None:
-    """Refuse, before any file is opened, what is no negotiation, and a mission on which robots cannot agree."""
-    from muster.negotiation.capabilities import refuse_mission
-    from muster.negotiation.methods import method_named
-    from muster.running.negotiated.simulation import Negotiation
-
-    if not isinstance(negotiation, Negotiation):
-        raise ParameterError(f"plan: {shown(negotiation)}; expected a Plan or a Negotiation")
-    refuse_mission(mission, method_named(negotiation.method).can)
-
-
-def _carry_out(mission: Mission, plan: Plan | Negotiation, request: ObservedRun, recorder: Recorder | None) -> Report:
+def _require_possible(mission: Mission, plan: Plan | Coordination, request: ObservedRun) -> None:
+    """Refuse, before any file is opened, what is no plan and no coordination, and what neither can carry out."""
     if isinstance(plan, Plan):
-        from muster.running.simulation import carry_out
+        plan.require_whole(accept_partial=request.accept_partial)
+    elif isinstance(plan, Coordination):
+        plan.refuse_mission(mission)
+    else:
+        raise ParameterError(f"plan: {shown(plan)}; expected a Plan or a Negotiation")
 
-        return carry_out(mission, plan, request, recorder=recorder)
-    from muster.allocation.problem import Problem
-    from muster.running.negotiated.simulation import negotiate_and_carry_out
 
-    return negotiate_and_carry_out(Problem.compile(mission).ready(), plan, request, recorder)
+def _carry_out(mission: Mission, plan: Plan | Coordination, request: ObservedRun, recorder: Recorder | None) -> Report:
+    if isinstance(plan, Coordination):
+        return plan.carry_out(mission, request, recorder)
+    from muster.running.simulation import carry_out
+
+    return carry_out(mission, plan, request, recorder=recorder)

@@ -16,8 +16,9 @@ from muster.allocation.problem import Problem
 from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MusterError
 from muster.negotiation.keys import new_key
-from muster.negotiation.process_reports import TRANSPORTS, TeamSetup
+from muster.negotiation.process_reports import TeamSetup
 from muster.negotiation.team import Team, timeouts_for
+from muster.negotiation.transport import TRANSPORTS
 from muster_studies.benches.measurement import Measurement
 
 ROBOTS, TASKS, GUARD_S = 20, 50, 120.0

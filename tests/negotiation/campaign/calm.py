@@ -13,7 +13,7 @@ from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.negotiation.participation import plan_of
-from muster.running.negotiated.robot_control import LATENESS
+from muster.negotiation.runs.robot_control import LATENESS
 from muster.verification import verify
 
 AGREE_S = 60.0

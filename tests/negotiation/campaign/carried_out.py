@@ -5,8 +5,8 @@ from itertools import combinations
 from math import inf
 
 from tests.negotiation.campaign.team_missions import LAST_FAULT_S, SIDE_M, team_scene
-from tests.running.negotiated.joint_work import MOMENT_S, deeds, is_able
-from tests.running.negotiated.simulated_team import SimulatedTeam
+from tests.negotiation.runs.joint_work import MOMENT_S, deeds, is_able
+from tests.negotiation.runs.simulated_team import SimulatedTeam
 from tests.trials import Report
 
 LONGEST_S = 900.0

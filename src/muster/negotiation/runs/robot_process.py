@@ -10,9 +10,9 @@ from muster.mission.model import Event
 from muster.motion.port import Telemetry, Waypoint
 from muster.negotiation.node import Node
 from muster.negotiation.process_reports import Ready
+from muster.negotiation.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
+from muster.negotiation.runs.robot_control import RobotControl
 from muster.negotiation.team_process import ProcessContext, ProgressReporter, StarterCommands
-from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
-from muster.running.negotiated.robot_control import RobotControl
 
 _STEP_S = 0.02
 """The longest time between two looks at the body's state, seconds."""

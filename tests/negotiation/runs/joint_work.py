@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 
-from tests.running.negotiated.simulated_team import LOOK_S
+from tests.negotiation.runs.simulated_team import LOOK_S
 
 MOMENT_S = LOOK_S + 1e-9
 """Each robot looks at the clock so often: begins that lie so close together are one."""

@@ -9,7 +9,7 @@ from muster.execution.record import NoObserver
 from muster.mission.events import DelayedTask, MovedTask
 from muster.mission.plan import Plan, Reason, Route, Unassigned
 from muster.mission.records import specified
-from muster.running.negotiated.team_log import TeamLog
+from muster.negotiation.runs.team_log import TeamLog
 
 MISSION = Mission(
     robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(9, 0))), tasks=(Task(id="t", position=(0, 0)),)

@@ -5,15 +5,15 @@ from types import SimpleNamespace
 
 import pytest
 
-from muster import Event, Mission, Negotiation, Robot, Task
-from muster.allocation.problem import Problem
+from muster import Event, Mission, Robot, Task
+from muster.allocation.auction import Parameters
 from muster.execution.record import NoObserver
 from muster.mission.model import MovedTask
 from muster.negotiation.messages import Stage
-from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, WorkReport
-from muster.running.negotiated.robot_bodies import RobotBodies
-from muster.running.negotiated.simulation import setup_of
-from muster.running.negotiated.team_log import TeamLog
+from muster.negotiation.runs.pipe_messages import BodyState, OperatorEvent, WorkReport
+from muster.negotiation.runs.robot_bodies import RobotBodies
+from muster.negotiation.runs.simulation import setup_of
+from muster.negotiation.runs.team_log import TeamLog
 from muster.running.state_estimation import with_state_estimation
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
 
@@ -68,7 +68,7 @@ def did(*events):
 
 def bodies_of(events, tmp_path, last_words=(), noise=NO_NOISE):
     mission = Mission(robots=MISSION.robots, tasks=MISSION.tasks, events=events)
-    setup = setup_of(Problem.compile(mission), Negotiation(), tmp_path)
+    setup = setup_of(mission, tmp_path, method="auction", terms=Parameters(), transport="udp")
     log = TeamLog(setup.problem, NoObserver(), lambda event: None, setup.late)
     world = KinematicWorld(mission, noise=noise)
     robot_bodies = RobotBodies(mission, world, with_state_estimation(world, mission), setup, log)

@@ -14,10 +14,10 @@ from muster.motion.port import RobotPort
 from muster.negotiation.messages import Stage
 from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
+from muster.negotiation.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
+from muster.negotiation.runs.team_log import TeamLog
 from muster.negotiation.team import Team
 from muster.running.camera_search import CameraSearch
-from muster.running.negotiated.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
-from muster.running.negotiated.team_log import TeamLog
 from muster.running.state_estimation import RobotsInWorld
 from muster.simulation import SimulatedWorld
 from muster.state import OtherEvent

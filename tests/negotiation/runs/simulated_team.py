@@ -6,7 +6,7 @@ from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
 from muster.negotiation.participation import negotiator_of
-from muster.running.negotiated.robot_control import RobotControl
+from muster.negotiation.runs.robot_control import RobotControl
 from muster.simulation import KinematicWorld
 
 LOOK_S = 0.2

@@ -6,8 +6,8 @@ from muster import Mission, Robot, Task
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.negotiation.participation import negotiator_of
-from muster.running.negotiated.pipe_messages import BodyState, SteerCommand
-from muster.running.negotiated.robot_process import RobotWorker
+from muster.negotiation.runs.pipe_messages import BodyState, SteerCommand
+from muster.negotiation.runs.robot_process import RobotWorker
 from muster.simulation import KinematicWorld
 
 

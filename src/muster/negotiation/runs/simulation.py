@@ -6,51 +6,37 @@ import tempfile
 import threading
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
+from muster.allocation.auction_terms import Terms
 from muster.allocation.problem import Problem
 from muster.execution import Recorder, Report, report_of
 from muster.execution.record import NoObserver
 from muster.mission.errors import ParameterError
-from muster.mission.model import Event
+from muster.mission.model import Event, Mission
 from muster.negotiation.keys import new_key
-from muster.negotiation.methods import method_named
 from muster.negotiation.process_reports import TeamSetup
+from muster.negotiation.runs.robot_bodies import MOST_SPEED, RobotBodies
+from muster.negotiation.runs.robot_process import run_robot_process
+from muster.negotiation.runs.team_log import TeamLog
 from muster.negotiation.team import Team, timeouts_for
 from muster.running.camera_search import camera_search_for, with_found
-from muster.running.negotiated.robot_bodies import MOST_SPEED, RobotBodies
-from muster.running.negotiated.robot_process import run_robot_process
-from muster.running.negotiated.team_log import TeamLog
 from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.traffic.names import RESERVE
 
 
-@dataclass(frozen=True, kw_only=True)
-class Negotiation:
-    """How robots agree.
-
-    Parameters
-    ----------
-    method, transport
-        names of METHODS and TRANSPORTS.
-    params
-        of the method's allocator; None: its defaults.
-    limit_s
-        real seconds within which they have to agree before the mission begins.
-    """
-
-    method: str = "auction"
-    transport: str = "udp"
-    params: Any = None
-    limit_s: float = 60.0
-
-
 def negotiate_and_carry_out(
-    problem: Problem, negotiation: Negotiation, request: ObservedRun, recorder: Recorder | None = None
+    mission: Mission,
+    request: ObservedRun,
+    recorder: Recorder | None,
+    *,
+    method: str,
+    terms: Terms,
+    transport: str,
+    limit_s: float,
 ) -> Report:
     """Let robots agree and execute their tasks, while the mission's events happen.
 
@@ -58,12 +44,14 @@ def negotiate_and_carry_out(
 
     Parameters
     ----------
-    problem
-        the mission, without robots that join later.
     request
         its `speed` is at most 10, and 1 without one: messages travel in real time, so that the faster robots move, the
         longer communication takes in the mission's time. Its traffic is auto or free: nobody says which robot passes
         first.
+    method, terms, transport
+        as in `TeamSetup`.
+    limit_s
+        real seconds within which robots have to agree before the mission begins.
 
     Raises
     ------
@@ -77,24 +65,22 @@ def negotiate_and_carry_out(
         raise ParameterError(f"speed: {speed:g}; expected at most {MOST_SPEED:g}, as robots talk in real time")
     if traffic == RESERVE:
         raise ParameterError(f"traffic: {traffic}; expected free: without a centre nobody plans for all")
-    for event in problem.mission.events:
+    for event in mission.events:
         if event.door is not None:
             raise ParameterError(
                 f"events: door {event.door}; expected none without a centre, where nobody tells of doors"
             )
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        bodies = recorded_world(problem.mission, request, recorder)
+        bodies = recorded_world(mission, request, recorder)
         if request.on_world is not None:
             request.on_world(bodies)
-        setup = setup_of(problem, negotiation, memory, 1.0 if speed is None else speed)
+        setup = setup_of(mission, memory, speed or 1.0, method=method, terms=terms, transport=transport)
         log = TeamLog(setup.problem, recorder or NoObserver(), request.on_event or (lambda event: None), setup.late)
-        robots = with_state_estimation(
-            bodies, problem.mission, pose=request.pose, localise=request.localise, seed=request.seed
-        )
-        robot_bodies = RobotBodies(problem.mission, bodies, robots, setup, log)
+        robots = with_state_estimation(bodies, mission, pose=request.pose, localise=request.localise, seed=request.seed)
+        robot_bodies = RobotBodies(mission, bodies, robots, setup, log)
         camera_search = camera_search_for(
-            problem.mission,
+            mission,
             bodies,
             robot_bodies.ports,
             noise=request.noise,
@@ -106,7 +92,7 @@ def negotiate_and_carry_out(
             robot_bodies.camera_search = camera_search
         robot_bodies.team = stack.enter_context(Team(setup, robot_bodies.take_report))
         halt = request.halt or threading.Event()
-        robot_bodies.await_agreement(negotiation.limit_s, halt)
+        robot_bodies.await_agreement(limit_s, halt)
         while not halt.is_set() and not robot_bodies.over:
             robot_bodies.step(setup.speed)
         if robot_bodies.over:
@@ -120,17 +106,17 @@ def negotiate_and_carry_out(
         return report
 
 
-def setup_of(problem: Problem, negotiation: Negotiation, memory: Path, speed: float = 1.0) -> TeamSetup:
-    """The setup of the robots' processes, with those of robots that join later or restart."""
-    mission = problem.mission
-    whole = Problem.compile(mission.at_once(robots=mission.all_robots), problem.objective, problem.ignored)
-    method = method_named(negotiation.method)
+def setup_of(
+    mission: Mission, memory: Path, speed: float = 1.0, *, method: str, terms: Terms, transport: str
+) -> TeamSetup:
+    """Return the setup of the robots' processes, with those of robots that join later or restart."""
+    whole = Problem.compile(mission.at_once(robots=mission.all_robots))
     return TeamSetup(
         problem=whole.ready(),
-        terms=method.allocator.parameters() if negotiation.params is None else negotiation.params,
+        terms=terms,
         key=new_key(),
-        method=negotiation.method,
-        transport=negotiation.transport,
+        method=method,
+        transport=transport,
         timeouts=timeouts_for(len(whole.robots)),
         late=frozenset(robot.id for robot in mission.newcomers),
         starts=_starts(mission.events),

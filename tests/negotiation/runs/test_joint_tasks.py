@@ -4,8 +4,8 @@ from dataclasses import replace
 from random import Random
 
 import pytest
-from tests.running.negotiated.joint_work import MOMENT_S, check_nobody_was_alone, deeds
-from tests.running.negotiated.simulated_team import SimulatedTeam
+from tests.negotiation.runs.joint_work import MOMENT_S, check_nobody_was_alone, deeds
+from tests.negotiation.runs.simulated_team import SimulatedTeam
 
 from muster import Mission, Robot, Task
 from muster.mission.model import TeamPart

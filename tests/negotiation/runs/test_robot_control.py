@@ -3,7 +3,7 @@
 from random import Random
 
 import pytest
-from tests.running.negotiated.simulated_team import SimulatedTeam
+from tests.negotiation.runs.simulated_team import SimulatedTeam
 
 from muster import Event, Mission, Robot, Task
 from muster.mission.model import Lag, MovedTask
