@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from inspect import Parameter, signature
 from typing import TYPE_CHECKING
 
+from muster.mission.errors import ParameterError
 from muster.mission.plugins import Registry, function_expected
 
 if TYPE_CHECKING:
+    from muster.mission.model import Mission
+    from muster.perception.camera import Intrinsics
     from muster.simulation import SimulatedWorld
+    from muster.simulation.declaration import MakePlacedCamera, PlacedCamera
 
 MakeWorld = Callable[..., "SimulatedWorld"]
 """Makes a world of a mission: `make(mission, seed=, dt_s=, avoidance=, noise=, observer=, observe_s=)`, with
-`law=` where it is not `profile`, and `wind=`, `batteries=`, `drain=`, `rotor_level=` where they are asked for."""
+`law=` where it is not `profile`, and `wind=`, `batteries=`, `drain=`, `rotor_level=` where they are asked for. What it
+takes and can do it states by `muster.simulation.declaration.declares`."""
 
 
 WORLDS: Registry[MakeWorld] = Registry(
     "world",
     "muster.worlds",
-    {"kinematic": "muster.simulation:KinematicWorld", "physics": "muster.simulation.physics:PhysicsWorld"},
+    {"kinematic": "muster.simulation:KinematicWorld", "physics": "muster.simulation.physics.world_entry:make_world"},
     function_expected("a class or function that makes a world"),
 )
 
@@ -30,9 +36,48 @@ def world_named(name: str) -> MakeWorld:
     ------
     ParameterError
         if there is none.
-    MissingExtraError
-        if it needs an extra that is not installed.
-    PluginError
+    MissingExtraError, PluginError
         if its package cannot be loaded.
     """
     return WORLDS.named(name)
+
+
+def takes_setting(make: MakeWorld, setting: str) -> bool:
+    """Whether a world takes one of `declaration.SETTINGS`: as declared, else by the signature of what makes it."""
+    declared: frozenset[str] | None = getattr(make, "settings", None)
+    if declared is not None:
+        return setting in declared
+    taken = signature(make).parameters
+    return setting in taken or any(parameter.kind is Parameter.VAR_KEYWORD for parameter in taken.values())
+
+
+def has_ability(world: str, ability: str) -> bool:
+    """Whether a world declares one of `declaration.ABILITIES`; errors as `world_named`."""
+    return ability in getattr(world_named(world), "abilities", ())
+
+
+def placed_camera_of(make: MakeWorld) -> MakePlacedCamera | None:
+    """What makes cameras that are put anywhere in a world, as it declares; None: its cameras have no pictures."""
+    found: MakePlacedCamera | None = getattr(make, "placed_camera", None)
+    return found
+
+
+def placed_camera(mission: Mission, intrinsics: Intrinsics) -> PlacedCamera:
+    """Return a camera in a mission's world, of the first kind of world that has pictures.
+
+    Raises
+    ------
+    ParameterError
+        if no installed world has pictures.
+    MissingExtraError
+        if it needs an extra that is not installed.
+    """
+    for make in WORLDS.usable().values():
+        if (make_camera := placed_camera_of(make)) is not None:
+            return make_camera(mission, intrinsics)
+    raise ParameterError("camera: no installed world draws what it sees; expected one that does")
+
+
+def worlds_that(has: Callable[[MakeWorld], bool]) -> str:
+    """The names of the worlds of which something holds, for messages: `a or b`; empty where there are none."""
+    return " or ".join(name for name, make in WORLDS.usable().items() if has(make))
