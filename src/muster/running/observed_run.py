@@ -41,7 +41,7 @@ class ObservedRun(RunRequest):
         A fleet that stays on duty, instead of `stay`, `until_s` and `orders`.
     record : str or Path, optional
         A file (.mcap) for the record of the run; needs the extra `record`.
-    film : str, Path or Footage, optional
+    film : str, Path or WorldRecorder, optional
         A file (.mp4, .gif) for a film of the run, in the physics world; or a `Footage` of the mission, of which films
         and stills can be made afterwards.
     observers : sequence of Recorder

@@ -26,7 +26,7 @@ Say = Callable[[str], None]
 
 
 class WorldRecorder(Recorder, Protocol):
-    """A recorder that receives the world, too; see `muster.report.film.Footage`."""
+    """A recorder that receives the world, too, such as the footage of films."""
 
     def on_world(self, world: object) -> None:
         """The run begins in this world."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 EXACT, BODIES = ABILITIES = ("exact", "bodies")
 """What a world may be able to do: move robots exactly as commanded where there is no noise; show their bodies in films
-of the extra `physics`, as a `PhysicsWorld` does."""
+and stills."""
 SETTINGS = ("law", "wind", "batteries", "drain", "rotor_level", "snapshot")
 """Keyword arguments that a world may take beside those of all worlds."""
 
