@@ -75,7 +75,7 @@ def test_worlds_that_ship_declare_what_they_take_and_can_do():
     """The physics world says so without MuJoCo."""
     taken = {name: {setting for setting in SETTINGS if takes_setting(WORLDS[name], setting)} for name in WORLDS}
     assert taken == {"kinematic": set(SETTINGS) - {"wind", "rotor_level"}, "physics": set(SETTINGS)}
-    able = {name: {ability for ability in ABILITIES if has_ability(name, ability)} for name in WORLDS}
+    able = {name: {ability for ability in ABILITIES if has_ability(WORLDS[name], ability)} for name in WORLDS}
     assert able == {"kinematic": {EXACT}, "physics": {BODIES}}
 
 
@@ -98,6 +98,15 @@ def test_a_world_takes_what_it_declares_or_what_its_signature_says(added, missio
     assert muster.simulate(mission, plan, world="signed", wind=wind).tasks_done
     with pytest.raises(ParameterError, match=r"law: .*the world signed has no other"):
         muster.simulate(mission, plan, world="signed", law="thesis")
+
+
+def test_a_subclass_declares_for_itself():
+    class Windy(KinematicWorld):
+        def __init__(self, mission, *, wind=None, **how):
+            super().__init__(mission, **how)
+
+    assert takes_setting(Windy, "wind")
+    assert not has_ability(Windy, EXACT)
 
 
 def test_a_world_declares_nothing_that_there_is_not():

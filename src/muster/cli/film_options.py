@@ -14,7 +14,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.perception.optional_parts import require_physics
 from muster.running.run_outputs import BegunOutput, Say
-from muster.running.worlds import has_ability, worlds_that
+from muster.running.worlds import has_ability, world_named, worlds_that
 from muster.simulation.declaration import BODIES
 
 if TYPE_CHECKING:
@@ -51,9 +51,9 @@ class _Films:
             raise ParameterError("--film-speed given; expected it together with --film")
         if film is None and still is None:
             return
-        if not has_ability(world, BODIES):
+        if not has_ability(world_named(world), BODIES):
             option = "--film" if film is not None else "--still"
-            filmed = worlds_that(lambda make: BODIES in getattr(make, "abilities", ()))
+            filmed = worlds_that(lambda make: has_ability(make, BODIES))
             raise ParameterError(
                 f"{option} given; expected it together with --world {filmed}: only there are bodies to see"
             )

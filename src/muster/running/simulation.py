@@ -32,7 +32,7 @@ from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.run_request import RunRequest
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
-from muster.running.worlds import has_ability
+from muster.running.worlds import has_ability, world_named
 from muster.simulation import NO_NOISE, SimulatedWorld
 from muster.simulation.declaration import EXACT
 from muster.state import MissionState, OtherEvent
@@ -316,7 +316,7 @@ def _with_objective(mission: Mission, plan: Plan) -> Plan:
 def _is_exact(request: RunRequest) -> bool:
     """Whether robots drive exactly as told, and know where they are."""
     estimated = request.pose is not None or request.localise is not None
-    return has_ability(request.world, EXACT) and request.noise == NO_NOISE and not estimated
+    return has_ability(world_named(request.world), EXACT) and request.noise == NO_NOISE and not estimated
 
 
 def carry_out(

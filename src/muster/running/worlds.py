@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from inspect import Parameter, signature
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
 from muster.mission.plugins import Registry, function_expected
@@ -44,22 +44,27 @@ def world_named(name: str) -> MakeWorld:
 
 def takes_setting(make: MakeWorld, setting: str) -> bool:
     """Whether a world takes one of `declaration.SETTINGS`: as declared, else by the signature of what makes it."""
-    declared: frozenset[str] | None = getattr(make, "settings", None)
-    if declared is not None:
-        return setting in declared
+    settings = _declared(make, "settings")
+    if settings is not None:
+        return setting in settings
     taken = signature(make).parameters
     return setting in taken or any(parameter.kind is Parameter.VAR_KEYWORD for parameter in taken.values())
 
 
-def has_ability(world: str, ability: str) -> bool:
-    """Whether a world declares one of `declaration.ABILITIES`; errors as `world_named`."""
-    return ability in getattr(world_named(world), "abilities", ())
+def has_ability(make: MakeWorld, ability: str) -> bool:
+    """Whether a world declares one of `declaration.ABILITIES`."""
+    return ability in (_declared(make, "abilities") or ())
 
 
 def placed_camera_of(make: MakeWorld) -> MakePlacedCamera | None:
     """What makes cameras that are put anywhere in a world, as it declares; None: its cameras have no pictures."""
-    found: MakePlacedCamera | None = getattr(make, "placed_camera", None)
+    found: MakePlacedCamera | None = _declared(make, "placed_camera")
     return found
+
+
+def _declared(make: MakeWorld, name: str) -> Any:
+    """What a world declares of itself; None without a declaration. A class does not inherit that of its base."""
+    return getattr(make, "__dict__", {}).get(name)
 
 
 def placed_camera(mission: Mission, intrinsics: Intrinsics) -> PlacedCamera:
