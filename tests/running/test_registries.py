@@ -2,6 +2,7 @@
 
 import json
 import threading
+from pathlib import Path
 
 import click
 import pytest
@@ -9,11 +10,12 @@ from click.testing import CliRunner
 
 import muster
 from muster.cli.main import run
+from muster.cli.other_recordings import OTHER_RECORDINGS
 from muster.cli.run_output_options import not_at_server, run_output_options
 from muster.exchange.export_request import FORMATS
-from muster.mission.errors import ParameterError
-from muster.running.fleet_registry import FLEETS
-from muster.running.fleets import fleet_ready
+from muster.mission.errors import MissingExtraError, ParameterError
+from muster.running import fleet_registry
+from muster.running.fleet_registry import FLEETS, fleet_ready
 from muster.running.observed_run import ObservedRun
 from muster.running.run_outputs import RUN_OUTPUTS, BegunOutput
 from muster.running.simulate import simulated
@@ -47,9 +49,16 @@ def test_what_ships_is_there_in_order():
     assert list(RUN_OUTPUTS) == ["cameras", "film"]
     assert list(FLEETS) == ["ros1", "ros2", "mavlink"]
     assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv", "sol", "sheets", "overview", "xlsx", "ics"]
+    assert list(OTHER_RECORDINGS) == ["ros"]
     assert world_named("kinematic") is KinematicWorld
     assert all(callable(FLEETS[name]) for name in FLEETS)
     assert all(callable(FORMATS[name]) for name in FORMATS)
+    assert OTHER_RECORDINGS["ros"].is_recording(Path("nowhere.bag")) is False
+
+
+def test_recordings_that_lack_a_function_are_refused(added):
+    with pytest.raises(ParameterError, match="recordings radio: it has no add_options; expected a module"):
+        added(OTHER_RECORDINGS, "radio", object())
 
 
 def test_a_world_carries_a_plan_out(added, mission, tmp_path, capsys):
@@ -202,6 +211,20 @@ def test_a_fleet_is_opened_with_the_settings_of_the_run(added, mission):
     new_request("barges", ("barges",), {"port": 3})
     with pytest.raises(ParameterError, match="world: barges; expected kinematic, physics"):
         new_request("barges", (), {})
+
+
+def test_what_a_fleet_needs_is_asked_for_before_it_is_opened_or_served(added, mission, capsys):
+    opened = []
+
+    def lacks():
+        raise MissingExtraError("barges", "fleet barges")
+
+    added(FLEETS, "barges", fleet_registry.declares(require_installed=lacks)(lambda *given: opened.append(given)))
+    with pytest.raises(MissingExtraError, match="fleet barges"):
+        fleet_ready("barges", mission, {}, threading.Event(), again=False)
+    assert run(["serve", "--bridge", "barges"]) == 2
+    assert "fleet barges" in capsys.readouterr().err
+    assert not opened
 
 
 def test_a_format_is_exported_to(added, mission, tmp_path, capsys):

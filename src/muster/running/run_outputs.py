@@ -98,4 +98,4 @@ def _checked(name: str, found: object) -> RunOutput:
     return found  # type: ignore[return-value]
 
 
-RUN_OUTPUTS: Registry[RunOutput] = Registry("output of runs", "muster.run_outputs", {}, _checked)
+RUN_OUTPUTS: Registry[RunOutput] = Registry("output of runs", "muster.run_outputs", _checked)

@@ -24,7 +24,6 @@ takes and can do it states by `muster.simulation.declaration.declares`."""
 WORLDS: Registry[MakeWorld] = Registry(
     "world",
     "muster.worlds",
-    {"kinematic": "muster.simulation:KinematicWorld", "physics": "muster.simulation.physics.world_entry:make_world"},
     function_expected("a class or function that makes a world"),
 )
 
