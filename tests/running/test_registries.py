@@ -4,17 +4,25 @@ import json
 import threading
 from pathlib import Path
 
+import click
 import pytest
+from click.testing import CliRunner
 
 import muster
 from muster.cli.main import run
 from muster.cli.other_recordings import OTHER_RECORDINGS
+from muster.cli.run_output_options import not_at_server, run_output_options
 from muster.exchange.export_request import FORMATS
 from muster.mission.errors import MissingExtraError, ParameterError
-from muster.running.fleet_registry import FLEETS, declares, fleet_ready
-from muster.running.worlds import WORLDS, world_named
+from muster.running import fleet_registry
+from muster.running.fleet_registry import FLEETS, fleet_ready
+from muster.running.observed_run import ObservedRun
+from muster.running.run_outputs import RUN_OUTPUTS, BegunOutput
+from muster.running.simulate import simulated
+from muster.running.worlds import WORLDS, has_ability, takes_setting, world_named
 from muster.server.runs.run_settings import new_request
-from muster.simulation import KinematicWorld
+from muster.simulation import KinematicWorld, SimulatedWorld
+from muster.simulation.declaration import ABILITIES, BODIES, EXACT, SETTINGS, declares
 
 
 @pytest.fixture
@@ -38,6 +46,7 @@ def mission():
 
 def test_what_ships_is_there_in_order():
     assert list(WORLDS) == ["kinematic", "physics"]
+    assert list(RUN_OUTPUTS) == ["cameras", "film"]
     assert list(FLEETS) == ["ros1", "ros2", "mavlink"]
     assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv", "sol", "sheets", "overview", "xlsx", "ics"]
     assert list(OTHER_RECORDINGS) == ["ros"]
@@ -71,6 +80,120 @@ def test_a_world_carries_a_plan_out(added, mission, tmp_path, capsys):
         new_request("slow", (), {"speeed": 1})
 
 
+def test_worlds_that_ship_declare_what_they_take_and_can_do():
+    """The physics world says so without MuJoCo."""
+    taken = {name: {setting for setting in SETTINGS if takes_setting(WORLDS[name], setting)} for name in WORLDS}
+    assert taken == {"kinematic": set(SETTINGS) - {"wind", "rotor_level"}, "physics": set(SETTINGS)}
+    able = {name: {ability for ability in ABILITIES if has_ability(WORLDS[name], ability)} for name in WORLDS}
+    assert able == {"kinematic": {EXACT}, "physics": {BODIES}}
+
+
+def test_a_world_takes_what_it_declares_or_what_its_signature_says(added, mission):
+    @declares(settings=("law",))
+    def declared(mission, **how):
+        return KinematicWorld(mission, **how)
+
+    def signed(mission, *, seed, dt_s, avoidance, noise, wind=None):
+        return KinematicWorld(mission, seed=seed, dt_s=dt_s, avoidance=avoidance, noise=noise)
+
+    added(WORLDS, "declared", declared)
+    added(WORLDS, "signed", signed)
+    plan = muster.solve(mission, "greedy")
+    wind = {"velocity_mps": [1.0, 0.0, 0.0]}
+    lacks = "expected none: the world declared has no wind; physics or signed has"
+    with pytest.raises(ParameterError, match=lacks):
+        muster.simulate(mission, plan, world="declared", wind=wind)
+    assert muster.simulate(mission, plan, world="declared", law="thesis").tasks_done
+    assert muster.simulate(mission, plan, world="signed", wind=wind).tasks_done
+    with pytest.raises(ParameterError, match=r"law: .*the world signed has no other"):
+        muster.simulate(mission, plan, world="signed", law="thesis")
+
+
+def test_a_subclass_declares_for_itself():
+    class Windy(KinematicWorld):
+        def __init__(self, mission, *, wind=None, **how):
+            super().__init__(mission, **how)
+
+    assert takes_setting(Windy, "wind")
+    assert not has_ability(Windy, EXACT)
+
+
+def test_a_world_declares_nothing_that_there_is_not():
+    with pytest.raises(ParameterError, match="settings: winds; expected law, wind"):
+        declares(settings=("winds",))
+    with pytest.raises(ParameterError, match="abilities: film; expected exact, bodies"):
+        declares(settings=(), abilities=("film",))
+
+
+def test_a_world_without_cameras_refuses_tags(added):
+    class Blind:
+        """Passes on all of the kinematic world but its cameras."""
+
+        def __init__(self, mission, **how):
+            self._world = KinematicWorld(mission, **how)
+
+        def __getattr__(self, name):
+            if name == "cameras":
+                raise AttributeError(name)
+            return getattr(self._world, name)
+
+    added(WORLDS, "blind", Blind)
+    scouts = muster.load("scout-and-deliver")
+    plan = muster.solve(scouts, "greedy")
+    with pytest.raises(ParameterError, match=r"tags: .* in mission scout-and-deliver; expected none: Blind has no cam"):
+        muster.simulate(scouts, plan, world="blind")
+
+
+def test_an_output_of_another_package_has_options_and_receives_the_run(added, mission, tmp_path):
+    class Sizes:
+        """Writes how many robots the world of a run has."""
+
+        options = {"sizes": click.option("--sizes")}  # noqa: RUF012
+        files = ("sizes",)
+        not_at_server = "it counts nothing"
+
+        def require_possible(self, world, given):
+            if given["sizes"] and world != "kinematic":
+                raise ParameterError("--sizes given; expected --world kinematic")
+
+        def begin(self, mission, world, given):
+            if given.get("sizes") is None:
+                return None
+            worlds: list[SimulatedWorld] = []
+            path = tmp_path / given["sizes"]
+
+            def write(say):
+                path.write_text(str(len(worlds[0].ports)))
+                say(f"{path.name} written")
+
+            return BegunOutput(on_world=worlds.append, write=write)
+
+    added(RUN_OUTPUTS, "sizes", Sizes())
+    assert not_at_server()["sizes"] == "it counts nothing"
+    asked = []
+    command = click.command()(run_output_options(lambda *, outputs: asked.append(outputs)))
+    for arguments in (["--sizes", "n.txt"], []):
+        outcome = CliRunner().invoke(command, arguments)
+        assert (outcome.exit_code, outcome.output) == (0, "")
+    given, nothing = asked
+    assert [list(map(str, filter(None, one.files))) for one in asked] == [["n.txt"], []]
+    with pytest.raises(ParameterError, match="expected --world kinematic"):
+        given.require_possible("physics")
+    nothing.require_possible("physics")
+    assert nothing.begin(mission, "kinematic") == []
+    (begun,) = given.begin(mission, "kinematic")
+    mine, said = [], []
+    request = ObservedRun(on_world=mine.append).observed_by([begun])
+    simulated(mission, muster.solve(mission, "greedy"), request)
+    begun.write(said.append)
+    assert (len(mine), (tmp_path / "n.txt").read_text(), said) == (1, str(len(mission.robots)), ["n.txt written"])
+
+
+def test_what_is_no_output_is_refused():
+    with pytest.raises(ParameterError, match="no options; expected what"):
+        RUN_OUTPUTS.add("three", 3)
+
+
 def test_an_unknown_world_is_refused_with_the_near_match(capsys):
     assert run(["simulate", "31T-6R50", "--world", "phisics"]) == 2
     said = 'world: "phisics"; expected kinematic or physics or ros1 or ros2 or mavlink; did you mean'
@@ -96,7 +219,7 @@ def test_what_a_fleet_needs_is_asked_for_before_it_is_opened_or_served(added, mi
     def lacks():
         raise MissingExtraError("barges", "fleet barges")
 
-    added(FLEETS, "barges", declares(require_installed=lacks)(lambda *given: opened.append(given)))
+    added(FLEETS, "barges", fleet_registry.declares(require_installed=lacks)(lambda *given: opened.append(given)))
     with pytest.raises(MissingExtraError, match="fleet barges"):
         fleet_ready("barges", mission, {}, threading.Event(), again=False)
     assert run(["serve", "--bridge", "barges"]) == 2

@@ -13,10 +13,8 @@ from click.core import ParameterSource
 from muster.cli.backend import Backend, server_option
 from muster.cli.coordination_options import coordination_options, coordination_parameters
 from muster.cli.exit_codes import Ending, exit_code_if
-from muster.cli.film_options import draw_footage, footage_of, require_filmable
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
 from muster.cli.options import (
-    Finite,
     MissionFile,
     format_option,
     load_plan,
@@ -24,11 +22,12 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
-from muster.cli.outputs import require_drawable, require_folder, require_writable
+from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
 from muster.cli.request_options import request_options
+from muster.cli.run_output_options import AskedOutputs, not_at_server, run_output_options
 from muster.cli.whole_work import whole_work
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -37,10 +36,10 @@ from muster.planning.options import PlanningOptions
 from muster.planning.request import Request
 from muster.running.coordination import COORDINATIONS, Coordination
 from muster.running.observed_run import ObservedRun
+from muster.running.run_outputs import BegunOutput
 from muster.running.run_request import SIMULATED, RunRequest
 
 if TYPE_CHECKING:
-    from muster.report.camera_pictures import CameraPictures
     from muster.running.localisation import Localise
 
 _FILE = click.Path(path_type=Path)
@@ -49,16 +48,10 @@ _OF_A_PLAN = (
     *("bound", "start", "fixed", "rewire", "stay", "until_s", "orders"),
 )
 _PROCESSES = "the robots' processes run on this machine"
-_PICTURES = "it keeps no pictures of cameras"
-_BODIES = "it keeps where bodies are, and not how they look"
 _IN_THIS_PROCESS = {
     **dict.fromkeys(coordination_parameters(), _PROCESSES),
     "ray": "a server uses no cluster",
-    "found": _PICTURES,
-    "cameras": _PICTURES,
-    "film": _BODIES,
-    "film_speed": _BODIES,
-    "still": _BODIES,
+    "found": "it keeps no pictures of cameras",
     "foxglove": "the port is one of this machine",
 }
 
@@ -76,10 +69,7 @@ class _Asked:
     plot: Path | None
     gantt: Path | None
     found: Path | None
-    cameras: Path | None
-    film: Path | None
-    film_speed: float | None
-    still: Path | None
+    outputs: AskedOutputs
     foxglove: int | None
     require_complete: bool
     form: str
@@ -96,19 +86,12 @@ class _Asked:
 @record_option
 @drawing_options
 @click.option("--found", type=_FILE, metavar="FILE", help="Draw what cameras found (.png, .svg, .pdf).")
-@click.option(
-    "--cameras", type=_FILE, metavar="DIR", help="Write what cameras saw of each tag, largest; with --world physics."
-)
-@click.option("--film", type=_FILE, metavar="FILE", help="Film it, in the physics world (.mp4, .gif).")
-@click.option(
-    "--film-speed", type=Finite(0.01, 1e6), metavar="X", help="X times real time.  [default: a film of at most 24 s]"
-)
-@click.option("--still", type=_FILE, metavar="FILE", help="Draw how it ended from above, in the physics world (.png).")
+@run_output_options
 @foxglove_option
 @require_complete_option
 @format_option
 @quiet_option
-@server_option(**_IN_THIS_PROCESS)
+@server_option(**_IN_THIS_PROCESS, **not_at_server())
 def command(
     backend: Backend, mission: MissionFile, options: PlanningOptions, how: Mapping[str, Any], **given: Any
 ) -> int:
@@ -129,26 +112,23 @@ def command(
     loaded = mission.load(verbose=asked.verbose)
     if request.localise is not None:
         _require_possible(request.localise, loaded)
-    looks = _looks(loaded, request.world, asked.found, asked.cameras)
+    outputs = [*asked.outputs.begin(loaded, request.world), *_found(loaded, asked.found)]
     planned = _planned(backend, asked, loaded, options)
     if isinstance(planned, Plan):
         planned.require_whole(accept_partial=request.accept_partial)
-    footage = footage_of(loaded) if asked.film is not None or asked.still is not None else None
     with (
         kept_record(asked.record, asked.html, asked.plot, asked.gantt) as file,
         shown_live(loaded, asked.foxglove, quiet=asked.quiet) as observers,
     ):
-        request = replace(request, record=file, observers=observers, film=footage, on_look=looks)
+        request = replace(request, record=file, observers=observers).observed_by(outputs)
         on_line = print_event_line if request.speed is not None and not asked.quiet else None
         report, interrupted_s = backend.simulate(loaded, planned, request, on_line)
-    if asked.found is not None and looks is not None:
-        looks.plot(loaded, asked.found)
     if asked.form == "json":
         click.echo(json_text(report.as_dict()), nl=False)
     else:
         print_report(report.as_dict(), loaded, with_tasks=asked.verbose)
-    if footage is not None:
-        draw_footage(footage, asked.film, asked.film_speed, asked.still, quiet=asked.quiet)
+    for output in outputs:
+        output.write(lambda line: None if asked.quiet else click.echo(line, err=True))
     if interrupted_s is not None:
         click.echo(f"interrupted at {interrupted_s:.1f} s of the mission", err=True)
     return exit_code_if(
@@ -166,10 +146,10 @@ def _request(asked: _Asked, options: PlanningOptions, how: Mapping[str, Any]) ->
 
 def _require_outputs(asked: _Asked, mission: MissionFile, world: str) -> None:
     """Refuse files that cannot be written, or would replace one that is read."""
-    files = (asked.record, asked.html, asked.plot, asked.gantt, asked.film, asked.still, asked.found)
+    files = (asked.record, asked.html, asked.plot, asked.gantt, *asked.outputs.files, asked.found)
     require_writable(None, files, mission.files, (asked.plan, asked.start, asked.fixed))
     require_drawable(asked.plot, asked.gantt, asked.found)
-    require_filmable(world, asked.film, asked.film_speed, asked.still)
+    asked.outputs.require_possible(world)
 
 
 def _planned(backend: Backend, asked: _Asked, mission: Mission, options: PlanningOptions) -> Plan | Coordination:
@@ -198,21 +178,16 @@ def _require_possible(localise: Localise, mission: Mission) -> None:
     require_possible(sensors_of(localise), mission)
 
 
-def _looks(mission: Mission, world: str, found: Path | None, cameras: Path | None) -> CameraPictures | None:
-    """What collects the pictures of cameras; None where no option asks for them."""
-    if found is None and cameras is None:
-        return None
-    from muster.report.camera_pictures import CameraPictures
+def _found(mission: Mission, file: Path | None) -> list[BegunOutput]:
+    """The picture of what cameras find, if it is asked for."""
+    if file is None:
+        return []
+    from muster.report.found import FoundByCameras
+    from muster.running.camera_search import require_tags
 
-    option = "--found" if cameras is None else "--cameras"
-    if not mission.tags:
-        raise ParameterError(
-            f"{option}: {mission.name} has no tags; expected a mission in which there is something to find"
-        )
-    if cameras is not None and world != "physics":
-        raise ParameterError(f"--cameras: no pictures in the {world} world; expected --world physics")
-    require_folder(cameras, "--cameras")
-    return CameraPictures(cameras)
+    require_tags(mission, "--found")
+    found = FoundByCameras()
+    return [BegunOutput(on_look=found, write=lambda say: found.plot(mission, file))]
 
 
 def _coordination(mission: Mission, name: str, how: Mapping[str, Any], options: PlanningOptions) -> Coordination:

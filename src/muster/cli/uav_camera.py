@@ -58,20 +58,17 @@ def command(
 
 
 def _run_simulated(robot: str, mission: str, rate: float | None, where: Mapping[str, Any]) -> None:
-    """Where the robot says that it is, the physics world's renderer draws what its camera sees."""
+    """Where the robot says that it is, a world that has pictures draws what its camera sees."""
     from muster import load
     from muster.perception.camera import intrinsics_of_mission, mount_of_mission
-    from muster.perception.optional_parts import require_physics
-
-    require_physics("rendering images", "mujoco")
-    from muster.simulation.physics.placed_camera import PlacedCamera
+    from muster.running.worlds import placed_camera
 
     loaded = load(mission)
     camera = next((one.camera for one in loaded.robots if one.id == robot), None)
     if camera is None:
         raise ParameterError(f"robot {robot}: no camera in {loaded.name}; expected a robot of it with `camera`")
     intrinsics, mount = intrinsics_of_mission(camera), mount_of_mission(camera)
-    placed = PlacedCamera(loaded, intrinsics)
+    placed = placed_camera(loaded, intrinsics)
 
     def picture(body: Floats) -> Image:
         return placed.image(body, mount)

@@ -2,25 +2,61 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from muster.mission.model import Mission
 from muster.perception.estimates import RawEstimates
-from muster.perception.matching import ErrorTable
+from muster.perception.matching import ErrorTable, error_table
+from muster.perception.point_search import PointSearch
 from muster.perception.points_of_interest import PointOfInterest
 from muster.report.canvas import add_title, frame_of_map, limits, new_axes
+from muster.report.files import save_figure
 from muster.report.styles import ALARM, QUIET_TEXT, TEXT, robot_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from muster.simulation.cameras import Look
+
 _SIZE_IN = 6.4
 _MARGIN = 0.06
 _DEVIATIONS = 3.0
 """How many standard deviations an ellipse is wide to each side."""
+FARTHEST_M = 1.0
+"""What was found farther than this from every tag is where nothing is."""
+
+
+class FoundByCameras:
+    """Receives each look of a camera (`on_look`), and draws what was found."""
+
+    def __init__(self) -> None:
+        self._search = PointSearch()
+
+    def __call__(self, look: Look) -> None:
+        """Take in the estimates of one camera image."""
+        self._search.take(look.observation.estimates, look.time_s)
+
+    def plot(self, mission: Mission, file: Path) -> None:
+        """Draw a map of all estimates, of what was found and of what is there ([tcf-thesis], Figure 6.4).
+
+        Raises
+        ------
+        InputError
+            if the file cannot be written.
+        MissingExtraError
+            if matplotlib is not installed.
+        """
+        points = [find.point for find in self._search.finds]
+        truth = _named(mission)
+        table = error_table([point.position for point in points], truth, farthest_m=FARTHEST_M)
+        title = f"{mission.name}: found by cameras"
+        save_figure(plot_found(self._search.raw, points, table, truth, title), file)
 
 
 def plot_found(
@@ -90,3 +126,14 @@ def _frame(ax: Axes, raw: RawEstimates, truth: dict[str, tuple[float, float]]) -
     places: npt.NDArray[np.float64] = np.array([*truth.values(), *raw.positions[:, :2]]).reshape(-1, 2)
     if len(places):
         frame_of_map(ax, *limits(places, _MARGIN, on_ground=False))
+
+
+def _named(mission: Mission) -> dict[str, tuple[float, float]]:
+    """The places of tags by their ids; the second one of an id is `7 (2)`."""
+    seen: Counter[int] = Counter()
+    named = {}
+    for tag in mission.tags:
+        seen[tag.id] += 1
+        name = str(tag.id) + (f" ({seen[tag.id]})" if seen[tag.id] > 1 else "")
+        named[name] = (tag.position[0], tag.position[1])
+    return named

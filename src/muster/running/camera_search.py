@@ -15,19 +15,19 @@ from typing import Any
 import numpy as np
 
 from muster.execution.report import FoundReport, Report
+from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.motion.frames import angles
 from muster.motion.grid import Floats
 from muster.motion.port import RobotPort
 from muster.perception.camera import View, intrinsics_of_mission, mount_of_mission
 from muster.perception.camera_observer import CameraObserver
-from muster.perception.detection import TagDetector
 from muster.perception.found_tasks import FoundTasks
 from muster.perception.localisation import Uncertainty
 from muster.perception.point_search import FoundCriteria, FoundPoint, PointSearch
 from muster.perception.points_of_interest import PointOfInterest, remarks
-from muster.simulation import KinematicWorld, Noise, SimulatedWorld
-from muster.simulation.cameras import Cameras, GeometricCameras, Look, true_body
+from muster.simulation import Noise, SimulatedWorld
+from muster.simulation.cameras import Cameras, Look, WithCameras, true_body
 
 OnLook = Callable[[Look], None]
 
@@ -66,8 +66,10 @@ class CameraSearch:
 
     Raises
     ------
+    ParameterError
+        if the world has no cameras.
     MissingExtraError
-        if the extra `physics` is needed and not installed.
+        if the world's cameras need an extra that is not installed.
     """
 
     def __init__(
@@ -84,7 +86,7 @@ class CameraSearch:
         self._mission, self._world, self._ports, self._noise = mission, world, ports, noise
         self._random = np.random.default_rng((seed, 2))
         self._on_look = on_look or (lambda look: None)
-        self._sight, self._detector = _sight_of(world, mission, seed)
+        self._sight = _cameras_of(world, mission, seed)
         self._eyes: dict[str, _Eye] = {}
         self.tasks = FoundTasks(mission, world.ground_m)
         self._remarks: dict[tuple[str, str], str] = {}
@@ -117,7 +119,7 @@ class CameraSearch:
             robot=robot.id,
             intrinsics=intrinsics_of_mission(robot.camera),
             mount=mount_of_mission(robot.camera),
-            detector=self._detector,
+            detector=self._sight.detector,
             uncertainty=Uncertainty(
                 position_m=self._noise.position_m, angle_rad=max(self._noise.attitude_rad, self._noise.heading_rad)
             ),
@@ -210,15 +212,19 @@ class CameraSearch:
         )
 
 
-def _sight_of(world: SimulatedWorld, mission: Mission, seed: int) -> tuple[Cameras, TagDetector | None]:
-    """How the cameras of a world see, and what looks for tags in their pictures, if they have any."""
-    if isinstance(world, KinematicWorld):
-        return GeometricCameras(mission.tags, seed), None
-    from muster.simulation.physics.physics_world import PhysicsWorld
-    from muster.simulation.physics.rendered_cameras import RenderedCameras
+def _cameras_of(world: SimulatedWorld, mission: Mission, seed: int) -> Cameras:
+    """Return the cameras of a world for a mission with tags."""
+    if not isinstance(world, WithCameras):
+        value = f"{len(mission.tags)} in mission {mission.name}"
+        raise ParameterError(f"tags: {value}; expected none: {type(world).__name__} has no cameras")
+    return world.cameras(mission.tags, seed)
 
-    assert isinstance(world, PhysicsWorld)
-    return RenderedCameras(world), TagDetector()
+
+def require_tags(mission: Mission, option: str) -> None:
+    """Raise `ParameterError`, which names an option, if there is nothing to find in a mission."""
+    if not mission.tags:
+        expected = "a mission in which there is something to find"
+        raise ParameterError(f"{option}: {mission.name} has no tags; expected {expected}")
 
 
 def camera_search_for(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
@@ -17,9 +18,10 @@ if TYPE_CHECKING:
 
     from muster.execution import ExecutionEvent, Recorder, Standing
     from muster.mission.clock import Clock
-    from muster.report.film import Footage
     from muster.running.camera_search import OnLook
+    from muster.running.run_outputs import BegunOutput, OnWorld, WorldRecorder
     from muster.simulation import SimulatedWorld
+    from muster.simulation.cameras import Look
 
 P = ParamSpec("P")
 Q = TypeVar("Q")
@@ -39,7 +41,7 @@ class ObservedRun(RunRequest):
         A fleet that stays on duty, instead of `stay`, `until_s` and `orders`.
     record : str or Path, optional
         A file (.mcap) for the record of the run; needs the extra `record`.
-    film : str, Path or Footage, optional
+    film : str, Path or WorldRecorder, optional
         A file (.mp4, .gif) for a film of the run, in the physics world; or a `Footage` of the mission, of which films
         and stills can be made afterwards.
     observers : sequence of Recorder
@@ -58,11 +60,11 @@ class ObservedRun(RunRequest):
 
     standing: Standing | None = None
     record: str | Path | None = None
-    film: str | Path | Footage | None = None
+    film: str | Path | WorldRecorder | None = None
     observers: Sequence[Recorder] = ()
     on_event: Callable[[ExecutionEvent], None] | None = None
     on_look: OnLook | None = None
-    on_world: Callable[[SimulatedWorld], None] | None = None
+    on_world: OnWorld | None = None
     halt: threading.Event | None = None
     wall: Clock | None = None
 
@@ -73,6 +75,26 @@ class ObservedRun(RunRequest):
         if own is not None and self.standing is not None:
             raise ParameterError("standing: given with stay or orders; expected one of them")
         return own if self.standing is None else self.standing
+
+    def observed_by(self, outputs: Sequence[BegunOutput]) -> ObservedRun:
+        """Return the same run, which outputs observe, too."""
+        worlds = [one for one in (self.on_world, *(output.on_world for output in outputs)) if one is not None]
+        looks = [one for one in (self.on_look, *(output.on_look for output in outputs)) if one is not None]
+
+        def on_world(world: SimulatedWorld) -> None:
+            for receive in worlds:
+                receive(world)
+
+        def on_look(look: Look) -> None:
+            for receive in looks:
+                receive(look)
+
+        return replace(
+            self,
+            observers=(*self.observers, *(observer for output in outputs for observer in output.observers)),
+            on_world=on_world if worlds else None,
+            on_look=on_look if looks else None,
+        )
 
 
 class KeywordsOf(Generic[P, Q]):

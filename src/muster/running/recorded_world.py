@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
@@ -12,7 +11,7 @@ from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.motion.laws import PROFILE
 from muster.motion.noise import CALM
-from muster.running.worlds import MakeWorld, world_named
+from muster.running.worlds import MakeWorld, takes_setting, world_named, worlds_that
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
@@ -37,32 +36,38 @@ def recorded_world(
     how = {field: getattr(request, field) for field in ("seed", "dt_s", "avoidance", "noise")}
     if recorder is not None:
         how |= {"observer": recorder.on_step, "observe_s": 0.1}
-    for field, lacks in _OF_SOME_WORLDS.items():
+    for field in _OF_SOME_WORLDS:
         value = getattr(request, field)
         if value and value not in (PROFILE, CALM):
-            how[field] = _taken(make, field, value, lacks.format(name))
+            _require_taken(make, name, field, value)
+            how[field] = value
     if snapshot is not None:
-        _taken(make, "snapshot", "of bodies", f"expected none: the world {name} cannot be resumed")
+        _require_taken(make, name, "snapshot", "of bodies")
         how["snapshot"] = snapshot
     return make(mission, **how)
 
 
-_OF_SOME_WORLDS = {
-    "law": f"expected {PROFILE}: the world {{}} has no other",
-    "wind": "expected none: the world {} has no wind; physics has",
-    "batteries": "expected none: the world {} has no batteries",
-    "drain": "expected none: the world {} has no batteries",
-    "rotor_level": "expected the world physics: {} has no rotors",
+_OF_SOME_WORLDS = ("law", "wind", "batteries", "drain", "rotor_level")
+"""Fields of a request that only some worlds take."""
+_LACKS = {
+    "law": f"expected {PROFILE}: the world {{world}} has no other",
+    "wind": "expected none: the world {world} has no wind; {others} has",
+    "batteries": "expected none: the world {world} has no batteries",
+    "drain": "expected none: the world {world} has no batteries",
+    "rotor_level": "expected the world {others}: {world} has no rotors",
+    "snapshot": "expected none: the world {world} cannot be resumed",
 }
-"""Fields of a request that only some worlds take, and what is said of others."""
+"""What is said of a world that does not take a setting; `others` are those that do."""
 
 
-def _taken(make: MakeWorld, option: str, value: Any, expected: str) -> Any:
-    """The value, if the world takes the option."""
-    taken = signature(make).parameters
-    if option not in taken and not any(parameter.kind is Parameter.VAR_KEYWORD for parameter in taken.values()):
-        raise ParameterError(f"{option}: {shown(plain(value))}; {expected}")
-    return value
+def _require_taken(make: MakeWorld, world: str, setting: str, value: Any) -> None:
+    """Raise `ParameterError` unless a world takes a setting."""
+    if takes_setting(make, setting):
+        return
+    lacks = _LACKS[setting]
+    others = worlds_that(lambda other: takes_setting(other, setting)) if "{others}" in lacks else ""
+    expected = lacks.format(world=world, others=others)
+    raise ParameterError(f"{setting}: {shown(plain(value))}; {expected}")
 
 
 def with_tracking(report: Report, world: SimulatedWorld) -> Report:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster.mission.errors import ParameterError
@@ -14,10 +12,10 @@ from muster.planning.request import require_mission
 from muster.running.coordination import Coordination
 from muster.running.observed_run import ObservedRun, keywords_of_run
 from muster.running.recorded import recorded
+from muster.running.run_outputs import RUN_OUTPUTS
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
-    from muster.report.film import Footage
 
 
 def simulated(mission: Mission, plan: Plan | Coordination, request: ObservedRun) -> Report:
@@ -49,30 +47,18 @@ def simulated(mission: Mission, plan: Plan | Coordination, request: ObservedRun)
     if request.is_real:
         raise ParameterError(f"world: {request.world}; expected a simulated one: muster.carry_out has real robots")
     _require_possible(mission, plan, request)
-    film, observers = request.film, request.observers
-    if film is not None:
-        footage = _footage(mission, film)
-        observers = (*observers, footage)
-        request = replace(request, on_world=footage.on_world)
-    with recorded(mission, request.record, observers) as recorder:
+    film = None
+    if request.film is not None:
+        film = RUN_OUTPUTS.named("film").begin(mission, request.world, {"film": request.film})
+        request = request.observed_by([film])
+    with recorded(mission, request.record, request.observers) as recorder:
         report = _carry_out(mission, plan, request, recorder)
-    if isinstance(film, str | Path):
-        from muster.report.film import write_film
-
-        write_film(film, footage)
+    if film is not None:
+        film.write(lambda line: None)
     return report
 
 
 simulate = keywords_of_run.in_world(simulated)
-
-
-def _footage(mission: Mission, film: str | Path | Footage) -> Footage:
-    from muster.report.film import Footage, check_film
-
-    if isinstance(film, Footage):
-        return film
-    check_film(film)
-    return Footage(mission)
 
 
 def _require_possible(mission: Mission, plan: Plan | Coordination, request: ObservedRun) -> None:

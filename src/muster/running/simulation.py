@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -32,7 +32,9 @@ from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.run_request import RunRequest
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
+from muster.running.worlds import has_ability, world_named
 from muster.simulation import NO_NOISE, SimulatedWorld
+from muster.simulation.declaration import EXACT
 from muster.state import MissionState, OtherEvent
 from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
@@ -40,9 +42,9 @@ from muster.verification.required import require_geometry, require_open_ways
 if TYPE_CHECKING:
     from muster.execution.report import Report
     from muster.execution.standing import EventLog
+    from muster.running.run_outputs import OnWorld
     from muster.state import ExecutionEvent
 
-OnWorld = Callable[[SimulatedWorld], None]
 LOOK_S = 0.5
 """Seconds of mission time between two looks at the robots, where nothing happens before."""
 
@@ -314,7 +316,7 @@ def _with_objective(mission: Mission, plan: Plan) -> Plan:
 def _is_exact(request: RunRequest) -> bool:
     """Whether robots drive exactly as told, and know where they are."""
     estimated = request.pose is not None or request.localise is not None
-    return request.world == "kinematic" and request.noise == NO_NOISE and not estimated
+    return has_ability(world_named(request.world), EXACT) and request.noise == NO_NOISE and not estimated
 
 
 def carry_out(

@@ -1,4 +1,4 @@
-"""Worlds in which a plan is carried out. The physics world is in `simulation.physics`, and needs an extra."""
+"""The kinematic world, and what simulated worlds share; worlds are looked up by name in `muster.running.worlds`."""
 
 from muster.motion.noise import CALM, NO_NOISE, Noise, Wind
 from muster.simulation.kinematic_world import KinematicWorld

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,7 @@ from muster.mission.model import Tag
 from muster.motion.grid import Floats
 from muster.perception.camera import View
 from muster.perception.camera_observer import CameraObserver, Observation
+from muster.perception.detection import TagDetector
 from muster.perception.geometric_detection import GroundTag, sightings_of
 from muster.perception.images import Image
 from muster.perception.tags import tag_pose
@@ -32,6 +33,9 @@ class Look:
 class Cameras(Protocol):
     """The cameras of a world."""
 
+    detector: TagDetector | None
+    """Finds tags in pictures; None where cameras have none."""
+
     def look(self, observer: CameraObserver, view: View, body: npt.ArrayLike, now: float) -> Look:
         """Look from the camera's true `view`; `body`, (6,) or (4, 4), is the pose that the robot estimates."""
         ...
@@ -41,8 +45,25 @@ class Cameras(Protocol):
         ...
 
 
+@runtime_checkable
+class WithCameras(Protocol):
+    """A world in which robots' cameras see tags."""
+
+    def cameras(self, tags: Sequence[Tag], seed: int) -> Cameras:
+        """Return the cameras, which see these tags; `seed` is that of their errors.
+
+        Raises
+        ------
+        MissingExtraError
+            if an extra is needed and not installed.
+        """
+        ...
+
+
 class GeometricCameras:
     """Sees tags where geometry has them, `corner_px` off in the picture; draws nothing and needs no extra."""
+
+    detector = None
 
     def __init__(self, tags: Sequence[Tag], seed: int, corner_px: float = 0.2) -> None:
         self._tags = [

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from muster.mission.model import Tag
 from muster.motion.grid import Floats
 from muster.motion.map_world import body_of
 from muster.perception.laser import NO_DISCS, Scanner, faces_at
+from muster.simulation.cameras import GeometricCameras
+from muster.simulation.declaration import EXACT, declares
 from muster.simulation.lasers import discs_seen_at, laser_height_m
 from muster.simulation.world_base import Event, WorldBase
 
 
+@declares(settings=("law", "batteries", "drain", "snapshot"), abilities=(EXACT,))
 class KinematicWorld(WorldBase):
     """Robots that follow their velocity commands exactly, but for noise; see `WorldBase`."""
 
@@ -24,6 +30,10 @@ class KinematicWorld(WorldBase):
         others = discs_seen_at(self._robots, places, number, height)
         pose = (x, y, float(self.headings[number]))
         return np.minimum(scanner.ranges(pose, walls, others), scanner.ranges(pose, discs=cylinders))
+
+    def cameras(self, tags: Sequence[Tag], seed: int) -> GeometricCameras:
+        """See `WithCameras`; pictures are not drawn."""
+        return GeometricCameras(tags, seed)
 
     def _go_on(self, until_s: float) -> list[Event]:
         return self._crowd.advance(until_s)

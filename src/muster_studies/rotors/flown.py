@@ -42,7 +42,6 @@ def motor_constants() -> tuple[float, float]:
 
 
 def _firefly() -> SimulatedModel:
-    from muster.simulation.physics import PhysicsWorld  # noqa: F401 (chooses how pictures are drawn before MuJoCo)
     from muster.simulation.physics.airframes import FIREFLY
     from muster.simulation.physics.bodies import BodyKind, RobotBody
     from muster.simulation.physics.model import PlacedRobot

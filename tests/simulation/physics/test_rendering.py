@@ -81,14 +81,18 @@ def test_a_lens_of_another_size_and_one_too_large_are_told(world):
 
 def test_the_backend_is_chosen_before_mujoco_comes():
     program = (
-        "import os; os.environ.pop('MUJOCO_GL', None); import muster.simulation.physics; print(os.environ['MUJOCO_GL'])"
+        "import os; os.environ.pop('MUJOCO_GL', None); "
+        "import muster.simulation.physics.rendering; print(os.environ['MUJOCO_GL'])"
     )
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
     assert said in BACKENDS
 
 
 def test_nothing_of_it_comes_with_muster():
-    program = "import sys, muster, muster.simulation, muster.running.simulation; print('mujoco' in sys.modules)"
+    program = (
+        "import sys, muster.running.simulation, muster.cli.simulate; from muster.running.worlds import WORLDS; "
+        "WORLDS['physics']; print('mujoco' in sys.modules)"
+    )
     assert (
         subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "False\n"
     )
@@ -97,7 +101,7 @@ def test_nothing_of_it_comes_with_muster():
 def test_a_backend_that_there_is_not_is_one_line():
     program = (
         "from muster.mission.errors import ParameterError\n"
-        "try:\n    import muster.simulation.physics\n"
+        "try:\n    from muster.simulation.physics import PhysicsWorld\n"
         "except ParameterError as error:\n    print(error)\n"
     )
     said = printed_by(program, env={**os.environ, "MUJOCO_GL": "nonsense"})

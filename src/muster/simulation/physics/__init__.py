@@ -1,11 +1,17 @@
-"""A world with masses, forces and contacts (MuJoCo). Importing it without the extra `physics`: MissingExtraError."""
+"""A world with masses, forces and contacts (MuJoCo). `PhysicsWorld` needs the extra `physics`."""
 
-from muster.perception.optional_parts import require_physics
-from muster.simulation.physics.optional_parts import choose_backend
+from typing import TYPE_CHECKING
 
-require_physics("the physics world", "mujoco")
-choose_backend()
-
-from muster.simulation.physics.physics_world import PhysicsWorld  # noqa: E402 (MuJoCo comes with it)
+if TYPE_CHECKING:
+    from muster.simulation.physics.physics_world import PhysicsWorld
 
 __all__ = ["PhysicsWorld"]
+
+
+def __getattr__(name: str) -> object:
+    """Import `PhysicsWorld` when it is first used: options and declarations of this package need no MuJoCo."""
+    if name != "PhysicsWorld":
+        raise AttributeError(f"module {__name__} has no attribute {name}")
+    from muster.simulation.physics.physics_world import PhysicsWorld
+
+    return PhysicsWorld

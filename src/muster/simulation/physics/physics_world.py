@@ -10,14 +10,14 @@ in the plane drones fly at `FLIGHT_M`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission, Robot
+from muster.mission.model import Mission, Robot, Tag
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.limits import Limits
@@ -36,6 +36,9 @@ from muster.simulation.physics.scenery import Scenery
 from muster.simulation.physics.simulated_model import SimulatedModel
 from muster.simulation.wind import WindField
 from muster.simulation.world_base import FLIGHT_M, Event, WorldBase
+
+if TYPE_CHECKING:
+    from muster.simulation.physics.rendered_cameras import RenderedCameras
 
 PHYSICS_S = 0.005
 """The longest step of physics."""
@@ -102,6 +105,12 @@ class PhysicsWorld(WorldBase):
         self._update_model()
         assert self._simulated is not None
         return self._simulated
+
+    def cameras(self, tags: Sequence[Tag], seed: int) -> RenderedCameras:
+        """See `WithCameras`; pictures are rendered of the world, in which the mission's tags lie."""
+        from muster.simulation.physics.rendered_cameras import RenderedCameras
+
+        return RenderedCameras(self)
 
     def replica(self, heights: Heights) -> SimulatedModel:
         """Another model with the same robots, which can be put anywhere for pictures; see `buildings`."""

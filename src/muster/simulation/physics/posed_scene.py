@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from muster.motion.grid import Floats
 from muster.simulation.physics.bodies import BodyKind
 from muster.simulation.physics.buildings import Rgba
+from muster.simulation.physics.library import mujoco
 from muster.simulation.physics.model import UNSEEN
 from muster.simulation.physics.simulated_model import SimulatedModel
 

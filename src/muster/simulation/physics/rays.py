@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import mujoco
 import numpy as np
 
 from muster.motion.grid import Bools, Floats
+from muster.simulation.physics.library import mujoco
 from muster.simulation.physics.model import FIRST_WALLS_BIT, UNSEEN
 from muster.simulation.physics.simulated_model import SimulatedModel
 

@@ -6,9 +6,9 @@ import numpy.typing as npt
 
 from muster.perception.camera import Intrinsics, View
 from muster.perception.camera_observer import CameraObserver
+from muster.perception.detection import TagDetector
 from muster.simulation.cameras import Look
-from muster.simulation.physics.physics_world import PhysicsWorld
-from muster.simulation.physics.rendering import Lens, Renderer
+from muster.simulation.physics.rendering import Lens, Renderer, Shown
 
 
 class RenderedCameras:
@@ -16,11 +16,14 @@ class RenderedCameras:
 
     Raises
     ------
+    MissingExtraError
+        if what detects tags in pictures is not installed.
     RenderingError
         when looking, if there is no graphics library.
     """
 
-    def __init__(self, world: PhysicsWorld) -> None:
+    def __init__(self, world: Shown) -> None:
+        self.detector = TagDetector()
         self._world = world
         self._renderers: dict[tuple[int, int], Renderer] = {}
 

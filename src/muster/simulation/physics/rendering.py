@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Protocol, Self
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError, RenderingError
 from muster.mission.ranges import require_finite_positive
 from muster.motion.grid import Floats
+from muster.simulation.physics.library import mujoco
 from muster.simulation.physics.model import SHOW_HEIGHT, SHOW_WIDTH
 from muster.simulation.physics.optional_parts import BACKENDS
 from muster.simulation.physics.visual_marks import Mark

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from muster.motion.grid import Floats
 from muster.simulation.physics.airframes import MOST_ROTORS
 from muster.simulation.physics.bodies import BodyKind
+from muster.simulation.physics.library import mujoco
 from muster.simulation.physics.model import PlacedRobot, mjcf
 from muster.simulation.physics.rotors import RotorState
 from muster.simulation.physics.scenery import Scenery

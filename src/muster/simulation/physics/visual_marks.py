@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from muster.motion.grid import Floats
 from muster.simulation.physics.buildings import Rgba
+from muster.simulation.physics.library import mujoco
 
 _UPRIGHT = np.eye(3)
 _GLOW = 0.1

@@ -1,0 +1,59 @@
+"""What a world declares of itself to those that make it by name, before it is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+from muster.mission.errors import ParameterError
+
+if TYPE_CHECKING:
+    from muster.mission.model import Mission
+    from muster.motion.grid import Floats
+    from muster.perception.camera import Intrinsics
+    from muster.perception.images import Image
+
+EXACT, BODIES = ABILITIES = ("exact", "bodies")
+"""What a world may be able to do: move robots exactly as commanded where there is no noise; show their bodies in films
+and stills."""
+SETTINGS = ("law", "wind", "batteries", "drain", "rotor_level", "snapshot")
+"""Keyword arguments that a world may take beside those of all worlds."""
+
+M = TypeVar("M", bound=Callable[..., object])
+
+
+class PlacedCamera(Protocol):
+    """A camera that is put anywhere in a mission's world, and draws what it sees there."""
+
+    def image(self, body: Floats, mount: Floats) -> Image:
+        """Return the picture from a body's pose (4, 4) with the camera at the pose `mount` (4, 4) on it."""
+        ...
+
+
+MakePlacedCamera = Callable[["Mission", "Intrinsics"], PlacedCamera]
+
+
+def declares(
+    *, settings: Collection[str], abilities: Collection[str] = (), placed_camera: MakePlacedCamera | None = None
+) -> Callable[[M], M]:
+    """Declare what a class or function that makes a world takes, and what the world can do.
+
+    Parameters
+    ----------
+    settings : collection of str
+        Which of `SETTINGS` it takes. Without a declaration they are those in its signature.
+    abilities : collection of str, optional
+        Which of `ABILITIES` the world has.
+    placed_camera : callable, optional
+        Returns a camera of given intrinsics in the world of a mission: the cameras of the world have pictures.
+    """
+    for what, words, known in (("settings", settings, SETTINGS), ("abilities", abilities, ABILITIES)):
+        if unknown := [word for word in words if word not in known]:
+            raise ParameterError(f"{what}: {unknown[0]}; expected {', '.join(known)}")
+
+    def declared(make: M) -> M:
+        make.settings, make.abilities = frozenset(settings), frozenset(abilities)  # type: ignore[attr-defined]
+        make.placed_camera = placed_camera  # type: ignore[attr-defined]
+        return make
+
+    return declared
