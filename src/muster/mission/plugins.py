@@ -10,7 +10,7 @@ import logging
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, cached_property
-from importlib.metadata import EntryPoint, EntryPoints, entry_points
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import MusterError, ParameterError, PluginError
@@ -25,10 +25,8 @@ def declared(group: str) -> tuple[EntryPoint, ...]:
     return tuple(sorted(_installed(tuple(sys.path)).select(group=group), key=lambda entry: not is_shipped(entry)))
 
 
-@cache
-def _installed(path: tuple[str, ...]) -> EntryPoints:
-    """Entry points of all packages on a path; reading them takes longer than anything else that a lookup does."""
-    return entry_points()
+_installed = cache(lambda path: entry_points())
+"""Entry points of all packages on a path; reading them takes longer than anything else that a lookup does."""
 
 
 def is_shipped(entry: EntryPoint) -> bool:

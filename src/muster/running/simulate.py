@@ -47,9 +47,9 @@ def simulated(mission: Mission, plan: Plan | Coordination, request: ObservedRun)
     if request.is_real:
         raise ParameterError(f"world: {request.world}; expected a simulated one: muster.carry_out has real robots")
     _require_possible(mission, plan, request)
-    film = None
-    if request.film is not None:
-        film = RUN_OUTPUTS.named("film").begin(mission, request.world, {"film": request.film})
+    asked = request.film is not None
+    film = RUN_OUTPUTS.named("film").begin(mission, request.world, {"film": request.film}) if asked else None
+    if film is not None:
         request = request.observed_by([film])
     with recorded(mission, request.record, request.observers) as recorder:
         report = _carry_out(mission, plan, request, recorder)
