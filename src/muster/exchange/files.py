@@ -17,12 +17,12 @@ from muster.exchange.file_names import file_names
 from muster.exchange.geographic_features import PlanFeatures, features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
-from muster.exchange.itinerary import Itinerary, Passage, itineraries
 from muster.exchange.kml import kml_text
 from muster.exchange.open_ways import require_open_itineraries
 from muster.exchange.qgc_writer import PlanFiles
 from muster.exchange.spreadsheet import csv_text
 from muster.exchange.thinning import thinned
+from muster.execution.itinerary import Itinerary, Passage, itineraries
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
