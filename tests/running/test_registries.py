@@ -7,8 +7,8 @@ import pytest
 
 import muster
 from muster.cli.main import run
-from muster.exchange.export_request import FORMATS
 from muster.mission.errors import ParameterError
+from muster.planning.export_formats import FORMATS, Files, declares
 from muster.running.fleet_registry import FLEETS
 from muster.running.fleets import fleet_ready
 from muster.running.worlds import WORLDS, world_named
@@ -89,6 +89,34 @@ def test_a_format_is_exported_to(added, mission, tmp_path, capsys):
     plan.save(tmp_path / "p.json")
     assert run(["export", "31T-6R50", str(tmp_path / "p.json"), "--to", "count"]) == 0
     assert capsys.readouterr().out == f"{plan.tasks_completed}\n"
+
+
+def test_a_format_gets_the_options_that_it_declares(added, mission, tmp_path, capsys):
+    @declares(options=("per_robot",))
+    def cards(mission, verdict, options, plan):
+        names = [route.robot for route in verdict.routes] if options.per_robot else ["all"]
+        return Files({f"{name}.txt": f"{plan.allocator}\n" for name in names})
+
+    added(FORMATS, "cards", cards)
+    plan = muster.solve(mission, "greedy")
+    assert muster.export(mission, plan, "cards").texts == {"all.txt": "greedy\n"}
+    with pytest.raises(ParameterError, match="altitude"):
+        muster.export(mission, plan, "cards", altitude=9)
+    plan.save(tmp_path / "p.json")
+    asked = ["export", "31T-6R50", str(tmp_path / "p.json"), "--to", "cards"]
+    assert run([*asked, "--per-robot", "-o", str(tmp_path / "cards")]) == 0
+    assert {path.stem for path in (tmp_path / "cards").iterdir()} == {robot.id for robot in mission.robots}
+    capsys.readouterr()
+    assert run([*asked, "--altitude", "9"]) == 2
+    owners = "qgc or geojson or gpx or kml or sheets or overview or xlsx or ics"
+    assert capsys.readouterr().err == f"--altitude given; expected it with --to {owners}, not cards\n"
+    assert run(["export", "31T-6R50", str(tmp_path / "p.json"), "--to", "csv", "--per-robot"]) == 2
+    assert "expected it with --to sheets or ics or cards, not csv" in capsys.readouterr().err
+
+
+def test_a_format_declares_options_that_there_are():
+    with pytest.raises(ParameterError, match="options: altitud; expected altitude, altitude_step"):
+        declares(options=("altitud",))
 
 
 def test_what_cannot_be_called_is_refused():

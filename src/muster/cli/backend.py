@@ -19,12 +19,12 @@ from muster.mission.plan import Plan
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
     from muster.cli.local_backend import OnLine
-    from muster.exchange.export_request import ExportOptions, Files
     from muster.exchange.mission_control import MissionEntry
     from muster.execution import Report
     from muster.library import MissionSummary
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
+    from muster.planning.export_formats import ExportOptions, Files
     from muster.planning.request import Request
     from muster.planning.solving import Solution
     from muster.running.negotiated.simulation import Negotiation

@@ -492,7 +492,7 @@ import sys
 import muster.server.services.jobs, muster.server.services.plans
 heavy = ("numpy", "scipy", "shapely", "matplotlib", "muster.allocation.", "muster.simulation", "muster.verification",
          "muster.exchange.", "muster.report", "muster.mission.yaml_reader")
-light = {"muster.exchange.mission_control", "muster.exchange.export_request", "muster.allocation.parameter_types",
+light = {"muster.exchange.mission_control", "muster.planning.export_formats", "muster.allocation.parameter_types",
          "muster.exchange.sites", "muster.exchange.sites.readers"}
 print([name for name in sys.modules if name.startswith(heavy) and name not in light])
 """
