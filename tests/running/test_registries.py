@@ -9,6 +9,7 @@ import muster
 from muster.cli.main import run
 from muster.mission.errors import ParameterError
 from muster.planning.export_formats import FORMATS, Files, declares
+from muster.planning.mission_readers import MISSION_READERS, MissionReader, Noted, converted_suffixes
 from muster.running.fleet_registry import FLEETS
 from muster.running.fleets import fleet_ready
 from muster.running.worlds import WORLDS, world_named
@@ -117,6 +118,36 @@ def test_a_format_gets_the_options_that_it_declares(added, mission, tmp_path, ca
 def test_a_format_declares_options_that_there_are():
     with pytest.raises(ParameterError, match="options: altitud; expected altitude, altitude_step"):
         declares(options=("altitud",))
+
+
+def test_a_mission_of_another_program_is_read(added, tmp_path, capsys):
+    def read(path, robots):
+        return Noted(
+            muster.Mission(
+                robots=[muster.Robot(id=robots or "r", position=(0, 0))], tasks=[muster.Task(id="a", position=(1, 1))]
+            ),
+            ("a note",),
+        )
+
+    own = MissionReader(takes=lambda path: path.suffix == ".route", read=read, flags=("robots",), suffixes=(".route",))
+    added(MISSION_READERS, "routes", own)
+    file = tmp_path / "a.route"
+    file.write_text("anything", encoding="utf-8")
+    assert [robot.id for robot in muster.load(file, robots="lead").robots] == ["lead"]
+    assert run(["check", str(file)]) == 0
+    assert "a note" in capsys.readouterr().err.splitlines()
+    with pytest.raises(ParameterError, match="--depot given; expected no --depot with this kind of mission"):
+        muster.load(file, depot="1")
+    assert ".route" in converted_suffixes()
+    with pytest.raises(ParameterError, match="a second mission"):
+        muster.read_site(file, file)
+
+
+def test_a_reader_of_missions_has_flags_that_there_are():
+    with pytest.raises(ParameterError, match="flags: robot; expected robots, suitability"):
+        MissionReader(takes=callable, read=Noted, flags=("robot",))
+    with pytest.raises(ParameterError, match="it is a function; expected a MissionReader"):
+        MISSION_READERS.add("routes", lambda path: None)
 
 
 def test_what_cannot_be_called_is_refused():

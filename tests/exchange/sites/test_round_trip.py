@@ -15,6 +15,7 @@ from tests.mission.strategies import examples
 
 from muster.exchange.antimeridian import cut_ring
 from muster.exchange.earth import Earth
+from muster.exchange.importing import read_site
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.model import Map, Mission, Origin, Robot, Rules, Station, Task, Zone
 from muster.mission.plan import Plan, Route
@@ -22,7 +23,6 @@ from muster.mission.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 from muster.planning.export_formats import ExportOptions
 from muster.planning.exporting import exported
-from muster.planning.importing import read_site
 from muster.verification import verify
 
 WITHIN_M = 0.01
