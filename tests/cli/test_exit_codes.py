@@ -48,7 +48,7 @@ def test_an_armed_robot_decides_whatever_exception_ends_the_command(monkeypatch,
             note_ending(Ending.STILL_MOVING)
         raise error
 
-    monkeypatch.setattr(main, "VERBS", {"fails": "Fails."})
+    monkeypatch.setattr(main, "verbs", lambda: {"fails": None})
     monkeypatch.setattr(main._Verbs, "get_command", lambda *_: command)
     assert main.run(["fails"]) == (4 if armed else code)
     assert "Traceback" not in capfd.readouterr().err

@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from muster.cli.main import VERBS
+from muster.cli.main import verbs
 from muster.cli.man import page
+
+VERBS = tuple(verbs())
 
 PAGE = Path(__file__).parents[2] / "man/muster.1"
 

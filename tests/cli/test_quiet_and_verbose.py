@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from muster.cli.main import VERBS
+from muster.cli.main import verbs
+
+VERBS = tuple(verbs())
 
 pytestmark = pytest.mark.usefixtures("folder")
 

@@ -3,14 +3,18 @@
 import signal
 import socket
 import threading
+from types import SimpleNamespace
 
 import pytest
 from tests.running.test_live import WorldAsFleet, mission
 
 import muster
 from muster.cli import real_robots as real
+from muster.cli.exits import INTERRUPTED, STILL_MOVING, TASKS_LOST
 from muster.cli.main import run
 from muster.cli.real_robots import RealRunOptions, carried_out, reported
+from muster.execution.final_state import FinalState
+from muster.execution.report import ObjectiveReport, Report
 from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.planning.options import PlanningOptions
 from muster.running.live import wait_for_robots
@@ -103,3 +107,34 @@ def test_a_port_that_is_taken_is_told_before_robots_move():
 def test_a_namespace_that_is_none_is_told(name, capsys):
     assert run(["ros2", "6T-2R", "--namespace", name]) == 2
     assert f'namespace: "{name}"; expected names such as' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("moving", "halted", "code"),
+    [(False, False, TASKS_LOST), (True, False, STILL_MOVING), (True, True, STILL_MOVING), (False, True, INTERRUPTED)],
+)
+def test_the_exit_code_and_the_last_lines(capsys, moving, halted, code):
+    report = Report(
+        mission_time_s=1.0,
+        tasks_done=(),
+        tasks_lost=(("t", "why"),),
+        contacts=None,
+        min_distance_m=None,
+        waiting_s=0.0,
+        reallocations=0,
+        robots=(),
+        starts_s={},
+        ends_s={},
+        objective=ObjectiveReport("max", None, 0.0),
+        tasks=(),
+    )
+    wishes = SimpleNamespace(form="json", verbose=False, require_complete=True, quiet=True)
+    halt = threading.Event()
+    if halted:
+        halt.set()
+    states = [FinalState("r_0", "stands", (1.0, 2.0, 0.0), moving=False), FinalState("r_1", "drives", None, moving)]
+    assert reported(mission(), report, wishes, halt, "they stand", states) == code
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[-2:] == ["r_0: stands; at (1.00, 2.00, 0.00)", "r_1: drives; position unknown"]
+    assert ("still flying, driving or armed: r_1; land or stop them" in "\n".join(lines)) == moving
+    assert ("1 task lost: t" in lines) == (not halted)

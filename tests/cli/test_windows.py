@@ -8,7 +8,6 @@ import pytest
 pytest.importorskip("scipy")
 pytest.importorskip("msgpack")
 pytest.importorskip("cryptography")
-from muster.cli.main import VERBS
 
 pytestmark = pytest.mark.usefixtures("folder")
 
@@ -69,8 +68,8 @@ def test_plans_are_made_and_judged():
 
 
 def test_every_verb_can_be_imported():
-    lines = f"for verb in {list(VERBS)}:\n    assert muster.get_command(None, verb), verb\n"
-    lines = f"from muster.cli.main import muster\n{lines}"
+    lines = "for verb in verbs():\n    assert muster.get_command(None, verb), verb\n"
+    lines = f"from muster.cli.main import muster, verbs\n{lines}"
     script = AS_ON_WINDOWS.rsplit("from muster", 1)[0] + lines
     ended = subprocess.run([sys.executable, "-c", script], capture_output=True, encoding="utf-8")
     assert (ended.returncode, ended.stderr) == (0, "")

@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from muster.allocation.registry import ALLOCATORS
+from muster.mission import plugins
 from muster.mission.errors import ParameterError, PluginError
 from muster.mission.plugins import Registry
 
@@ -14,7 +15,7 @@ from muster.mission.plugins import Registry
 def package(folder, name, entries, code=""):
     """An installed package with entry points of the group `muster.things`."""
     info = folder / f"{name.replace('-', '_')}-1.0.dist-info"
-    info.mkdir(parents=True)
+    info.mkdir(parents=True, exist_ok=True)
     (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text("[muster.things]\n" + "".join(f"{entry}\n" for entry in entries))
     (folder / f"{name.replace('-', '_')}.py").write_text(code)
@@ -23,7 +24,15 @@ def package(folder, name, entries, code=""):
 @pytest.fixture
 def things(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
-    yield lambda **shipped: Registry("thing", "muster.things", shipped, checked)
+    monkeypatch.setattr(plugins, "DISTRIBUTION", "muster-own")
+
+    def registry(**shipped):
+        package(tmp_path, "muster-own", [f"{name} = {place}" for name, place in shipped.items()])
+        plugins._installed.cache_clear()
+        return Registry("thing", "muster.things", checked)
+
+    yield registry
+    plugins._installed.cache_clear()
     for name in ("muster_one", "muster_two"):
         sys.modules.pop(name, None)
 
@@ -69,7 +78,7 @@ def test_a_name_that_two_packages_register_is_refused_and_the_others_are_not(tmp
     registry = things(path="os:sep")
     with pytest.raises(PluginError, match=r"thing mine: registered by muster-(one|two) 1.0 and muster-(one|two) 1.0"):
         registry["mine"]
-    with pytest.raises(PluginError, match=r"thing path: registered by muster-robotics and muster-one 1.0"):
+    with pytest.raises(PluginError, match=r"thing path: registered by muster-own 1.0 and muster-one 1.0"):
         registry["path"]
     assert registry["other"] == "2"
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import muster
-from muster.bridges.fleet import Failure
+from muster.execution.fleet import Failure
 from muster.execution.record import NoObserver
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.report.record import read_record

@@ -2,16 +2,18 @@
 
 import json
 import threading
+from pathlib import Path
 
 import pytest
 
 import muster
 from muster.cli.main import run
-from muster.mission.errors import ParameterError
-from muster.planning.export_formats import FORMATS, Files, declares
+from muster.cli.other_recordings import OTHER_RECORDINGS
+from muster.mission.errors import MissingExtraError, ParameterError
+from muster.planning import export_formats
+from muster.planning.export_formats import FORMATS, Files
 from muster.planning.mission_readers import MISSION_READERS, MissionReader, Noted, converted_suffixes
-from muster.running.fleet_registry import FLEETS
-from muster.running.fleets import fleet_ready
+from muster.running.fleet_registry import FLEETS, declares, fleet_ready
 from muster.running.worlds import WORLDS, world_named
 from muster.server.runs.run_settings import new_request
 from muster.simulation import KinematicWorld
@@ -40,9 +42,16 @@ def test_what_ships_is_there_in_order():
     assert list(WORLDS) == ["kinematic", "physics"]
     assert list(FLEETS) == ["ros1", "ros2", "mavlink"]
     assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv", "sol", "sheets", "overview", "xlsx", "ics"]
+    assert list(OTHER_RECORDINGS) == ["ros"]
     assert world_named("kinematic") is KinematicWorld
     assert all(callable(FLEETS[name]) for name in FLEETS)
     assert all(callable(FORMATS[name]) for name in FORMATS)
+    assert OTHER_RECORDINGS["ros"].is_recording(Path("nowhere.bag")) is False
+
+
+def test_recordings_that_lack_a_function_are_refused(added):
+    with pytest.raises(ParameterError, match="recordings radio: it has no add_options; expected a module"):
+        added(OTHER_RECORDINGS, "radio", object())
 
 
 def test_a_world_carries_a_plan_out(added, mission, tmp_path, capsys):
@@ -83,6 +92,20 @@ def test_a_fleet_is_opened_with_the_settings_of_the_run(added, mission):
         new_request("barges", (), {})
 
 
+def test_what_a_fleet_needs_is_asked_for_before_it_is_opened_or_served(added, mission, capsys):
+    opened = []
+
+    def lacks():
+        raise MissingExtraError("barges", "fleet barges")
+
+    added(FLEETS, "barges", declares(require_installed=lacks)(lambda *given: opened.append(given)))
+    with pytest.raises(MissingExtraError, match="fleet barges"):
+        fleet_ready("barges", mission, {}, threading.Event(), again=False)
+    assert run(["serve", "--bridge", "barges"]) == 2
+    assert "fleet barges" in capsys.readouterr().err
+    assert not opened
+
+
 def test_a_format_is_exported_to(added, mission, tmp_path, capsys):
     added(FORMATS, "count", lambda mission, verdict: f"{verdict.tasks_completed}\n")
     plan = muster.solve(mission, "greedy")
@@ -93,7 +116,7 @@ def test_a_format_is_exported_to(added, mission, tmp_path, capsys):
 
 
 def test_a_format_gets_the_options_that_it_declares(added, mission, tmp_path, capsys):
-    @declares(options=("per_robot",))
+    @export_formats.declares(options=("per_robot",))
     def cards(mission, verdict, options, plan):
         names = [route.robot for route in verdict.routes] if options.per_robot else ["all"]
         return Files({f"{name}.txt": f"{plan.allocator}\n" for name in names})
@@ -117,7 +140,7 @@ def test_a_format_gets_the_options_that_it_declares(added, mission, tmp_path, ca
 
 def test_a_format_declares_options_that_there_are():
     with pytest.raises(ParameterError, match="options: altitud; expected altitude, altitude_step"):
-        declares(options=("altitud",))
+        export_formats.declares(options=("altitud",))
 
 
 def test_a_mission_of_another_program_is_read(added, tmp_path, capsys):

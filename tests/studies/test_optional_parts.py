@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import muster
-from muster.cli.main import VERBS, other_verbs
+from muster.cli.main import verbs
 from muster.mission.yaml_writer import yaml_text
 from muster_studies.registry import STUDIES
 
@@ -38,7 +38,7 @@ four runs that in the physics world with all sensors."""
 EXTRAS = sorted({study.extras for study in STUDIES.values()})
 HELP = [
     ["--help"],
-    *([verb, "--help"] for verb in (*VERBS, *other_verbs())),
+    *([verb, "--help"] for verb in verbs()),
     ["bench", "peers", "--help"],
     ["bench", "peers-timed", "--help"],
     ["bench", "peers-routes", "--help"],

@@ -1,1 +1,1 @@
-"""Bridges to real robots. Each has its own extra, needed when it is used; `fleet` has the common interface."""
+"""Bridges to real robots, as fleets. Each has its own extra, needed when it is used; `opening` opens each of them."""

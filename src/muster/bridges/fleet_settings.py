@@ -18,6 +18,7 @@ from muster.mission.value_types import (
     JsonSchema,
     Number,
     Path,
+    Share,
     Table,
     Text,
     Whole,
@@ -45,10 +46,6 @@ class _Name:
     def schema(self) -> JsonSchema:
         """See `Kind`."""
         return {"type": "string"}
-
-
-class Share(Number):
-    """A share that a command line and its help state in per cent."""
 
 
 @record

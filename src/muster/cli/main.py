@@ -6,12 +6,10 @@
 from __future__ import annotations
 
 import errno
-import importlib
 import os
 import sys
 from collections.abc import Mapping
 from io import TextIOWrapper
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -24,38 +22,6 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 VERB_GROUP = "muster.verbs"
-VERBS: Mapping[str, str] = MappingProxyType(
-    {
-        "docs": "Read the documents: list them, or show a page.",
-        "missions": "List the missions that come with Muster.",
-        "init": "Write a mission file to start from.",
-        "import": "Make a mission of the files of a site: tables, maps, tracks.",
-        "generate": "Write random missions of a family.",
-        "check": "Find what is wrong with a mission, and the tasks that can never be done.",
-        "solve": "Plan a mission.",
-        "auction": "Let the robots of a team agree who does what, each in a process of its own.",
-        "compare": "Compare allocators on many missions, by statistics.",
-        "verify": "Judge a plan from scratch.",
-        "explain": "Explain why a task is done by this robot, not by another, or left out.",
-        "path": "Find a path on the map of a mission, from one point to another.",
-        "traffic": "Show the roadmap that the robots of a mission share: lanes, passages for one, holding places.",
-        "simulate": "Carry a plan out in a simulated world, and report its cost.",
-        "run": "Carry a plan out with a fleet of real robots, of a bridge or of an installed package.",
-        "ros": "Carry a plan out with real robots on ROS 1.",
-        "ros2": "Carry a plan out with real robots on ROS 2.",
-        "fly": "Carry a plan out with drones, over MAVLink.",
-        "serve": "Open mission control: plan, watch and steer in the browser.",
-        "db": "Manage the database of mission control: backups, deletion of old runs.",
-        "replay": "Show a record of a mission that was carried out.",
-        "export": "Write a plan for other tools: QGroundControl, maps, spreadsheets.",
-        "doctor": "Say what is installed, what works, and what was found of the system.",
-        "completion": "Print what a shell needs to complete the command.",
-        "man": "Print the manual page.",
-    }
-)
-"""The verbs of this package, each in the module of its name, with their summaries in the order of `--help`."""
-_MODULES = {"import": "import_site"}
-"""The modules of verbs whose names Python keeps for itself."""
 
 
 class _OutputClosedError(Exception):
@@ -63,22 +29,18 @@ class _OutputClosedError(Exception):
 
 
 class _Verbs(click.Group):
-    """The verbs, each in a module of its own that is imported when the verb is called."""
+    """The verbs of all packages; one is imported when it is called, or its summary is shown."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return [*VERBS, *sorted(other_verbs())]
+        return [*verbs()]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name in VERBS:
-            command: click.Command = importlib.import_module(f"muster.cli.{_MODULES.get(cmd_name, cmd_name)}").command
-            return command
-        found = other_verbs().get(cmd_name)
+        found = verbs().get(cmd_name)
         return None if found is None else _loaded(found)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        others = [(name, _summary(found)) for name, found in sorted(other_verbs().items())]
         with formatter.section("Verbs"):
-            formatter.write_dl([*VERBS.items(), *others])
+            formatter.write_dl([(name, _summary(found)) for name, found in verbs().items()])
 
     def invoke(self, ctx: click.Context) -> Any:
         try:
@@ -91,18 +53,18 @@ class _Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         from muster.mission.near_matches import did_you_mean
 
-        if args and args[0] not in VERBS and not args[0].startswith("-"):
-            verbs = self.list_commands(ctx)
-            if args[0] not in verbs:
-                raise click.UsageError(f"no verb '{args[0]}'{did_you_mean(args[0], verbs)}", ctx)
+        if args and args[0] not in verbs() and not args[0].startswith("-"):
+            raise click.UsageError(f"no verb '{args[0]}'{did_you_mean(args[0], verbs())}", ctx)
         return super().resolve_command(ctx, args)
 
 
-def other_verbs() -> Mapping[str, EntryPoint]:
-    """Verbs that other packages register in the entry point group `muster.verbs`; none replaces a verb of this one."""
-    from importlib.metadata import entry_points
+def verbs() -> Mapping[str, EntryPoint]:
+    """The verbs of this distribution in the order of `--help`, then those of others; none of these replaces one."""
+    from muster.mission.plugins import declared, is_shipped
 
-    return {found.name: found for found in entry_points(group=VERB_GROUP) if found.name not in VERBS}
+    found = declared(VERB_GROUP)
+    shipped = {verb.name: verb for verb in found if is_shipped(verb)}
+    return shipped | {verb.name: verb for verb in sorted(found, key=lambda verb: verb.name) if verb.name not in shipped}
 
 
 def _loaded(found: EntryPoint) -> click.Command:

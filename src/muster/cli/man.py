@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from importlib.metadata import entry_points, version
+from importlib.metadata import version
 
 import click
 
 from muster.cli.options import quiet_option
 from muster.mission.installation import DISTRIBUTION
+from muster.mission.plugins import declared, is_shipped
 
 _HELP = """Print the manual page, for `man`.
 
@@ -26,11 +27,10 @@ def command(quiet: bool, verbose: bool) -> None:
 
 
 def page() -> str:
-    """The manual page muster(1) in the macros of man(7), with all verbs of this package and their options."""
-    from muster.cli.main import VERB_GROUP, VERBS, muster
+    """The manual page muster(1) in the macros of man(7), with all verbs of this distribution and their options."""
+    from muster.cli.main import VERB_GROUP, muster
 
     root = click.Context(muster, info_name="muster", help_option_names=["-h", "--help"])
-    own = [found.name for found in entry_points(group=VERB_GROUP) if found.dist and found.dist.name == DISTRIBUTION]
     lines = [
         f'.TH MUSTER 1 "" "muster {version(DISTRIBUTION)}" "User Commands"',
         ".SH NAME",
@@ -42,7 +42,7 @@ def page() -> str:
         *_text(muster.help or ""),
         ".SH VERBS",
     ]
-    for name in [*VERBS, *sorted(set(own) - set(VERBS))]:
+    for name in (found.name for found in declared(VERB_GROUP) if is_shipped(found)):
         verb = muster.get_command(root, name)
         assert verb is not None
         lines += _verb(verb, click.Context(verb, info_name=name, parent=root))

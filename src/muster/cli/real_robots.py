@@ -41,9 +41,9 @@ from muster.running.wall_time import notes_on_start, planned_from, require_time_
 from muster.state.reasons import was_cancelled
 
 if TYPE_CHECKING:
-    from muster.bridges.final_state import FinalState
-    from muster.bridges.fleet import Fleet
     from muster.execution import Recorder, Report
+    from muster.execution.final_state import FinalState
+    from muster.execution.fleet import Fleet
     from muster.running.wall_time import MissionStart
 
 _FILE = click.Path(path_type=Path)
@@ -212,7 +212,7 @@ def carried_out_from_here(
     at_end
         see `carried_out`.
     """
-    from muster.bridges.final_state import final_states_of
+    from muster.execution.final_state import final_states_of
 
     if not halt.is_set():
         start = start_in_time(mission, fleet, options)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
+from muster.cli.options import Finite, Verb
 from muster.cli.tables import number, print_table
 from muster.mission.counting import counted
 from muster.mission.errors import ParameterError
@@ -18,16 +19,42 @@ if TYPE_CHECKING:
     from muster.report.recordings import PoseTrack
 
 
-def require_recordings(
-    record: Path,
-    html: Path | None,
-    gantt: Path | None,
-    ros2: Path | None,
-    ros1: Path | None,
-    reference: Path | None,
-    topics: tuple[str, ...],
-    begins: float | None,
-) -> None:
+_FILE = click.Path(path_type=Path)
+_OPTIONS = (
+    click.option("--ros2", type=_FILE, metavar="FILE", help="Write it as messages of ROS 2 (.mcap)."),
+    click.option("--ros1", type=_FILE, metavar="FILE", help="Write it as a bag of ROS 1 (.bag)."),
+    click.option("--reference", type=_FILE, metavar="RECORDING", help="Say how far robots were from what this has."),
+    click.option(
+        "--topic",
+        "topics",
+        multiple=True,
+        metavar="ROBOT=TOPIC",
+        help="Topic of a robot's poses in the reference.  [default: /ROBOT/odom, or pose]",
+    ),
+    click.option(
+        "--begins", type=Finite(-1e11, 1e11), metavar="S", help="When the mission began, on the clock of ROS."
+    ),
+)
+
+
+def add_options(verb: Verb) -> Verb:
+    """--ros2, --ros1, --reference, --topic, --begins."""
+    for option in reversed(_OPTIONS):
+        verb = option(verb)
+    return verb
+
+
+def outputs(given: Mapping[str, Any]) -> tuple[Path | None, ...]:
+    """See `OtherRecordings`."""
+    return given["ros2"], given["ros1"]
+
+
+def inputs(given: Mapping[str, Any]) -> tuple[Path | None, ...]:
+    """See `OtherRecordings`."""
+    return (given["reference"],)
+
+
+def require_consistent(record: Path, given: Mapping[str, Any]) -> None:
     """Refuse, before anything is written, options that exclude each other.
 
     Raises
@@ -35,23 +62,28 @@ def require_recordings(
     ParameterError
         if options exclude each other, or a file has another suffix than its format.
     """
-    from muster.report.recordings import is_recording
-
     if is_recording(record):
-        outputs = {"html": html, "gantt": gantt, "ros2": ros2, "ros1": ros1, "reference": reference}
-        for option, value in outputs.items():
-            if value is not None:
+        for option in ("html", "gantt", "ros2", "ros1", "reference"):
+            if given[option] is not None:
                 raise ParameterError(f"--{option}: {record} is a recording of poses; expected a record of muster")
-    for file, option, suffix in ((ros2, "--ros2", ".mcap"), (ros1, "--ros1", ".bag")):
+    for option, suffix in (("ros2", ".mcap"), ("ros1", ".bag")):
+        file = given[option]
         if file is not None and file.suffix != suffix:
-            raise ParameterError(f"{option}: {file}; expected a file that ends in {suffix}")
-    if topics and reference is None:
+            raise ParameterError(f"--{option}: {file}; expected a file that ends in {suffix}")
+    if given["topics"] and given["reference"] is None:
         raise ParameterError("--topic given; expected it together with --reference")
-    if begins is not None and reference is None and ros2 is None and ros1 is None:
+    if given["begins"] is not None and all(given[option] is None for option in ("reference", "ros2", "ros1")):
         raise ParameterError("--begins given; expected it together with --reference, --ros2 or --ros1")
 
 
-def show_recording(file: Path, plot: Path | None, form: str, *, quiet: bool) -> int:
+def is_recording(file: Path) -> bool:
+    """See `OtherRecordings`."""
+    from muster.report.recordings import is_recording as is_of_ros
+
+    return is_of_ros(file)
+
+
+def show(file: Path, plot: Path | None, form: str, *, quiet: bool) -> int:
     """Print and draw the tracks in a recording of others."""
     tracks = _tracks(file, quiet=quiet)
     if plot is not None:
@@ -100,27 +132,29 @@ def _row(track: PoseTrack) -> dict[str, Any]:
     }
 
 
-def write_for_ros(
-    recording: Recording, ros2: Path | None, ros1: Path | None, begins: float | None, *, quiet: bool
-) -> None:
-    """Write a record as files of ROS."""
+def answer(recording: Recording, given: Mapping[str, Any], *, quiet: bool) -> Mapping[str, Any]:
+    """Write a record as files of ROS, and compare robots with a reference; see `OtherRecordings`."""
+    _write_for_ros(recording, given, quiet=quiet)
+    return {} if given["reference"] is None else {"reference": _errors_against(recording, given, quiet=quiet)}
+
+
+def _write_for_ros(recording: Recording, given: Mapping[str, Any], *, quiet: bool) -> None:
     from muster.report.recordings import write_ros1, write_ros2
 
-    for file, write in ((ros2, write_ros2), (ros1, write_ros1)):
+    for file, write in ((given["ros2"], write_ros2), (given["ros1"], write_ros1)):
         if file is not None:
-            counts = write(file, recording, begins_s=begins or 0.0)
+            counts = write(file, recording, begins_s=given["begins"] or 0.0)
             if not quiet:
                 topics, messages = counted(len(counts), "topic"), counted(sum(counts.values()), "message")
                 click.echo(f"wrote {file}: {topics}, {messages}", err=True)
 
 
-def errors_against(
-    recording: Recording, file: Path, topics: tuple[str, ...], begins: float | None, *, quiet: bool
-) -> Mapping[str, Any]:
+def _errors_against(recording: Recording, given: Mapping[str, Any], *, quiet: bool) -> Mapping[str, Any]:
     """Distances of robots from a recording: its file, its clock, and a row for each robot."""
     from muster.report.recordings import Reference, deviations
 
-    reference = Reference.of(recording, _tracks(file, quiet=quiet), _topics(topics), begins)
+    tracks = _tracks(given["reference"], quiet=quiet)
+    reference = Reference.of(recording, tracks, _topics(given["topics"]), given["begins"])
     rows = [
         {
             "robot": off.robot,
@@ -135,7 +169,7 @@ def errors_against(
         }
         for off in deviations(recording, reference)
     ]
-    return {"file": str(file), "begins_s": reference.begins_s, "robots": rows}
+    return {"file": str(given["reference"]), "begins_s": reference.begins_s, "robots": rows}
 
 
 def _topics(texts: tuple[str, ...]) -> dict[str, str]:
@@ -148,7 +182,13 @@ def _topics(texts: tuple[str, ...]) -> dict[str, str]:
     return topics
 
 
-def print_errors(off: Mapping[str, Any]) -> None:
+def print_answer(answer: Mapping[str, Any]) -> None:
+    """See `OtherRecordings`."""
+    if "reference" in answer:
+        _print_errors(answer["reference"])
+
+
+def _print_errors(off: Mapping[str, Any]) -> None:
     columns = ("robot", "topic", "samples", "(7) [m]", "mean [m]", "most [m]", "(8) [1/m]", "way [m]")
     rows = [
         (

@@ -1,4 +1,4 @@
-"""`muster replay`: what a record holds: as text, page, picture, file of ROS, or beside another recording."""
+"""`muster replay`: what a record holds: as text, page, picture, file of others, or beside another recording."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, format_option, quiet_option
+from muster.cli.options import Verb, format_option, quiet_option
+from muster.cli.other_recordings import OTHER_RECORDINGS
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.record_output import draw_record, drawing_options
-from muster.cli.recordings import errors_against, print_errors, require_recordings, show_recording, write_for_ros
 from muster.cli.report_tables import print_report
 from muster.cli.tables import number, print_table
 from muster.mission.counting import counted
@@ -21,22 +21,19 @@ if TYPE_CHECKING:
 
 _MOST_EVENTS = 40
 _FILE = click.Path(path_type=Path)
+_OTHERS = tuple(OTHER_RECORDINGS.usable().values())
+
+
+def _other_options(verb: Verb) -> Verb:
+    for other in reversed(_OTHERS):
+        verb = other.add_options(verb)
+    return verb
 
 
 @click.command()
 @click.argument("record", type=_FILE)
 @drawing_options
-@click.option("--ros2", type=_FILE, metavar="FILE", help="Write it as messages of ROS 2 (.mcap).")
-@click.option("--ros1", type=_FILE, metavar="FILE", help="Write it as a bag of ROS 1 (.bag).")
-@click.option("--reference", type=_FILE, metavar="RECORDING", help="Say how far robots were from what this has.")
-@click.option(
-    "--topic",
-    "topics",
-    multiple=True,
-    metavar="ROBOT=TOPIC",
-    help="Topic of a robot's poses in the reference.  [default: /ROBOT/odom, or pose]",
-)
-@click.option("--begins", type=Finite(-1e11, 1e11), metavar="S", help="When the mission began, on the clock of ROS.")
+@_other_options
 @format_option
 @quiet_option
 def command(
@@ -44,42 +41,42 @@ def command(
     html: Path | None,
     plot: Path | None,
     gantt: Path | None,
-    ros2: Path | None,
-    ros1: Path | None,
-    reference: Path | None,
-    topics: tuple[str, ...],
-    begins: float | None,
     form: str,
     quiet: bool,
     verbose: bool,
+    **others: Any,
 ) -> int:
     """Show the RECORD of a mission that was carried out (MCAP), or the poses in a recording of ROS.
 
     A record that breaks off, because its writer was killed, is shown up to there. With -v all events are listed.
     """
     from muster.report.record import read_record
-    from muster.report.recordings import is_recording
 
-    require_writable(None, (html, plot, gantt, ros2, ros1), (record, reference), ())
+    given = {"html": html, "plot": plot, "gantt": gantt, **others}
+    outputs = (file for other in _OTHERS for file in other.outputs(given))
+    inputs = (file for other in _OTHERS for file in other.inputs(given))
+    require_writable(None, (html, plot, gantt, *outputs), (record, *inputs), ())
     require_drawable(plot, gantt)
-    require_recordings(record, html, gantt, ros2, ros1, reference, topics, begins)
-    if is_recording(record):
-        return show_recording(record, plot, form, quiet=quiet)
+    for other in _OTHERS:
+        other.require_consistent(record, given)
+    for other in _OTHERS:
+        if other.is_recording(record):
+            return other.show(record, plot, form, quiet=quiet)
     recording = read_record(record)
     if not recording.complete and not quiet:
         until = f"breaks off at {recording.duration_s:.1f} s"
         click.echo(f"warning: {record}: {until}; what is whole is shown", err=True)
     draw_record(recording, html, plot, gantt)
-    write_for_ros(recording, ros2, ros1, begins, quiet=quiet)
-    off = None if reference is None else errors_against(recording, reference, topics, begins, quiet=quiet)
+    answers = [other.answer(recording, given, quiet=quiet) for other in _OTHERS]
     if form == "json":
         from muster.mission.plan import json_text
 
-        click.echo(json_text(_answer(recording) | ({} if off is None else {"reference": off})), nl=False)
+        of_others = {key: value for answer in answers for key, value in answer.items()}
+        click.echo(json_text(_answer(recording) | of_others), nl=False)
     else:
         _print(recording, all_events=verbose)
-        if off is not None:
-            print_errors(off)
+        for other, answer in zip(_OTHERS, answers, strict=True):
+            other.print_answer(answer)
     return DONE
 
 

@@ -37,11 +37,11 @@ from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
 
 if TYPE_CHECKING:
-    from muster.bridges.final_state import FinalState
     from muster.bridges.ros1.controller import Controller
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node_processes import NodeProcesses
     from muster.execution import Recorder, Report
+    from muster.execution.final_state import FinalState
 
 _LEFT = "the robots were told to stand"
 
@@ -202,7 +202,7 @@ def _carried_out(
     mission: Mission, controller: Controller, work: _Work, fleet: Ros1Fleet, children: NodeProcesses
 ) -> tuple[Report, list[FinalState]] | None:
     """Wait for robots, plan, and carry the plan out; None if halted before the beginning."""
-    from muster.bridges.final_state import final_states_by_telemetry
+    from muster.execution.final_state import final_states_by_telemetry
     from muster.running.live import wait_for_robots
     from muster.running.wall_time import planned_from
 

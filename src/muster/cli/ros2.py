@@ -23,8 +23,8 @@ def command(mission: MissionFile, targets: TargetOptions | None, options: RealRu
     Robot r_0 is at /r_0/pose or /r_0/odom. Ctrl-C lets robots stay where they are. The exit code is 4 if a robot
     still flies or drives at the end.
     """
+    from muster.bridges.opening import NEEDED, ros2_fleet
     from muster.running.claim_locks import robots_claimed
-    from muster.running.fleets import NEEDED, ros2_fleet
     from muster.running.live import wait_for_robots
     from muster.running.robot_claims import claims_of_request
 

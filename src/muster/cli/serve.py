@@ -13,7 +13,7 @@ import click
 
 from muster.cli.exits import DONE
 from muster.cli.options import quiet_option
-from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.errors import MissingExtraError, ParameterError, PluginError
 from muster.mission.near_matches import did_you_mean
 from muster.mission.platforms import require_posix
 
@@ -190,16 +190,16 @@ def _known_bridges(_: click.Context, __: click.Parameter, names: tuple[str, ...]
 
 def _require_usable(settings: Settings) -> None:
     """Refuse options that exclude each other, before anything is opened."""
+    from muster.running.fleet_registry import require_installed
     from muster.server.security.serving_rules import require_safe
     from muster.server.serving import require_certificate
 
     require_safe(settings)
     if settings.certificate is not None and settings.key is not None:
         require_certificate(settings.certificate, settings.key)
-    if "ros1" in settings.bridges:
-        from muster.bridges.ros1.extra import require_rospy
-
-        require_rospy()
+    for bridge in settings.bridges:
+        with suppress(PluginError):  # a run with it is refused; the others go on
+            require_installed(bridge)
     if settings.tiles is not None and not settings.tiles.is_dir():
         raise ParameterError(f"--tiles {settings.tiles}: no folder; expected one with Z/X/Y.png in it")
 

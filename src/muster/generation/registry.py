@@ -17,23 +17,5 @@ def _checked(name: str, found: object) -> Generator:
 GENERATORS: Registry[Generator] = Registry(
     "generator",
     "muster.generators",
-    {
-        "uniform": "muster.generation.uniform:UNIFORM",
-        "clustered": "muster.generation.clustered:CLUSTERED",
-        "heterogeneous": "muster.generation.heterogeneous:HETEROGENEOUS",
-        "orienteering": "muster.generation.orienteering:ORIENTEERING",
-        "ordered": "muster.generation.ordered:ORDERED",
-        "precedence": "muster.generation.precedence:PRECEDENCE",
-        "windows": "muster.generation.windows:WINDOWS",
-        "customers": "muster.generation.customers:CUSTOMERS",
-        "transports": "muster.generation.transports:TRANSPORTS",
-        "charging": "muster.generation.charging:CHARGING",
-        "teams": "muster.generation.teams:TEAMS",
-        "coalitions": "muster.generation.coalitions:COALITIONS",
-        "warehouse": "muster.generation.warehouse:WAREHOUSE",
-        "drones": "muster.generation.drones:DRONES",
-        "moving": "muster.generation.moving:MOVING",
-        "mixed": "muster.generation.mixed:MIXED",
-    },
     _checked,
 )

@@ -60,16 +60,8 @@ GROUND_PATROL = ActionKeys(needed=("side_m",))
 DELIVERY = ActionKeys(needed=("pickup",))
 SENSOR_ACTIVATION = ActionKeys(needed=("duration_s",), has_geometry=False)
 
-_SHIPPED = {
-    "go-to-goal": "GO_TO_GOAL",
-    "stationary-observation": "STATIONARY_OBSERVATION",
-    "raster-search": "RASTER_SEARCH",
-    "coverage": "COVERAGE",
-    "ground-patrol": "GROUND_PATROL",
-    "delivery": "DELIVERY",
-    "sensor-activation": "SENSOR_ACTIVATION",
-}
-_FIELDS = frozenset(key for constant in _SHIPPED.values() for key in globals()[constant].names)
+_SHIPPED = (GO_TO_GOAL, STATIONARY_OBSERVATION, RASTER_SEARCH, COVERAGE, GROUND_PATROL, DELIVERY, SENSOR_ACTIVATION)
+_FIELDS = frozenset(key for keys in _SHIPPED for key in keys.names)
 
 
 def keys_of(name: str, found: object) -> ActionKeys:
@@ -94,7 +86,5 @@ def keys_of(name: str, found: object) -> ActionKeys:
     return keys
 
 
-ACTION_KEYS: Registry[ActionKeys] = Registry(
-    "action", ACTION_GROUP, {name: f"{__name__}:{constant}" for name, constant in _SHIPPED.items()}, keys_of
-)
+ACTION_KEYS: Registry[ActionKeys] = Registry("action", ACTION_GROUP, keys_of)
 """By name, those of installed packages included. `motion.actions.register` adds to them."""

@@ -1,23 +1,39 @@
 """Implementations of an interface by name: those that ship, and those that installed packages register.
 
-Each interface has a group of entry points (`muster.allocators`, `muster.actions`, `muster.worlds`, `muster.fleets`,
-`muster.generators`, `muster.formats`, `muster.readers`). What ships is declared as an entry point too.
-Nothing is imported before it is looked up by name.
+Each interface has a group of entry points, such as `muster.allocators`; what ships is declared in the same way, in
+`pyproject.toml`. Nothing is imported before it is looked up by name.
 """
 
 from __future__ import annotations
 
 import logging
+import sys
 from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property
-from importlib.metadata import EntryPoint, entry_points
+from functools import cache, cached_property
+from importlib.metadata import EntryPoint, EntryPoints, entry_points
 from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import MusterError, ParameterError, PluginError
+from muster.mission.installation import DISTRIBUTION
 from muster.mission.near_matches import did_you_mean
 
 T = TypeVar("T")
-_OWN_PACKAGE = "muster-robotics"
+
+
+def declared(group: str) -> tuple[EntryPoint, ...]:
+    """The entry points of a group: first those of this distribution, in the order of `pyproject.toml`."""
+    return tuple(sorted(_installed(tuple(sys.path)).select(group=group), key=lambda entry: not is_shipped(entry)))
+
+
+@cache
+def _installed(path: tuple[str, ...]) -> EntryPoints:
+    """Entry points of all packages on a path; reading them takes longer than anything else that a lookup does."""
+    return entry_points()
+
+
+def is_shipped(entry: EntryPoint) -> bool:
+    """Whether an entry point is one of this distribution."""
+    return entry.dist is not None and entry.dist.name == DISTRIBUTION
 
 
 class Registry(Mapping[str, T], Generic[T]):
@@ -28,24 +44,21 @@ class Registry(Mapping[str, T], Generic[T]):
     what
         one implementation, in a word, for messages: `allocator`.
     group
-        the entry point group in which other packages register theirs.
-    shipped
-        where the implementations that ship are: `module:object` by name.
+        the group of entry points in which packages register theirs.
     checked
         returns a loaded object as an implementation of that name; raises ParameterError where it is none.
     """
 
-    def __init__(self, what: str, group: str, shipped: Mapping[str, str], checked: Callable[[str, object], T]) -> None:
+    def __init__(self, what: str, group: str, checked: Callable[[str, object], T]) -> None:
         self._what = what
         self._group = group
         self._checked = checked
-        self._own = [EntryPoint(name, value, group) for name, value in shipped.items()]
         self._loaded: dict[str, T] = {}
 
     @property
     def shipped(self) -> tuple[str, ...]:
         """The names of the implementations that ship."""
-        return tuple(entry.name for entry in self._own)
+        return tuple(entry.name for entry in declared(self._group) if is_shipped(entry))
 
     def __getitem__(self, name: str) -> T:
         """The implementation of that name.
@@ -120,7 +133,7 @@ class Registry(Mapping[str, T], Generic[T]):
     def _entries(self) -> dict[str, list[EntryPoint]]:
         """The entry points by name; more than one where packages dispute the name."""
         found: dict[str, list[EntryPoint]] = {}
-        for entry in (*self._own, *entry_points(group=self._group)):
+        for entry in declared(self._group):
             named = found.setdefault(entry.name, [])
             if all(other.value != entry.value for other in named):
                 named.append(entry)
@@ -144,7 +157,7 @@ class Registry(Mapping[str, T], Generic[T]):
 
 
 def _package(entry: EntryPoint) -> str:
-    return _OWN_PACKAGE if entry.dist is None else f"{entry.dist.name} {entry.dist.version}"
+    return "unknown" if entry.dist is None else f"{entry.dist.name} {entry.dist.version}"
 
 
 def function_expected(expected: str) -> Callable[[str, object], Any]:

@@ -207,6 +207,10 @@ class Number:
         return {"type": "number"} | {key: bound for key, bound in bounds.items() if bound is not None}
 
 
+class Share(Number):
+    """A share that a command line and its help state in per cent."""
+
+
 @dataclass(frozen=True)
 class Whole:
     """A whole number of at least `minimum`, and at most `maximum`."""

@@ -159,18 +159,6 @@ One that declares options gets these too, as `ExportOptions`, and the plan, if t
 FORMATS: Registry[Exporter] = Registry(
     "format",
     "muster.formats",
-    {
-        "qgc": "muster.exchange.files:plan_files",
-        "geojson": "muster.exchange.files:geojson_file",
-        "gpx": "muster.exchange.files:gpx_file",
-        "kml": "muster.exchange.files:kml_file",
-        "csv": "muster.exchange.files:csv_file",
-        "sol": "muster.exchange.files:sol_file",
-        "sheets": "muster.exchange.sheets.robot_sheets:sheets_files",
-        "overview": "muster.exchange.sheets.overview:overview_file",
-        "xlsx": "muster.exchange.sheets.workbook:workbook_file",
-        "ics": "muster.exchange.sheets.appointments:calendar_files",
-    },
     function_expected("a function of a mission and a verdict"),
 )
 """By name, those of installed packages included."""

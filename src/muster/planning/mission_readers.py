@@ -71,7 +71,7 @@ def _checked(_: str, found: object) -> MissionReader:
     return found
 
 
-MISSION_READERS: Registry[MissionReader] = Registry("mission reader", "muster.mission_readers", {}, _checked)
+MISSION_READERS: Registry[MissionReader] = Registry("mission reader", "muster.mission_readers", _checked)
 
 
 def reader_of(path: Path) -> MissionReader | None:

@@ -15,8 +15,8 @@ from muster.running.observed_run import ObservedRun, keywords_of_run
 from muster.running.recorded import recorded
 
 if TYPE_CHECKING:
-    from muster.bridges.fleet import Fleet
     from muster.execution import Report
+    from muster.execution.fleet import Fleet
 
 
 def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: ObservedRun) -> Report:
@@ -25,7 +25,7 @@ def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: Obser
     Parameters
     ----------
     fleet
-        the robots, behind a bridge of `muster.bridges`, which stays open; or the name of a registered fleet, which is
+        the robots, as a `muster.execution.fleet.Fleet`, which stays open; or the name of a registered fleet, which is
         opened with the `settings` of the request, and closed.
     request
         how the plan is carried out: the fields of `RunRequest` and `ObservedRun`, by name.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from muster.bridges.fleet import Fleet, has_simulated_time, is_paused
+from muster.execution.fleet import Fleet, has_simulated_time, is_paused
 from muster.mission.clock import Clock, VirtualClock, WallClock
 from muster.mission.model import Event, Mission
 from muster.motion.port import RobotPort, Telemetry, TranslatedPort

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from muster.bridges.fleet import Fleet, is_paused
+from muster.execution.fleet import Fleet, is_paused
 from muster.mission.model import Event, Mission, Robot
 from muster.motion.port import RobotPort
 from muster.traffic.manager import LOOK_S, TrafficManager

@@ -13,7 +13,7 @@ from muster.mission.records import Record, Settings, key_of, specified
 from muster.mission.value_types import Fault, shown
 
 if TYPE_CHECKING:
-    from muster.bridges.fleet import Fleet
+    from muster.execution.fleet import Fleet
     from muster.mission.model import Mission
 
 Opened = tuple["Fleet", Callable[[], None]]
@@ -28,15 +28,18 @@ GROUND, AIR, JOINS = ABILITIES = ("ground", "air", "joins")
 FLEETS: Registry[OpenFleet] = Registry(
     "fleet",
     "muster.fleets",
-    {name: f"muster.running.fleets:open_{name}" for name in ("ros1", "ros2", "mavlink")},
     function_expected("a function that opens a fleet"),
 )
 
 
 def declares(
-    *, settings: type[Settings] | None = None, claims: Claims | None = None, abilities: Collection[str] = ABILITIES
+    *,
+    settings: type[Settings] | None = None,
+    claims: Claims | None = None,
+    abilities: Collection[str] = ABILITIES,
+    require_installed: Callable[[], None] | None = None,
 ) -> Callable[[OpenFleet], OpenFleet]:
-    """Declare what a function that opens a fleet takes, claims and can do.
+    """Declare what a function that opens a fleet takes, claims, can do and needs.
 
     Parameters
     ----------
@@ -49,6 +52,9 @@ def declares(
         fleet is claimed as a whole: one run at a time.
     abilities : collection of str
         Which of `ABILITIES` the fleet has; by default all.
+    require_installed : callable, optional
+        Raises `MissingExtraError` if this machine lacks a package that the fleet needs. It is called before the fleet
+        is opened, and when mission control starts that serves the fleet.
     """
     if unknown := [word for word in abilities if word not in ABILITIES]:
         raise ParameterError(f"abilities: {unknown[0]}; expected {', '.join(ABILITIES)}")
@@ -56,6 +62,7 @@ def declares(
     def declared(open_fleet: OpenFleet) -> OpenFleet:
         open_fleet.settings, open_fleet.claims = settings, claims  # type: ignore[attr-defined]
         open_fleet.abilities = frozenset(abilities)  # type: ignore[attr-defined]
+        open_fleet.require_installed = require_installed  # type: ignore[attr-defined]
         return open_fleet
 
     return declared
@@ -114,3 +121,35 @@ def require_able(fleet: str, mission: Mission) -> None:
         raise ParameterError(
             f"robot {shown(mission.newcomers[0].id)}: joins; expected none: no robot joins fleet {fleet}"
         )
+
+
+def require_installed(fleet: str) -> None:
+    """Raise `MissingExtraError` if this machine lacks a package that a fleet declares to need."""
+    check = getattr(FLEETS.named(fleet), "require_installed", None)
+    if check is not None:
+        check()
+
+
+def fleet_ready(world: str, mission: Mission, settings: Any, halt: threading.Event, *, again: bool) -> Opened:
+    """The robots of a mission, ready to go; and the function to call when all is done.
+
+    Parameters
+    ----------
+    world
+        the name of the fleet.
+    settings
+        as the fleet declares them, or plain data of them.
+    halt
+        ends waiting for robots.
+    again
+        whether the mission is under way already.
+
+    Raises
+    ------
+    MusterError
+        if there is no such fleet, a setting is wrong, the bridge lacks something, or robots do not answer.
+    """
+    require_able(world, mission)
+    checked = checked_settings(world, settings)
+    require_installed(world)
+    return FLEETS.named(world)(mission, checked, halt, again)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from muster.bridges.fleet import Fleet, has_simulated_time, is_paused, reason_of
 from muster.execution import (
     Executor,
     Recorder,
@@ -22,6 +21,7 @@ from muster.execution import (
     travel_of,
     way_of,
 )
+from muster.execution.fleet import Fleet, has_simulated_time, is_paused, reason_of
 from muster.mission.clock import Clock
 from muster.mission.errors import NetworkError
 from muster.mission.model import Mission

@@ -18,7 +18,6 @@ MakeWorld = Callable[..., "SimulatedWorld"]
 WORLDS: Registry[MakeWorld] = Registry(
     "world",
     "muster.worlds",
-    {"kinematic": "muster.simulation:KinematicWorld", "physics": "muster.simulation.physics:PhysicsWorld"},
     function_expected("a class or function that makes a world"),
 )
 

@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from muster.bridges.final_state import FinalState
 from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.follower import Follower
 from muster.bridges.mavlink.autopilots import Autopilot
 from muster.bridges.mavlink.dialect import Message
 from muster.bridges.mavlink.mission_items import Route
 from muster.bridges.mavlink.telemetry import DroneTelemetry
+from muster.execution.final_state import FinalState
 from muster.mission.model import Robot
 from muster.motion.port import Waypoint
 

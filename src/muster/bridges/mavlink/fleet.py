@@ -11,8 +11,6 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 
-from muster.bridges.final_state import FinalState
-from muster.bridges.fleet import Failure
 from muster.bridges.fleet_settings import FlightSettings
 from muster.bridges.mavlink.autopilots import AtEnd
 from muster.bridges.mavlink.drone import Drone, final_state_of
@@ -22,6 +20,8 @@ from muster.bridges.mavlink.frames import GlobalFrame, LocalFrame, StartFrame
 from muster.bridges.mavlink.links import Link, links_of
 from muster.bridges.mavlink.session import Session
 from muster.bridges.mavlink.telemetry import DroneTelemetry
+from muster.execution.final_state import FinalState
+from muster.execution.fleet import Failure
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from muster.bridges.final_state import UP_M
 from muster.bridges.mavlink.dialect import Message, mavlink, name_of
 from muster.bridges.mavlink.frames import GlobalFrame, LocalFrame
+from muster.execution.final_state import UP_M
 from muster.motion.frames import enu_to_ned, yaw_enu_to_ned
 from muster.motion.port import Place
 

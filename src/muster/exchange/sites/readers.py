@@ -16,22 +16,9 @@ Reader = Callable[[Path], "Sequence[Layer]"]
 """Reads a file as layers of features; raises MissionError for one that it cannot read."""
 
 
-_HERE = "muster.exchange.sites"
 READERS: Registry[Reader] = Registry(
     "reader",
     "muster.readers",
-    {
-        "csv": f"{_HERE}.csv_reader:read_csv_layers",
-        "tsv": f"{_HERE}.csv_reader:read_csv_layers",
-        "xlsx": f"{_HERE}.workbook_reader:read_workbook_layers",
-        "xlsm": f"{_HERE}.workbook_reader:read_workbook_layers",
-        "geojson": f"{_HERE}.geojson_reader:read_geojson_layers",
-        "kml": f"{_HERE}.kml_files:read_kml_layers",
-        "kmz": f"{_HERE}.kml_files:read_kmz_layers",
-        "wpml": f"{_HERE}.kml_files:read_kml_layers",
-        "gpx": f"{_HERE}.gpx_reader:read_gpx_layers",
-        "gpkg": f"{_HERE}.geopackage_reader:read_geopackage_layers",
-    },
     function_expected("a function of a path"),
 )
 """By the suffix of their files without the dot, those of installed packages included."""

@@ -25,15 +25,6 @@ def _checked(name: str, found: object) -> TaskAction:
 ACTIONS: Registry[TaskAction] = Registry(
     "action",
     ACTION_GROUP,
-    {
-        "go-to-goal": "muster.motion.actions.go_to_goal:GoToGoal",
-        "stationary-observation": "muster.motion.actions.stationary_observation:StationaryObservation",
-        "raster-search": "muster.motion.actions.raster_search:RasterSearch",
-        "coverage": "muster.motion.actions.area_coverage:AreaCoverage",
-        "ground-patrol": "muster.motion.actions.ground_patrol:GroundPatrol",
-        "delivery": "muster.motion.actions.delivery:Delivery",
-        "sensor-activation": "muster.motion.actions.sensor_activation:SensorActivation",
-    },
     _checked,
 )
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from muster.bridges.final_state import final_states_of
-from muster.bridges.fleet import Fleet
 from muster.execution import Recorder, Report, broken_off
+from muster.execution.final_state import final_states_of
+from muster.execution.fleet import Fleet
 from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan

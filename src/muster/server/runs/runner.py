@@ -153,7 +153,7 @@ def _world_run(
 
         begun = None if state is None else Begun.of(state, begin["bodies"], begin["until_s"], begin["world"])
         return SimulatedRun(mission, plan, request, recorder=recorder, begun=begun)
-    from muster.running.fleets import fleet_ready
+    from muster.running.fleet_registry import fleet_ready
     from muster.server.runs.real_run import RealRun
 
     fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=state is not None)

@@ -1,14 +1,10 @@
 """How robots end that a fleet knows by telemetry alone: whether they stand, drive, fly, or do not answer."""
 
-import threading
 from types import SimpleNamespace
 
 import pytest
 
-from muster.bridges.final_state import FinalState, final_states_by_telemetry
-from muster.cli.exits import INTERRUPTED, STILL_MOVING, TASKS_LOST
-from muster.cli.real_robots import reported
-from muster.execution.report import ObjectiveReport, Report
+from muster.execution.final_state import FinalState, final_states_by_telemetry
 from muster.mission.errors import NetworkError
 from muster.mission.model import Mission, Robot
 from muster.motion.port import Telemetry
@@ -78,34 +74,3 @@ def test_where_nothing_is_heard_any_more_the_last_telemetry_counts():
     team = Team(rover=[said(1.0, 0.8), said(1.1)])
     team.broken = True
     assert ended(team, ROVER)[0].state == "drives"
-
-
-@pytest.mark.parametrize(
-    ("moving", "halted", "code"),
-    [(False, False, TASKS_LOST), (True, False, STILL_MOVING), (True, True, STILL_MOVING), (False, True, INTERRUPTED)],
-)
-def test_the_exit_code_and_the_last_lines(capsys, moving, halted, code):
-    report = Report(
-        mission_time_s=1.0,
-        tasks_done=(),
-        tasks_lost=(("t", "why"),),
-        contacts=None,
-        min_distance_m=None,
-        waiting_s=0.0,
-        reallocations=0,
-        robots=(),
-        starts_s={},
-        ends_s={},
-        objective=ObjectiveReport("max", None, 0.0),
-        tasks=(),
-    )
-    wishes = SimpleNamespace(form="json", verbose=False, require_complete=True, quiet=True)
-    halt = threading.Event()
-    if halted:
-        halt.set()
-    states = [FinalState("r_0", "stands", (1.0, 2.0, 0.0), moving=False), FinalState("r_1", "drives", None, moving)]
-    assert reported(Mission(robots=(ROVER,), tasks=()), report, wishes, halt, "they stand", states) == code
-    lines = capsys.readouterr().err.splitlines()
-    assert lines[-2:] == ["r_0: stands; at (1.00, 2.00, 0.00)", "r_1: drives; position unknown"]
-    assert ("still flying, driving or armed: r_1; land or stop them" in "\n".join(lines)) == moving
-    assert ("1 task lost: t" in lines) == (not halted)

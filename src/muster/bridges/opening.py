@@ -1,4 +1,4 @@
-"""Fleets of real robots; each is ready when it is returned."""
+"""The functions that open the fleets of the bridges; each fleet is ready when it is returned."""
 
 from __future__ import annotations
 
@@ -7,46 +7,21 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from muster.bridges.fleet import Fleet
+from muster.bridges.claims import mavlink_claims, ros1_claims, ros2_claims
 from muster.bridges.fleet_settings import MavlinkSettings, Ros1Settings, Ros2Settings
+from muster.bridges.ros1.extra import require_rospy
+from muster.execution.fleet import Fleet
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.running.fleet_registry import AIR, FLEETS, Opened, checked_settings, declares, require_able
+from muster.running.fleet_registry import AIR, Opened, declares
 from muster.running.live import wait_for_robots
-from muster.running.robot_claims import mavlink_claims, ros1_claims, ros2_claims
 
 _ANYWHERE_M = 1e6
 """After a crash drones are where they are, in the air maybe."""
 
 
-def fleet_ready(world: str, mission: Mission, settings: Any, halt: threading.Event, *, again: bool) -> Opened:
-    """The robots of a mission, ready to go; and the function to call when all is done.
-
-    Parameters
-    ----------
-    world
-        the name of the fleet.
-    settings
-        as the fleet declares them, or plain data of them.
-    halt
-        ends waiting for robots.
-    again
-        whether the mission is under way already.
-
-    Raises
-    ------
-    MusterError
-        if there is no such fleet, a setting is wrong, the bridge lacks something, or robots do not answer.
-    """
-    require_able(world, mission)
-    return FLEETS.named(world)(mission, checked_settings(world, settings), halt, again)
-
-
-@declares(settings=Ros1Settings, claims=ros1_claims)
+@declares(settings=Ros1Settings, claims=ros1_claims, require_installed=require_rospy)
 def open_ros1(mission: Mission, settings: Ros1Settings, halt: threading.Event, _again: bool) -> Opened:
-    from muster.bridges.ros1.extra import require_rospy
-
-    require_rospy()
     from muster.bridges.ros1.fleet import Ros1Fleet
     from muster.bridges.ros1.node import become_node
 

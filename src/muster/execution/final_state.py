@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
-from muster.bridges.fleet import Fleet
+from muster.execution.fleet import Fleet
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission, Robot
 from muster.motion.port import Place, Telemetry

@@ -1,4 +1,4 @@
-"""The interface of a bridge: robots behind ports, and a clock in real time."""
+"""The interface of a fleet of real robots: their ports, and a clock in real time."""
 
 from __future__ import annotations
 
