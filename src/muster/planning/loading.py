@@ -94,7 +94,7 @@ def _task_list(path: Path, named: str | Path, **given: Any) -> Noted:
 
 
 def _instance(path: Path, named: str | Path, **given: Any) -> Noted | None:
-    """The mission of an instance file; None of another file."""
+    """Return the mission of an instance file; None for another file."""
     from muster.mission.instance_files import TSPLIB, instance_form
 
     form, fates = instance_form(path), LineFates()
@@ -112,7 +112,7 @@ def _instance(path: Path, named: str | Path, **given: Any) -> Noted | None:
 
 
 def _own(path: Path, named: str | Path, **given: Any) -> Noted:
-    """The mission of a file in Muster's own form."""
+    """Return the mission of a file in Muster's own form, YAML or JSON."""
     from muster.mission.yaml_reader import read_yaml
 
     _check_flags(named, (), given)
