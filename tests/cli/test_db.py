@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from muster.exchange.mission_control import User
+from muster.server.contract import User
 from muster.server.store import Store
 from muster.server.store.schema import HEAD
 

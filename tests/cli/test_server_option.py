@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -17,9 +18,11 @@ from tests.server.serving import served
 from muster import load
 from muster.allocation.stop import Stop
 from muster.client import Client
-from muster.client.backend import awaited, followed
+from muster.client.backend import ServerBackend, awaited, followed
 from muster.client.uploads import packed_mission
-from muster.exchange.mission_control import ConflictError, Job
+from muster.mission.installation import installed_version
+from muster.running import doctor
+from muster.server.contract import ConflictError, Job
 from muster.server.security.tokens import line_of, new_token
 
 VERBS = ("missions", "check", "solve", "verify", "explain", "simulate", "export")
@@ -350,6 +353,28 @@ class Carried:
 
     def wait(self):
         self.waited = True
+
+
+def test_interrupted_before_a_run_the_command_names_the_plan_that_the_server_keeps(folder, muster, url, monkeypatch):
+    plan = ServerBackend.plan
+
+    def interrupted_at_its_end(self, request, on_progress, interrupt):
+        solution = plan(self, request, on_progress, interrupt)
+        interrupt.interrupt()
+        return solution
+
+    monkeypatch.setattr(ServerBackend, "plan", interrupted_at_its_end)
+    code, out, err = muster("simulate", "yard.yaml", "--iterations", 1, "-q", "--server", url)
+    assert (code, out) == (130, "")
+    said = re.match(r"interrupted: plan (\d+) is kept at the server; nothing was started\n", err)
+    with Client(url) as control:
+        assert control.plans.get(int(said[1])).mission == "yard"
+
+
+def test_doctor_tells_the_version_of_a_server_that_answers(muster, url, monkeypatch):
+    monkeypatch.setattr(doctor, "import_faults", lambda names: {})
+    code, out, _ = muster("doctor", "--server", url, "--format", "json")
+    assert (code, json.loads(out)["server"]) == (0, {"url": url, "version": installed_version(), "fault": None})
 
 
 @pytest.mark.parametrize("before", [True, False])

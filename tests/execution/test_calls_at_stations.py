@@ -14,7 +14,7 @@ from muster.mission.model import Event
 from muster.mission.plan import RouteStop
 from muster.running.live import Live
 from muster.running.simulation import Simulation
-from muster.server.runs.crash_recovery import recovered_from
+from muster.state.recovery import recovered_from
 
 
 def carried_out(given, ignore=(), each=None, charged=None, **routes):

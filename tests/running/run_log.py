@@ -1,10 +1,8 @@
-"""The log of a run, as the database has it, for tests that look at its entries or recover a run from them."""
+"""The log of a run, as the database has it, for tests that look at its entries."""
 
 import json
 
 from muster.mission.yaml_writer import plain
-from muster.server.runs.crash_recovery import recovered_from
-from muster.server.runs.real_run import RealRun
 
 
 class Log:
@@ -25,8 +23,3 @@ class Log:
     def on_telemetry(self, *_): ...
 
     on_step = on_telemetry
-
-
-def resumed_run(mission, plan, fleet, recorder, entries, **how):
-    """A run of real robots that goes on after a crash, by the entries of its log."""
-    return RealRun(mission, plan, fleet, recorder, state=recovered_from(mission, plan, entries), **how)

@@ -11,7 +11,7 @@ from muster import MissionError, ParameterError, Simulation, load, solve
 from muster.cli.main import run
 from muster.mission.model import Event
 from muster.running.live import Live, carry_out_live
-from muster.server.runs.crash_recovery import recovered_from
+from muster.state.recovery import recovered_from
 
 SITE = """
 schema: muster/1

@@ -4,16 +4,13 @@ from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
-from tests.running.run_log import Log, resumed_run
 from tests.running.test_live import WorldAsFleet
 
 import muster
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.running.live import Live
-from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.running.wall_time import MissionStart, notes_on_start, planned_from, require_time_left
-from muster.server.runs.real_run import RealRun
 
 DAY_S = 86400.0
 NOON = datetime(2027, 3, 1, 12, tzinfo=UTC)
@@ -179,26 +176,6 @@ def test_the_clock_of_a_machine_that_slept_is_set_forward_and_no_clock_goes_back
         assert before <= live.time_s < 3700.0
         before = live.time_s
     assert tuple(sorted(live.result().tasks_done)) == done
-
-
-@pytest.mark.parametrize("starts", ["given", "now"])
-def test_a_deadline_passes_while_no_process_runs(starts):
-    there, wall, log = mission(SOON, ANY), Wall(DAY_S if starts == "now" else 0.0), Log()
-    plan, request = muster.solve(there, iterations=50), RunRequest(world=OPEN_FLEET, starts=starts)
-    run = RealRun(there, plan, wall.fleet(there), log, request=request, wall=wall)
-    for _ in range(5):
-        run.go_on()
-    before, lasted = list(log.entries), run.time_s
-    wall.more_s += 40.0
-    again = resumed_run(there, plan, wall.fleet(there), log, before, request=request, wall=wall)
-    assert again.time_s == pytest.approx(lasted + 40.0, abs=0.5)
-    assert again.starts_at == run.starts_at
-    while not again.done:
-        again.go_on()
-        assert again.time_s < 200.0
-    report = log.entries[-1]["data"]
-    assert report["tasks_done"] == ["any"]
-    assert report["mission_time_s"] > 40.0
 
 
 def test_planning_for_a_late_start_uses_no_robot_before():

@@ -19,9 +19,9 @@ from tests.server.security.shielded import (
 )
 from tests.server.security.shielded import TestClient as Client
 
-from muster.exchange.mission_control import ForbiddenError, User
 from muster.mission.errors import ParameterError
 from muster.server.app import make_app
+from muster.server.contract import ForbiddenError, User
 from muster.server.settings import Settings
 
 _OPEN = {"/healthz", "/login"}
@@ -156,7 +156,7 @@ def test_strangers_make_no_metrics(client):
 
 
 def test_health_without_a_database(app, client, monkeypatch):
-    from muster.exchange.mission_control import StoreError
+    from muster.server.contract import StoreError
 
     def fails():
         raise StoreError("/data/muster.db: full; expected room")

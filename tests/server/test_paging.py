@@ -12,8 +12,8 @@ from tests.server.long_lists import LISTS, PAGES, fill
 from tests.server.serving import served
 
 from muster.client import Client
-from muster.exchange.mission_control import MOST_ROWS, PAGE_ROWS
 from muster.server.api import api
+from muster.server.contract import MOST_ROWS, PAGE_ROWS
 from muster.server.services.shipped import shipped_entries
 from muster.server.store.store import Store
 

@@ -8,8 +8,8 @@ from tests.running.run_log import Log
 from muster.execution import Executor, Reallocation, travel_of
 from muster.mission.events import DelayedTask, Event, MovedTask
 from muster.mission.model import Map, Mission, Robot, Station, Task, Zone
-from muster.server.runs.crash_recovery import recovered_from
 from muster.state import checkpoint_of, event_of, restored
+from muster.state.recovery import recovered_from
 
 NEWCOMER = Robot(id="r_9", position=(9.0, 9.0), load_capacity=5.0)
 

@@ -1,10 +1,12 @@
-"""The backend of verbs: this process, or a server of mission control (`--server URL`)."""
+"""The backend of verbs: this process, or a server of mission control (`--server URL`).
+
+Backends are entry points of the group `muster.backends`: `local`, and `server`, which `--server` selects.
+"""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -15,13 +17,12 @@ from click.core import ParameterSource
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.mission.plugins import Registry, function_expected
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
     from muster.cli.local_backend import OnLine
-    from muster.exchange.mission_control import MissionEntry
     from muster.execution import Report
-    from muster.library import MissionSummary
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
     from muster.planning.export_formats import ExportOptions, Files
@@ -32,15 +33,16 @@ if TYPE_CHECKING:
     from muster.verification import Verdict
 
 Verb = Callable[..., Any]
-TOKEN_VARIABLE = "MUSTER_TOKEN"  # noqa: S105 - a name
-_LONGEST_TOKEN = 1000
 
 
 class Backend(Protocol):
     """The work that verbs ask for; `file` names a plan in messages."""
 
-    def missions(self) -> Sequence[MissionSummary | MissionEntry]:
-        """The missions that there are."""
+    def version(self) -> str:
+        """Return the version of Muster that does the work."""
+
+    def missions(self) -> tuple[Sequence[Mapping[str, Any]], Sequence[Mapping[str, str]]]:
+        """Return the missions that there are: plain data, and the row of each in a table for people, by column."""
 
     def check(self, mission: Mission, ignore: Sequence[str], time_limit: float) -> Possible:
         """Which tasks can never be done, alone or together."""
@@ -53,6 +55,9 @@ class Backend(Protocol):
         KeyboardInterrupt
             if there is no plan that can be kept.
         """
+
+    def kept(self, plan: Plan) -> str | None:
+        """Return a clause that says where the backend keeps a plan that it made; None where it keeps none."""
 
     def verify(self, mission: Mission, plan: Plan, ignore: Sequence[str], objective: str | None) -> Verdict:
         """What the judge says."""
@@ -79,6 +84,15 @@ class Backend(Protocol):
         """
 
 
+Say = Callable[[str], None]
+OpenBackend = Callable[[str | None, Path | None, Say, Say], AbstractContextManager[Backend]]
+"""Opens a backend: `open(url, token_file, say, note)`; `say` gets messages for the user, `note` those of -v."""
+
+BACKENDS: Registry[OpenBackend] = Registry(
+    "backend", "muster.backends", function_expected("a function that opens a backend")
+)
+
+
 def server_option(**in_this_process: str) -> Callable[[Verb], Verb]:
     """--server and --token-file; the verb gets a `backend`.
 
@@ -93,14 +107,14 @@ def server_option(**in_this_process: str) -> Callable[[Verb], Verb]:
         def with_backend(*, server: str | None, token_file: Path | None, **given: Any) -> Any:
             if server is not None:
                 _refuse(in_this_process)
-            with _backend(server, token_file, verbose=given["verbose"]) as backend:
+            with open_backend(server, token_file, verbose=given["verbose"]) as backend:
                 return verb(backend=backend, **given)
 
         token = click.option(
             "--token-file",
             type=click.Path(path_type=Path),
             metavar="FILE",
-            help=f"File with your token for the server.  [default: the variable {TOKEN_VARIABLE}]",
+            help="File with your token for the server.  [default: the variable MUSTER_TOKEN]",
         )
         text = "Let mission control do it: http://HOST:8117 (muster serve)."
         return click.option("--server", metavar="URL", help=text)(token(with_backend))
@@ -108,9 +122,10 @@ def server_option(**in_this_process: str) -> Callable[[Verb], Verb]:
     return decorate
 
 
-@contextmanager
-def _backend(server: str | None, token_file: Path | None, *, verbose: bool) -> Iterator[Backend]:
-    """The backend of a verb: this process, or a server that speaks this version of the API and takes the token."""
+def open_backend(
+    server: str | None, token_file: Path | None, *, verbose: bool = False
+) -> AbstractContextManager[Backend]:
+    """Open the backend of a verb: this process, or a server that speaks this version of the API and takes the token."""
 
     def say(line: str) -> None:
         click.echo(line, err=True)
@@ -119,29 +134,9 @@ def _backend(server: str | None, token_file: Path | None, *, verbose: bool) -> I
         if verbose:
             say(line)
 
-    if server is None:
-        if token_file is not None:
-            raise ParameterError("--token-file given; expected it together with --server")
-        from muster.cli.local_backend import LocalBackend
-
-        yield LocalBackend(note)
-        return
-    from muster.client import Client
-    from muster.client.backend import ServerBackend
-
-    with Client(server, token_from(token_file)) as client:
-        client.about()
-        yield ServerBackend(client, say, note)
-
-
-def token_from(file: Path | None) -> str | None:
-    where = TOKEN_VARIABLE if file is None else file
-    text = os.environ.get(TOKEN_VARIABLE, "") if file is None else file.read_text(encoding="latin-1")
-    token = text.strip()
-    right = token.isascii() and token.isprintable() and " " not in token and len(token) <= _LONGEST_TOKEN
-    if not right or (not token and file is not None):
-        raise ParameterError(f"{where}: no token; expected one line that holds it")
-    return token or None
+    if server is None and token_file is not None:
+        raise ParameterError("--token-file given; expected it together with --server")
+    return BACKENDS.named("local" if server is None else "server")(server, token_file, say, note)
 
 
 def _refuse(reasons: Mapping[str, str]) -> None:

@@ -70,12 +70,11 @@ def _server_answer(url: str | None, token_file: Path | None) -> dict[str, str | 
     """What a server says of itself, or why it does not; None if none is named."""
     if url is None:
         return None
-    from muster.cli.backend import token_from
-    from muster.client import Client
+    from muster.cli.backend import open_backend
 
     try:
-        with Client(url, token_from(token_file)) as client:
-            return {"url": url, "version": client.about()["muster"], "fault": None}
+        with open_backend(url, token_file) as backend:
+            return {"url": url, "version": backend.version(), "fault": None}
     except MusterError as error:
         return {"url": url, "version": None, "fault": str(error)}
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from muster.cli.whole_work import time_left_s
 from muster.mission.interrupts import ctrl_c_halts
@@ -28,19 +30,32 @@ OnLine = Callable[[float, str], None]
 """Gets what happens, with its time in seconds."""
 
 
+def open_local(
+    url: str | None, token_file: Path | None, say: Callable[[str], None], note: Callable[[str], None]
+) -> AbstractContextManager[LocalBackend]:
+    """Open this process as a backend, which needs nothing but `note`."""
+    return nullcontext(LocalBackend(note))
+
+
 class LocalBackend:
     """See `Backend`; `note` gets lines for -v."""
 
     def __init__(self, note: Callable[[str], None]) -> None:
         self._note = note
 
-    def missions(self) -> Sequence[MissionSummary]:
+    def version(self) -> str:
+        from muster.mission.installation import installed_version
+
+        return installed_version()
+
+    def missions(self) -> tuple[Sequence[Mapping[str, Any]], Sequence[Mapping[str, str]]]:
         from muster.library import mission_names, mission_path, mission_summary
 
         names = mission_names()
         folders = sorted({str(path.parent) for name in names if (path := mission_path(name))})
         self._note(f"{len(names)} missions in {', '.join(folders)}")
-        return [mission_summary(name) for name in names]
+        found = [mission_summary(name) for name in names]
+        return [asdict(entry) for entry in found], [_row(entry) for entry in found]
 
     def check(self, mission: Mission, ignore: Sequence[str], time_limit: float) -> Possible:
         from muster.planning.explaining import possible
@@ -53,6 +68,9 @@ class LocalBackend:
         solution = answer(request, on_progress=on_progress, interrupt=interrupt)
         self._note(f"{solution.iterations} iterations in {solution.plan.elapsed_s or 0.0:.3f} s")
         return solution
+
+    def kept(self, plan: Plan) -> str | None:
+        return None
 
     def verify(self, mission: Mission, plan: Plan, ignore: Sequence[str], objective: str | None) -> Verdict:
         from muster.verification import verify
@@ -90,3 +108,8 @@ class LocalBackend:
             here = replace(request, accept_partial=True, halt=halt, on_event=on_event)
             outcome = simulated(mission, plan, here)
         return outcome, outcome.mission_time_s if halt.is_set() else None
+
+
+def _row(entry: MissionSummary) -> dict[str, str]:
+    robots = "-" if entry.robots is None else str(entry.robots)
+    return {"mission": entry.name, "robots": robots, "tasks": str(entry.tasks), "what it is": entry.description}

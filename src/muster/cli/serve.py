@@ -248,8 +248,8 @@ def _collecting_later() -> Iterator[Callable[[], None]]:
 
 async def _mission_page(app: FastAPI, mission: str) -> str:
     """The id of the mission's page: of one that ships, or of a file, which is uploaded unless it is there already."""
-    from muster.exchange.mission_control import MOST_ROWS, NotFoundError, User
     from muster.mission.near_matches import did_you_mean
+    from muster.server.contract import MOST_ROWS, NotFoundError, User
 
     missions, who, file = app.state.services.missions, User("local", "command"), Path(mission)
     with suppress(NotFoundError):

@@ -30,7 +30,6 @@ from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
 from muster.cli.request_options import request_options
 from muster.cli.whole_work import whole_work
-from muster.client.server_plan import ServerPlan
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
@@ -260,7 +259,6 @@ def _plan(backend: Backend, request: Request, *, quiet: bool) -> Plan:
     with ctrl_c_interrupts(interrupt), progress_bar(not quiet, request.mission) as on_progress:
         plan = backend.plan(request, on_progress, interrupt).plan
     if interrupt.interrupted:
-        kept = f"plan {plan.id} is kept at the server; " if isinstance(plan, ServerPlan) else ""
-        click.echo(f"interrupted: {kept}nothing was started", err=True)
+        click.echo("interrupted: " + "; ".join(filter(None, (backend.kept(plan), "nothing was started"))), err=True)
         raise KeyboardInterrupt
     return plan

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import io
+import os
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +16,6 @@ from muster.client.handles import RunningJob, RunningRun, report_from
 from muster.client.resources import MissionText
 from muster.client.server_plan import ServerPlan
 from muster.client.uploads import packed_mission
-from muster.exchange.mission_control import ConflictError, MissionEntry
 from muster.mission.errors import Finding, MissionError, MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
@@ -22,6 +23,7 @@ from muster.mission.plan import Plan
 from muster.planning.export_formats import ExportOptions, Files
 from muster.planning.options import OPTIONS
 from muster.planning.request import Request
+from muster.server.contract import ConflictError, MissionEntry
 from muster.state.words import DETAIL
 
 if TYPE_CHECKING:
@@ -34,7 +36,26 @@ if TYPE_CHECKING:
     from muster.verification import Verdict
 
 _NOTES = "NOTES.txt"
+_TOKEN_VARIABLE = "MUSTER_TOKEN"  # noqa: S105 - a name
+_LONGEST_TOKEN = 1000
 Say = Callable[[str], None]
+
+
+@contextmanager
+def open_server(url: str, token_file: Path | None, say: Say, note: Say) -> Iterator[ServerBackend]:
+    """Open a server that speaks this version of the API and takes the token, as a backend."""
+    with Client(url, _token_from(token_file)) as client:
+        yield ServerBackend(client, client.about()["muster"], say, note)
+
+
+def _token_from(file: Path | None) -> str | None:
+    where = _TOKEN_VARIABLE if file is None else file
+    text = os.environ.get(_TOKEN_VARIABLE, "") if file is None else file.read_text(encoding="latin-1")
+    token = text.strip()
+    right = token.isascii() and token.isprintable() and " " not in token and len(token) <= _LONGEST_TOKEN
+    if not right or (not token and file is not None):
+        raise ParameterError(f"{where}: no token; expected one line that holds it")
+    return token or None
 
 
 class ServerBackend:
@@ -42,17 +63,24 @@ class ServerBackend:
 
     Parameters
     ----------
+    version
+        version of Muster at the server.
     say, note
         receive messages for the user: important ones, and those of -v.
     """
 
-    def __init__(self, client: Client, say: Say, note: Say) -> None:
+    def __init__(self, client: Client, version: str, say: Say, note: Say) -> None:
         self._client = client
+        self._version = version
         self._say = say
         self._note = note
 
-    def missions(self) -> Sequence[MissionEntry]:
-        return self._client.missions.list()
+    def version(self) -> str:
+        return self._version
+
+    def missions(self) -> tuple[Sequence[Mapping[str, Any]], Sequence[Mapping[str, str]]]:
+        found = self._client.missions.list()
+        return [_data(entry) for entry in found], [_row(entry) for entry in found]
 
     def check(self, mission: Mission, ignore: Sequence[str], time_limit: float) -> Possible:
         from muster.planning.explaining import Possible
@@ -78,6 +106,9 @@ class ServerBackend:
             why=why,
             interrupted=interrupt.interrupted,
         )
+
+    def kept(self, plan: Plan) -> str | None:
+        return f"plan {plan.id} is kept at the server" if isinstance(plan, ServerPlan) else None
 
     def verify(self, mission: Mission, plan: Plan, ignore: Sequence[str], objective: str | None) -> Verdict:
         return self._client.plans.verdict(self._kept_plan(mission, plan), ignore, objective)
@@ -127,6 +158,21 @@ class ServerBackend:
         entry = self._client.plans.upload(self._kept(mission).id, plan)
         self._note(f"the server has it as plan {entry.id}")
         return entry
+
+
+def _data(entry: MissionEntry) -> dict[str, Any]:
+    return asdict(entry) | {"changed_at": entry.changed_at and entry.changed_at.isoformat()}
+
+
+def _row(entry: MissionEntry) -> dict[str, str]:
+    return {
+        "mission": entry.id,
+        "robots": str(entry.robots),
+        "tasks": str(entry.tasks),
+        "version": str(entry.version or "-"),
+        "changed (UTC)": "-" if entry.changed_at is None else f"{entry.changed_at:%Y-%m-%d %H:%M}",
+        "name": entry.name if entry.name != entry.id else "",
+    }
 
 
 def awaited(job: RunningJob, on_progress: Callable[[Progress], None] | None, interrupt: Stop, say: Say) -> ServerPlan:

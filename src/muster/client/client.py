@@ -10,11 +10,11 @@ from muster.client.handles import RunningJob, RunningRun
 from muster.client.reading import read
 from muster.client.resources import Missions, MissionText, Plans, Records, number_of, path_part
 from muster.client.server_plan import ServerPlan
-from muster.exchange.mission_control import Action, Job, JobState, Run, World
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.options import options_from
+from muster.server.contract import Action, Job, JobState, Run, World
 
 API = 1
 """The version of the API that this client speaks."""

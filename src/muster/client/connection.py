@@ -11,14 +11,6 @@ from typing import Any
 from urllib.parse import urlsplit
 from uuid import uuid4
 
-from muster.exchange.mission_control import (
-    MOST_ROWS,
-    BusyError,
-    ConflictError,
-    ForbiddenError,
-    NotFoundError,
-    StoreError,
-)
 from muster.mission.errors import (
     Finding,
     InputError,
@@ -26,6 +18,14 @@ from muster.mission.errors import (
     MusterError,
     NetworkError,
     ParameterError,
+)
+from muster.server.contract import (
+    MOST_ROWS,
+    BusyError,
+    ConflictError,
+    ForbiddenError,
+    NotFoundError,
+    StoreError,
 )
 
 PREFIX = "/api/v1"

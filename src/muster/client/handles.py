@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 from muster.client.connection import Connection
 from muster.client.reading import read
 from muster.client.server_plan import ServerPlan
-from muster.exchange.mission_control import JOB_OVER, OVER, Action, Entry, Job, Run
 from muster.mission.errors import MusterError
 from muster.mission.model import Task
 from muster.mission.yaml_writer import plain
+from muster.server.contract import JOB_OVER, OVER, Action, Entry, Job, Run
 
 if TYPE_CHECKING:
     from muster.execution import Report

@@ -14,10 +14,10 @@ from muster.client.connection import Connection
 from muster.client.reading import read
 from muster.client.server_plan import ServerPlan
 from muster.client.uploads import packed_mission
-from muster.exchange.mission_control import MissionEntry, PlanEntry, Run
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import read_plan
+from muster.server.contract import MissionEntry, PlanEntry, Run
 
 if TYPE_CHECKING:
     from muster.verification import Verdict

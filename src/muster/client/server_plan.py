@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from muster.client.reading import read
-from muster.exchange.mission_control import PlanEntry
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_from
+from muster.server.contract import PlanEntry
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,6 +2,7 @@
 
 | part | what it does |
 |---|---|
+| `contract` | the data and errors that the server and its client exchange |
 | `settings` | the settings of a server |
 | `app`, `serving` | the application, and the HTTP server that runs it |
 | `store` | the database: tables, migrations, backup |

@@ -10,7 +10,7 @@ from typing import Any
 from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
-from muster.exchange.mission_control import User
+from muster.server.contract import User
 from muster.server.health import health_route
 from muster.server.logs import log_answered
 from muster.server.metrics import Metrics

@@ -13,7 +13,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from muster.exchange.mission_control import StoreError
+from muster.server.contract import StoreError
 from muster.server.security.authentication import user_of
 from muster.server.services.services import Services
 from muster.server.store.store import Store

@@ -17,7 +17,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from muster.exchange.mission_control import JobState, RunState, StoreError
+from muster.server.contract import JobState, RunState, StoreError
 from muster.server.security.guard import CompletedRequest, GuardState
 from muster.server.services.services import Services
 from muster.server.store.statistics import Statistics, statistics

@@ -12,7 +12,7 @@ from nicegui import core, ui
 from tests.server.serving import served as serving
 
 from muster.client import Client
-from muster.exchange.mission_control import StoreError
+from muster.server.contract import StoreError
 from muster.server.services.missions import Missions
 from muster.server.services.plans import Plans
 from muster.server.store.database import Database

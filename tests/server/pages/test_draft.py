@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from muster.exchange.mission_control import ConflictError, MissionVersion, User
 from muster.mission.errors import NetworkError
+from muster.server.contract import ConflictError, MissionVersion, User
 from muster.server.pages.editing.draft import Draft
 
 WHO = User("anna", "command")

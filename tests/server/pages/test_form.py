@@ -9,8 +9,8 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Robot, Station, Task
 from muster.mission.records import specified
 from muster.mission.yaml_writer import yaml_text
-from muster.server.pages.plan import form
-from muster.server.pages.plan.cell_texts import number_of, text_of, value_of
+from muster.server.pages.editing import form
+from muster.server.pages.editing.cell_texts import number_of, text_of, value_of
 
 
 @pytest.mark.parametrize(

@@ -7,17 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from muster.exchange.mission_control import MissionVersion
 from muster.library.shipped import mission_path
 from muster.mission.yaml_reader import read_yaml
 from muster.mission.yaml_writer import plain
+from muster.server.contract import MissionVersion
 from muster.server.pages.map import scene_of
+from muster.server.pages.map.ground import image_of
 from muster.server.pages.missions.new_mission import EMPTY, EMPTY_IN_SPACE, options_of, refused, sorted_out
 from muster.server.pages.missions.view import ago
 from muster.server.pages.plan.compare import moved_tasks, with_better
 from muster.server.pages.plan.explanation import question
 from muster.server.pages.plan.figures import figures_of, lines_of, meaning_of
-from muster.server.pages.plan.map_scene import image_of
 from muster.server.pages.plan.versions import differences, marked
 
 

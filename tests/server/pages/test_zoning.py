@@ -1,6 +1,6 @@
 """What is said of a zone that was drawn."""
 
-from muster.server.pages.plan.zone_form import lies_outside
+from muster.server.pages.editing.zone_form import lies_outside
 
 GROUND = {"boundary": [[0, 0], [9, 0], [9, 9], [0, 9]]}
 

@@ -25,7 +25,7 @@ from muster.server.store.store import Store
 MISSION = "31T-6R50"
 SPEED = 20.0
 KILLS_A_RUN = 6
-RUNNER, WORKER = "muster.server.runs.runner", "muster.server.work.worker"
+RUNNER, WORKER = "muster.server.runs.runner.main", "muster.server.work.worker"
 WITHIN_S = 300.0
 LONG = 20_000
 """Iterations of a plan that takes a second or so."""

@@ -12,10 +12,10 @@ import muster
 from muster.mission.clock import VirtualClock
 from muster.mission.model import Mission, Robot, Rules
 from muster.report.record.json_messages import json_bytes
-from muster.server.runs.log_recorder import LogRecorder
-from muster.server.runs.run_loop import RunLoop
 from muster.server.runs.run_settings import request_of
-from muster.server.runs.simulated_run import SimulatedRun
+from muster.server.runs.runner.log_recorder import LogRecorder
+from muster.server.runs.runner.run_loop import RunLoop
+from muster.server.runs.runner.simulated_run import SimulatedRun
 from muster.state import MissionState
 
 ROBOTS = 6

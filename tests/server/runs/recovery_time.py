@@ -16,16 +16,16 @@ from tests.server.runs.stage import performed
 from tests.server.runs.store import planned
 
 import muster
-from muster.exchange.mission_control import Checkpoint, Entry
 from muster.mission.model import Mission, Robot, Rules
-from muster.server.runs.checkpoints import MOST_ENTRIES, packed_state
+from muster.server.contract import Checkpoint, Entry
+from muster.server.runs.log.checkpoints import MOST_ENTRIES, packed_state
 from muster.server.store.store import Store
 from muster.state import MissionState, checkpoint_of, event_of
 
 ROBOTS = 20
 APART_S, KEEP_S = 0.5, 300.0
 """Seconds between two orders; after which those that are done are forgotten."""
-RUNNER = "muster.server.runs.runner"
+RUNNER = "muster.server.runs.runner.main"
 FACTS = {"state": "running", "speed": 1.0, "resumed": 0}
 _AT_ONCE = 500
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from muster.mission.clock import VirtualClock
-from muster.server.runs.log_recorder import LogRecorder
-from muster.server.runs.run_loop import RunLoop
-from muster.server.runs.runner import _known, _world_run
-from muster.server.runs.tracks import unpacked
+from muster.server.runs.log.tracks import unpacked
+from muster.server.runs.runner.log_recorder import LogRecorder
+from muster.server.runs.runner.main import _known, _world_run
+from muster.server.runs.runner.run_loop import RunLoop
 
 
 class Killed(Exception):  # noqa: N818  # no error

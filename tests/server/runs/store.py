@@ -1,8 +1,8 @@
 """A database with a plan in it, as runs need."""
 
 import muster
-from muster.exchange.mission_control import User
 from muster.mission.yaml_writer import yaml_text
+from muster.server.contract import User
 from muster.server.settings import Settings
 
 ADA = User("ada", "command")

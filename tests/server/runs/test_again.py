@@ -14,9 +14,9 @@ import muster
 from muster.execution import Status
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Task
-from muster.server.runs import checkpoints
-from muster.server.runs.log_recorder import LogRecorder
-from muster.server.runs.run_loop import RunLoop
+from muster.server.runs.log import checkpoints
+from muster.server.runs.runner.log_recorder import LogRecorder
+from muster.server.runs.runner.run_loop import RunLoop
 from muster.simulation.world_base import WorldBase
 from muster.state import MissionState
 

@@ -100,7 +100,7 @@ def test_a_run_and_then_its_server_are_killed_and_another_goes_on(postgresql_url
         until(lambda: len(first.http.get(events).json()) > 5)
         fails = {"verb": "event", "data": {"robot_fails": "r_0"}}
         assert first.http.post(actions, json=fails).status_code == 202
-        (runner,) = first.children("muster.server.runs.runner")
+        (runner,) = first.children("muster.server.runs.runner.main")
         kill(runner)
         until(lambda: "resumed" in {entry["kind"] for entry in first.http.get(events).json()})
         waits = first.http.post("/missions/6T-2R/plans", json={"time_limit": 1}).json()["id"]

@@ -5,7 +5,7 @@ import asyncio
 from tests.server.runs.store import ADA, planned
 
 import muster
-from muster.exchange.mission_control import Entry
+from muster.server.contract import Entry
 from muster.server.services.runs import Runs
 from muster.server.settings import Settings
 from muster.server.store import Store

@@ -86,7 +86,7 @@ def test_drones_stand_when_the_server_is_killed_and_what_may_be_begun_once_is(tm
         ask("resume")
         until(lambda: "once" in happened("starts"))
         before = happened("ends")
-        (runner,) = first.children("muster.server.runs.runner")
+        (runner,) = first.children("muster.server.runs.runner.main")
         first.kill()
         until(lambda: gone(runner))
     for endpoint in sky.values():

@@ -11,9 +11,9 @@ from tests.state.played import SAMPLES, known, site
 
 import muster
 from muster.mission.yaml_writer import plain
-from muster.server.runs import checkpoints
-from muster.server.runs.checkpoints import unpacked_state
-from muster.server.runs.crash_recovery import recovered_from
+from muster.server.runs.log import checkpoints
+from muster.server.runs.log.checkpoints import unpacked_state
+from muster.state.recovery import recovered_from
 
 BEFORE = {
     "robot_returns": [{"robot_fails": "r_0"}, {"robot_fails": "r_1"}],

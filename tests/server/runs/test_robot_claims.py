@@ -8,11 +8,11 @@ import pytest
 from tests.server.runs.store import ADA, planned, settings_of
 
 import muster
-from muster.exchange.mission_control import ConflictError
 from muster.mission.errors import MusterError, ParameterError, PluginError
 from muster.running.claim_locks import robots_claimed
 from muster.running.fleet_registry import FLEETS
 from muster.running.robot_claims import claims, claims_as_far_as_known, claims_of
+from muster.server.contract import ConflictError
 from muster.server.services.runs import Runs
 
 HERE, THERE = {"r_0": "udp:127.0.0.1:14550", "r_1": "udpout:10.0.0.2:14550"}, {"r_0": "udp:0.0.0.0:14550#2"}

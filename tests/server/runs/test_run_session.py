@@ -10,9 +10,9 @@ from tests.server.runs.played import PLAN, REPORT, entry, play
 from tests.server.runs.store import ADA, planned, settings_of
 
 import muster
-from muster.exchange.mission_control import Checkpoint, ConflictError, Entry, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
-from muster.server.runs.checkpoints import packed_state, unpacked_state
+from muster.server.contract import Checkpoint, ConflictError, Entry, NotFoundError, StoreError
+from muster.server.runs.log.checkpoints import packed_state, unpacked_state
 from muster.server.services.runs import Runs
 
 
@@ -229,7 +229,7 @@ def test_an_error_of_ours_ends_the_runner_too(store, run, monkeypatch):
 @pytest.mark.parametrize("error", [NotFoundError("no run"), RuntimeError("odd")])
 def test_whatever_keeps_a_log_from_being_written_is_said_and_tried_again(store, run, monkeypatch, error):
     play(monkeypatch, stays)
-    monkeypatch.setattr("muster.server.runs.log_writer.AGAIN_S", 0.1)
+    monkeypatch.setattr("muster.server.runs.log.writer.AGAIN_S", 0.1)
     append, broken = store.log.append, [True]
 
     def odd(*arguments):
@@ -379,7 +379,7 @@ def test_where_the_last_checkpoint_is_damaged_the_one_before_is_used(store, run,
 
 
 def test_while_the_database_is_away_the_newest_checkpoint_waits_alone(store, run, monkeypatch):
-    monkeypatch.setattr("muster.server.runs.log_writer.AGAIN_S", 0.05)
+    monkeypatch.setattr("muster.server.runs.log.writer.AGAIN_S", 0.05)
     begins, add, written = [], store.log.add_checkpoint, []
 
     async def goes_on(runner, begin):

@@ -17,10 +17,10 @@ from tests.server.runs.stage import performed
 from tests.server.runs.store import ADA, EVE, planned, settings_of
 
 import muster
-from muster.exchange.mission_control import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import ParameterError
 from muster.mission.plan_reader import plan_from
 from muster.mission.yaml_writer import yaml_text
+from muster.server.contract import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster.server.services.records import Records
 from muster.server.services.runs import Runs
 from muster.server.work.pool import Pool

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from muster.exchange.mission_control import User
+from muster.server.contract import User
 from muster.server.security.refusal_log import Audit
 
 

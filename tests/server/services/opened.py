@@ -3,7 +3,7 @@
 from contextlib import asynccontextmanager
 from types import SimpleNamespace
 
-from muster.exchange.mission_control import User
+from muster.server.contract import User
 from muster.server.services.jobs import Jobs
 from muster.server.services.plans import Plans
 from muster.server.settings import Settings

@@ -5,7 +5,7 @@ from contextlib import closing, nullcontext
 
 import pytest
 
-from muster.exchange.mission_control import ConflictError, ForbiddenError, StoreError, User
+from muster.server.contract import ConflictError, ForbiddenError, StoreError, User
 from muster.server.services.actions import Actions
 from muster.server.store import Store
 

@@ -16,7 +16,7 @@ from tests.server.databases import *  # noqa: F403 - fixtures
 from tests.server.runs.store import ADA, planned
 
 import muster
-from muster.exchange.mission_control import StoreError
+from muster.server.contract import StoreError
 from muster.server.services.database_lock import TakenError, alone_with
 from muster.server.services.services import open_services
 from muster.server.settings import Settings

@@ -12,7 +12,8 @@ import pytest
 from sqlalchemy import delete
 from tests.server.services.opened import TINY, WATCHER, WHO, opened, over, told
 
-from muster.exchange.mission_control import (
+from muster.mission.errors import MusterError, ParameterError
+from muster.server.contract import (
     BusyError,
     ConflictError,
     ForbiddenError,
@@ -20,7 +21,6 @@ from muster.exchange.mission_control import (
     StoreError,
     User,
 )
-from muster.mission.errors import MusterError, ParameterError
 from muster.server.store.schema import plans
 from muster.server.work import WorkerDied
 
@@ -492,7 +492,7 @@ import sys
 import muster.server.services.jobs, muster.server.services.plans
 heavy = ("numpy", "scipy", "shapely", "matplotlib", "muster.allocation.", "muster.simulation", "muster.verification",
          "muster.exchange.", "muster.report", "muster.mission.yaml_reader")
-light = {"muster.exchange.mission_control", "muster.allocation.parameter_types",
+light = {"muster.server.contract", "muster.allocation.parameter_types",
          "muster.exchange.sites", "muster.exchange.sites.readers", "muster.exchange.mission_readers",
          "muster.exchange.qgc_format"}
 print([name for name in sys.modules if name.startswith(heavy) and name not in light])

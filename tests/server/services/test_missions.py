@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import muster
-from muster.exchange.mission_control import ConflictError, ForbiddenError, NotFoundError, User
 from muster.mission.errors import MissionError, MusterError, ParameterError
+from muster.server.contract import ConflictError, ForbiddenError, NotFoundError, User
 from muster.server.services import uploads
 from muster.server.services.missions import Missions
 from muster.server.services.shipped import shipped_entries, shipped_version

@@ -10,8 +10,8 @@ from tests.server.services.opened import TINY, WATCHER, WHO, told
 
 import muster
 from muster.cli.main import run as command
-from muster.exchange.mission_control import BusyError, ForbiddenError, NotFoundError
 from muster.mission.errors import ParameterError
+from muster.server.contract import BusyError, ForbiddenError, NotFoundError
 from muster.server.work import Pool, WorkError
 
 ROUTES = {"schema": "muster-plan/1", "routes": [{"robot": "r_0", "tasks": ["a", "b"]}, {"robot": "r_1", "tasks": []}]}

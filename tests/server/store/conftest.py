@@ -3,7 +3,7 @@
 import pytest
 from tests.server.databases import *  # noqa: F403 - its fixtures
 
-from muster.exchange.mission_control import Entry, Stretch
+from muster.server.contract import Entry, Stretch
 from muster.server.store import Store
 
 SUMMARY = {"name": "Yard", "robots": 2, "tasks": 3, "dimensions": 2}

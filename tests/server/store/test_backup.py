@@ -8,8 +8,8 @@ import pytest
 from sqlalchemy import select, text
 from tests.server.store.conftest import SUMMARY, Filled
 
-from muster.exchange.mission_control import StoreError, User
 from muster.mission.errors import ParameterError
+from muster.server.contract import StoreError, User
 from muster.server.store import Store
 from muster.server.store.backup import backup, restore
 from muster.server.store.database_info import database_info

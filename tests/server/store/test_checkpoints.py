@@ -3,7 +3,7 @@
 import pytest
 from sqlalchemy import event
 
-from muster.exchange.mission_control import Checkpoint, ConflictError
+from muster.server.contract import Checkpoint, ConflictError
 from muster.server.store.prune import prune
 
 FACTS = {"state": "paused", "speed": None, "resumed": 2}

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from sqlalchemy import text
 from tests.server.store.conftest import Filled
 
-from muster.exchange.mission_control import StoreError, User
 from muster.mission.errors import MusterError, ParameterError
+from muster.server.contract import StoreError, User
 from muster.server.store import Store
 from muster.server.store.database import Database
 from muster.server.store.schema import HEAD

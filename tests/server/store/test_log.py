@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import text
 
-from muster.exchange.mission_control import ConflictError, StoreError
 from muster.mission.errors import ParameterError
+from muster.server.contract import ConflictError, StoreError
 
 
 @pytest.fixture

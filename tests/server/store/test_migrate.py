@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from sqlalchemy import text
 
-from muster.exchange.mission_control import User
+from muster.server.contract import User
 from muster.server.store import Store
 from muster.server.store.database import Database
 from muster.server.store.migrate import MIGRATIONS, migrate, revision, upgrade

@@ -9,7 +9,7 @@ import pytest
 from sqlalchemy import select, text, update
 from tests.server.store.conftest import SUMMARY
 
-from muster.exchange.mission_control import NotFoundError, StoreError, User
+from muster.server.contract import NotFoundError, StoreError, User
 from muster.server.store import Store
 from muster.server.store.prune import Pruned, _delete, prune
 from muster.server.store.schema import actions, jobs, mission_files, mission_versions, plans, pruning, runs

@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from sqlalchemy import func, select, update
 
-from muster.exchange.mission_control import ConflictError, StoreError
+from muster.server.contract import ConflictError, StoreError
 from muster.server.store import Store
 from muster.server.store.request_keys import KEPT, RepeatedRequestError, RequestKey
 from muster.server.store.schema import request_keys, runs

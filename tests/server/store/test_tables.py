@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.server.store.conftest import SUMMARY
 
-from muster.exchange.mission_control import ConflictError, NotFoundError, StoreError, User
 from muster.mission.errors import ParameterError
+from muster.server.contract import ConflictError, NotFoundError, StoreError, User
 from muster.server.store import Store
 from muster.server.store.missions import slug
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from muster.exchange.mission_control import BusyError, NotFoundError
+from muster.server.contract import BusyError, NotFoundError
 from muster.server.work import OutOfMemory, Pool, StopRequest, TimedOut, WorkerDied, WorkError
 
 PROGRAM = (sys.executable, str(Path(__file__).with_name("odd_worker.py")))
@@ -367,7 +367,7 @@ def test_workers_end_with_the_server_that_was_killed():
 def test_the_server_loads_nothing_heavy():
     code = """
 import sys
-import muster.server.work, muster.exchange.mission_control, muster.server.settings
+import muster.server.work, muster.server.contract, muster.server.settings
 heavy = ("numpy", "scipy", "shapely", "matplotlib", "muster.allocation", "muster.simulation", "muster.verification")
 print([name for name in sys.modules if name.startswith(heavy)])
 """

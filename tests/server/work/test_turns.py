@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.exchange.mission_control import BusyError
+from muster.server.contract import BusyError
 from muster.server.work.turns import Turns
 
 

@@ -39,7 +39,7 @@ _log = logging.getLogger(__name__)
 
 
 class Ros2Fleet:
-    """The robots of a mission in a domain of ROS 2; see `bridges.fleet.Fleet`.
+    """The robots of a mission in a domain of ROS 2; see `execution.fleet.Fleet`.
 
     Parameters
     ----------

@@ -9,9 +9,9 @@ from typing import Any
 
 from fastapi import APIRouter
 
-from muster.exchange.mission_control import Role
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import TheServices, TheUser
+from muster.server.contract import Role
 
 API = 1
 """Of the paths under /api/v1; grows when what a client relies on changes."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from muster.exchange.mission_control import Action
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import ThePage, TheServices
 from muster.server.api.parameter_types import BeforeAction, RunQuery
 from muster.server.api.responses import PAGED
+from muster.server.contract import Action
 
 router = APIRouter(prefix="/actions", tags=["actions"], route_class=BoundedRoute)
 

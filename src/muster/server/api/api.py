@@ -8,12 +8,12 @@ from fastapi import Depends, FastAPI
 from fastapi.responses import HTMLResponse
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import User
 from muster.server.api import about, actions, jobs, missions, plans, records, runs
 from muster.server.api.dependencies import require_known_query
 from muster.server.api.description import describe, listing
 from muster.server.api.problems import add_handlers
 from muster.server.api.responses import ALWAYS, errors
+from muster.server.contract import User
 from muster.server.security import user_of as usual_who_of
 from muster.server.services.services import Services
 

@@ -12,9 +12,9 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import PAGE_ROWS, User
 from muster.mission.near_matches import did_you_mean
 from muster.server.api.parameter_types import Limit
+from muster.server.contract import PAGE_ROWS, User
 from muster.server.services.services import Services
 from muster.server.store.request_keys import RequestKey
 

@@ -7,12 +7,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, WebSocket
 
-from muster.exchange.mission_control import Job, JobState
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import ThePage, TheServices, TheUser
 from muster.server.api.parameter_types import Before, JobId, MissionQuery
 from muster.server.api.responses import PAGED, errors
 from muster.server.api.sockets import message, tell
+from muster.server.contract import Job, JobState
 from muster.server.services.jobs import Jobs
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=BoundedRoute)

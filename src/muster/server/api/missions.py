@@ -11,7 +11,6 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, File, Form, Header, HTTPException, Query, Request, Response, UploadFile
 from pydantic import Field
 
-from muster.exchange.mission_control import MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import ThePage, TheServices, TheUser, require_known_form
 from muster.server.api.parameter_types import (
@@ -38,6 +37,7 @@ from muster.server.api.responses import (
     file_response,
     with_location,
 )
+from muster.server.contract import MissionEntry, MissionVersion, NotFoundError, VersionEntry
 from muster.server.services.missions import place_of
 from muster.server.services.uploads import answers_of
 

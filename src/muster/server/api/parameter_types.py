@@ -10,8 +10,8 @@ from fastapi import Path, Query
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from muster.exchange.mission_control import MOST_ROWS
 from muster.mission.ignorable_rules import IGNORABLE
+from muster.server.contract import MOST_ROWS
 from muster.server.services import uploads
 
 LARGEST = 2**31 - 1

@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response
 from pydantic import Field, WithJsonSchema
 
-from muster.exchange.mission_control import Job, PlanEntry
 from muster.mission.model import OBJECTIVES
 from muster.planning.options import BOUNDS, HELP
 from muster.server.api.bodies import BoundedRoute
@@ -35,6 +34,7 @@ from muster.server.api.responses import (
     file_response,
     with_location,
 )
+from muster.server.contract import Job, PlanEntry
 from muster.traffic.names import TRAFFIC
 
 router = APIRouter(tags=["plans"], route_class=BoundedRoute)

@@ -14,9 +14,9 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import compile_path
 
-from muster.exchange.mission_control import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
 from muster.mission.errors import Finding, MissingExtraError, MusterError
 from muster.mission.value_types import shown
+from muster.server.contract import BusyError, ConflictError, ForbiddenError, NotFoundError, StoreError
 from muster.server.problem import MEDIA_TYPE, problem_content
 
 RETRY_S = 2

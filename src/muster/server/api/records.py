@@ -6,11 +6,11 @@ from typing import Any, Literal
 
 from fastapi import APIRouter, Response
 
-from muster.exchange.mission_control import Run
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import ThePage, TheServices
 from muster.server.api.parameter_types import Before, MissionQuery, RunId
 from muster.server.api.responses import PAGED, archive_response, errors, file_described, file_response
+from muster.server.contract import Run
 
 router = APIRouter(prefix="/records", tags=["records"], route_class=BoundedRoute)
 

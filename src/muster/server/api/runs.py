@@ -8,13 +8,13 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query, Response, WebSocket
 from pydantic import Field
 
-from muster.exchange.mission_control import MOST_ROWS, OVER, Action, ConflictError, Entry, Run
 from muster.running.run_request import SETTING_NAMES
 from muster.server.api.bodies import BoundedRoute
 from muster.server.api.dependencies import IdempotencyKey, ThePage, TheServices, TheUser, key_of
 from muster.server.api.parameter_types import LARGEST, After, Before, Body, MissionQuery, Name, RunId
 from muster.server.api.responses import PAGED, errors, with_location
 from muster.server.api.sockets import answer, message, tell
+from muster.server.contract import MOST_ROWS, OVER, Action, ConflictError, Entry, Run
 from muster.server.runs.run_settings import MOST_ORDERS
 from muster.server.services.runs import Runs
 from muster.state.words import words_of

@@ -7,7 +7,9 @@
 | `sockets` | checks that messages for a page come from its user |
 | `notices` | errors and news for the user |
 | `buttons` | buttons that act once, however often they are clicked |
-| `map` | the map, an element with its own scripts |
+| `map`, `charts` | the map and the charts, elements with their own scripts |
+| `editing` | a mission that is being edited: map, form and text |
+| `missions`, `plan`, `live`, `records` | the views, a folder each |
 """
 
 from __future__ import annotations
@@ -21,8 +23,8 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import User
 from muster.mission.errors import MissingExtraError
+from muster.server.contract import User
 from muster.server.pages.sockets import OwnUploads, guard_sockets
 from muster.server.pages.visitor import PageContext, WithServices
 

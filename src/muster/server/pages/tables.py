@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 
 from nicegui import ui
 
-from muster.exchange.mission_control import MOST_ROWS
+from muster.server.contract import MOST_ROWS
 
 Cell = str | tuple[str, str]
 """Text, or words and the address that they link to."""

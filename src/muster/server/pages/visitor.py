@@ -10,7 +10,7 @@ from nicegui import ui
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from muster.exchange.mission_control import User
+from muster.server.contract import User
 from muster.server.security.authentication import SCOPE_KEY, Caller
 
 if TYPE_CHECKING:

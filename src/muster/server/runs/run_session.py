@@ -12,12 +12,12 @@ from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import OVER, Action, Checkpoint, Entry, Run, RunState, StoreError
 from muster.running.worlds import WORLDS
+from muster.server.contract import OVER, Action, Checkpoint, Entry, Run, RunState, StoreError
 from muster.server.runs.crash_history import CrashHistory
-from muster.server.runs.journal import Journal
-from muster.server.runs.journal_replay import TOO_LATE
-from muster.server.runs.log_writer import LogWriter
+from muster.server.runs.log.journal import Journal
+from muster.server.runs.log.journal_replay import TOO_LATE
+from muster.server.runs.log.writer import LogWriter
 from muster.server.runs.runner_input import RunnerInput
 from muster.server.runs.runner_process import RunnerProcess
 from muster.server.runs.subscribers import Subscribers

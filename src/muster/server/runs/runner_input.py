@@ -13,8 +13,8 @@ import zlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import Checkpoint, Entry, MissionVersion, Run
-from muster.server.runs.checkpoints import unpacked_state
+from muster.server.contract import Checkpoint, Entry, MissionVersion, Run
+from muster.server.runs.log.checkpoints import unpacked_state
 from muster.server.runs.runner_process import json_line
 
 if TYPE_CHECKING:

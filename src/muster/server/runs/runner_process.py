@@ -38,7 +38,7 @@ class RunnerProcess:
             sys.executable,
             "-P",
             "-m",
-            "muster.server.runs.runner",
+            "muster.server.runs.runner.main",
             str(memory_mb),
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from starlette.requests import HTTPConnection
 
-from muster.exchange.mission_control import User
 from muster.mission.errors import ParameterError
+from muster.server.contract import User
 from muster.server.security.origins import address_in
 from muster.server.security.refusal import RefusalError, printable
 from muster.server.security.sessions import COOKIE, SECURE_COOKIE, Session, Sessions, kept_secret

@@ -16,7 +16,7 @@ from urllib.parse import quote
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocketDisconnect
 
-from muster.exchange.mission_control import User
+from muster.server.contract import User
 from muster.server.problem import MEDIA_TYPE
 from muster.server.security.authentication import SCOPE_KEY, Authenticator, Caller, WrongTokenError
 from muster.server.security.headers import is_page, is_static, with_security

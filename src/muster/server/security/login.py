@@ -10,8 +10,8 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
-from muster.exchange.mission_control import User
 from muster.mission.packaged_files import packaged_text
+from muster.server.contract import User
 from muster.server.security.authentication import SCOPE_KEY, Caller
 from muster.server.security.guard import GuardState
 from muster.server.security.refusal import RefusalError

@@ -8,8 +8,8 @@ import time
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
-from muster.exchange.mission_control import User
 from muster.mission.errors import MusterError
+from muster.server.contract import User
 from muster.server.security.limits import Buckets, network_of
 
 log = logging.getLogger("muster.security")

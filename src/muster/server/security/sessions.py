@@ -17,7 +17,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from muster.exchange.mission_control import Role
+from muster.server.contract import Role
 from muster.server.security.tokens import Holder
 
 COOKIE = "muster_session"

@@ -20,9 +20,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import cast
 
-from muster.exchange.mission_control import Role
 from muster.mission.errors import Finding, InputError
 from muster.mission.near_matches import did_you_mean
+from muster.server.contract import Role
 
 PREFIX = "muster_"
 ROLES = ("watch", "command")

@@ -8,8 +8,8 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 from typing import Any
 
-from muster.exchange.mission_control import PAGE_ROWS, Action, ForbiddenError, StoreError, User
 from muster.mission.errors import MusterError
+from muster.server.contract import PAGE_ROWS, Action, ForbiddenError, StoreError, User
 from muster.server.store import Store
 
 Refused = Callable[[User, str, str], None]

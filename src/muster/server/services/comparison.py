@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from muster.exchange.mission_control import PlanEntry
+from muster.server.contract import PlanEntry
 
 _FIGURES = {
     "objective": "least",

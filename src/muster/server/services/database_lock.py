@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 from sqlalchemy import Connection, text
 from sqlalchemy.engine import URL
 
-from muster.exchange.mission_control import StoreError
+from muster.server.contract import StoreError
 from muster.server.settings import Settings
 from muster.server.store.failures import connection_error
 from muster.server.store.urls import database_url, shown, sqlite_file, whereabouts

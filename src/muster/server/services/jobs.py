@@ -10,7 +10,8 @@ from functools import partial
 from itertools import count
 from typing import Any
 
-from muster.exchange.mission_control import (
+from muster.mission.errors import MusterError
+from muster.server.contract import (
     JOB_OVER,
     PAGE_ROWS,
     BusyError,
@@ -21,7 +22,6 @@ from muster.exchange.mission_control import (
     StoreError,
     User,
 )
-from muster.mission.errors import MusterError
 from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.missions import Missions
 from muster.server.services.plan_requests import PLANS, checked_request

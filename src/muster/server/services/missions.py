@@ -13,7 +13,12 @@ from datetime import datetime
 from pathlib import PurePath
 from typing import Any, Protocol
 
-from muster.exchange.mission_control import (
+from muster.exchange.sites.readers import READERS
+from muster.mission.errors import MissionError, ParameterError
+from muster.mission.ignorable_rules import ignored_rules
+from muster.mission.yaml_writer import YAML_SUFFIXES
+from muster.planning.mission_readers import converted_suffixes
+from muster.server.contract import (
     PAGE_ROWS,
     ConflictError,
     MissionEntry,
@@ -22,11 +27,6 @@ from muster.exchange.mission_control import (
     User,
     VersionEntry,
 )
-from muster.exchange.sites.readers import READERS
-from muster.mission.errors import MissionError, ParameterError
-from muster.mission.ignorable_rules import ignored_rules
-from muster.mission.yaml_writer import YAML_SUFFIXES
-from muster.planning.mission_readers import converted_suffixes
 from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.shipped import AUTHOR, shipped_entries, shipped_summary, shipped_version
 from muster.server.services.uploads import (

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from muster.exchange.mission_control import PAGE_ROWS, PlanEntry, User
 from muster.mission.errors import ParameterError
+from muster.server.contract import PAGE_ROWS, PlanEntry, User
 from muster.server.services.actions import Actions, Refused, ignore_refusal
 from muster.server.services.comparison import compared
 from muster.server.services.missions import Missions

@@ -14,10 +14,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import OVER, ConflictError
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
-from muster.server.runs.record_files import LOG, TRACKS
+from muster.server.contract import OVER, ConflictError
+from muster.server.runs.records.record_files import LOG, TRACKS
 from muster.server.work.pool import Pool
 from muster.server.work.temporary_folders import OF_WORK
 

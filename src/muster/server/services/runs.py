@@ -10,12 +10,12 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import PAGE_ROWS, Action, BusyError, ConflictError, Entry, Run, StoreError, User
 from muster.mission.errors import MusterError
 from muster.running.robot_claims import claims_as_far_as_known, claims_of_request
 from muster.running.run_request import RunRequest
-from muster.server.runs.journal import Journal
-from muster.server.runs.journal_replay import TOO_LATE, replay
+from muster.server.contract import PAGE_ROWS, Action, BusyError, ConflictError, Entry, Run, StoreError, User
+from muster.server.runs.log.journal import Journal
+from muster.server.runs.log.journal_replay import TOO_LATE, replay
 from muster.server.runs.run_session import RunSession
 from muster.server.runs.run_settings import new_request, require_action
 from muster.server.runs.subscribers import Subscribers

@@ -10,8 +10,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from muster.exchange.mission_control import MissionEntry, MissionVersion
 from muster.library import mission_names, mission_path, mission_summary
+from muster.server.contract import MissionEntry, MissionVersion
 
 AUTHOR = "muster"
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from sqlalchemy import Connection, select, update
 
-from muster.exchange.mission_control import PAGE_ROWS, Action, NotFoundError, User
+from muster.server.contract import PAGE_ROWS, Action, NotFoundError, User
 from muster.server.store.database import Database, insert_of, newest
 from muster.server.store.schema import actions
 

@@ -15,8 +15,8 @@ from tempfile import TemporaryDirectory
 
 from sqlalchemy import Connection, Table, func, insert, select, text
 
-from muster.exchange.mission_control import StoreError
 from muster.mission.errors import ParameterError
+from muster.server.contract import StoreError
 from muster.server.store.database import Database
 from muster.server.store.failures import sqlite_error
 from muster.server.store.migrate import migrate, revision

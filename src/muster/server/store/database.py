@@ -17,8 +17,8 @@ from typing import Any
 from sqlalchemy import Connection, Engine, Select, Table, create_engine, event
 from sqlalchemy.exc import SQLAlchemyError
 
-from muster.exchange.mission_control import StoreError
 from muster.mission.errors import MissingExtraError
+from muster.server.contract import StoreError
 from muster.server.store.columns import as_json
 from muster.server.store.failures import store_error
 from muster.server.store.urls import database_url, shown, sqlite_file

@@ -10,8 +10,8 @@ import sqlite3
 
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError, StatementError
 
-from muster.exchange.mission_control import StoreError
 from muster.mission.errors import MusterError
+from muster.server.contract import StoreError
 
 _OF_SQLITE = (
     ("SQLITE_FULL", "the disk is full; free some space, or `muster db prune`"),

@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import PAGE_ROWS, ConflictError, Job, JobState, NotFoundError
+from muster.server.contract import PAGE_ROWS, ConflictError, Job, JobState, NotFoundError
 from muster.server.store.database import Database, newest
 from muster.server.store.plans import add_plan
 from muster.server.store.request_keys import RequestKey, keyed

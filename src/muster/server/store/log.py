@@ -14,8 +14,8 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Row, Table, delete, func, insert, select, update
 
-from muster.exchange.mission_control import Checkpoint, ConflictError, Entry, NotFoundError, Stretch
 from muster.mission.errors import ParameterError
+from muster.server.contract import Checkpoint, ConflictError, Entry, NotFoundError, Stretch
 from muster.server.store.columns import as_json
 from muster.server.store.database import Database
 from muster.server.store.schema import bodies as body_table

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from sqlalchemy import Connection, inspect, text
 
-from muster.exchange.mission_control import StoreError
+from muster.server.contract import StoreError
 from muster.server.store.database import Database
 from muster.server.store.schema import HEAD, metadata
 from muster.server.store.triggers import triggers

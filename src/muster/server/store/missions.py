@@ -12,7 +12,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Row, Select, and_, func, insert, select, tuple_, update
 
-from muster.exchange.mission_control import (
+from muster.server.contract import (
     PAGE_ROWS,
     ConflictError,
     MissionEntry,

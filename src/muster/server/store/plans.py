@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from sqlalchemy import Connection, Row, func, insert, select
 
-from muster.exchange.mission_control import MOST_ROWS, PAGE_ROWS, NotFoundError, PlanEntry
+from muster.server.contract import MOST_ROWS, PAGE_ROWS, NotFoundError, PlanEntry
 from muster.server.store.database import Database, newest
 from muster.server.store.schema import missions, plans
 

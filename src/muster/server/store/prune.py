@@ -26,7 +26,7 @@ from sqlalchemy import (
     text,
 )
 
-from muster.exchange.mission_control import JOB_OVER, OVER
+from muster.server.contract import JOB_OVER, OVER
 from muster.server.store.backup import existing, require_newest
 from muster.server.store.schema import (
     actions,

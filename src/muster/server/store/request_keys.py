@@ -9,7 +9,7 @@ from datetime import UTC, datetime, timedelta
 
 from sqlalchemy import ColumnElement, Connection, delete, select, update
 
-from muster.exchange.mission_control import ConflictError
+from muster.server.contract import ConflictError
 from muster.server.store.database import Database, insert_unless_there
 from muster.server.store.schema import request_keys
 

@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 from sqlalchemy import Connection, insert, select, update
 
-from muster.exchange.mission_control import OVER, PAGE_ROWS, ConflictError, NotFoundError, Run, RunState, User, World
+from muster.server.contract import OVER, PAGE_ROWS, ConflictError, NotFoundError, Run, RunState, User, World
 from muster.server.store.actions import keep_actions, new_action
 from muster.server.store.database import Database, newest
 from muster.server.store.request_keys import RequestKey, keyed

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import text
 
-from muster.exchange.mission_control import StoreError
+from muster.server.contract import StoreError
 from muster.server.store.actions import ActionTable
 from muster.server.store.database import Database, make_file
 from muster.server.store.jobs import JobTable

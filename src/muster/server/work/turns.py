@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from contextvars import ContextVar
 
-from muster.exchange.mission_control import BusyError
+from muster.server.contract import BusyError
 
 CURRENT_USER: ContextVar[str] = ContextVar("muster_current_user", default="")
 """The user of the present request; empty if the server itself works."""

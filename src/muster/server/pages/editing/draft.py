@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import Any
 
-from muster.exchange.mission_control import MissionVersion, User
+from muster.server.contract import MissionVersion, User
 from muster.server.pages.editing.history import History
 
 _QUIET_S = 0.35  # without a change, before a text is checked

@@ -12,8 +12,8 @@ from nicegui import ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
-from muster.exchange.mission_control import User
 from muster.mission.errors import MusterError
+from muster.server.contract import User
 from muster.server.pages.notices import words_of
 
 for _scripts in ("muster.server.pages.map", "nicegui.elements.scene"):  # the latter's have three.js

@@ -7,12 +7,12 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import OVER, Run
 from muster.mission.errors import MusterError
+from muster.server.contract import OVER, Run
 from muster.server.pages.frame import frame
 from muster.server.pages.live.element import RunView
+from muster.server.pages.map.ground import TILES, image_of
 from muster.server.pages.notices import errors_shown, words_of
-from muster.server.pages.plan.map_scene import TILES, image_of
 from muster.server.pages.tables import table
 from muster.server.pages.visitor import PATIENCE_S, is_seen, on_the_wall, the_services, the_user
 

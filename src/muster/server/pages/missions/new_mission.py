@@ -10,10 +10,10 @@ from typing import Any
 
 from nicegui import events, ui
 
-from muster.exchange.mission_control import MissionVersion
 from muster.exchange.sites.readers import READERS
 from muster.mission.yaml_writer import YAML_SUFFIXES, flow_text
 from muster.planning.mission_readers import converted_suffixes
+from muster.server.contract import MissionVersion
 from muster.server.pages.buttons import once
 from muster.server.pages.notices import end_warning, errors_shown, warn
 from muster.server.pages.visitor import the_services, the_user

@@ -11,8 +11,8 @@ from html import escape
 from nicegui import ui
 from nicegui.events import GenericEventArguments
 
-from muster.exchange.mission_control import PAGE_ROWS, MissionEntry
 from muster.library import mission_summary
+from muster.server.contract import PAGE_ROWS, MissionEntry
 from muster.server.pages.frame import frame
 from muster.server.pages.missions.new_mission import named, open_new_mission
 from muster.server.pages.notices import errors_shown, offer, say

@@ -8,12 +8,12 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import PlanEntry
+from muster.server.contract import PlanEntry
 from muster.server.pages.frame import frame
 from muster.server.pages.map import MissionMap
+from muster.server.pages.map.ground import ground_of
 from muster.server.pages.notices import errors_shown
 from muster.server.pages.plan.figures import LESS_IS_BETTER, figures_of, lines_of, meaning_of
-from muster.server.pages.plan.map_scene import ground_of
 from muster.server.pages.plan.plan_panel import title_of
 from muster.server.pages.visitor import PATIENCE_S, the_services
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import PAGE_ROWS, PlanEntry
+from muster.server.contract import PAGE_ROWS, PlanEntry
 from muster.server.pages.charts import Curve, Gantt
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.map import MissionMap

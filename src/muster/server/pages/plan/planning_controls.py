@@ -7,10 +7,10 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import Job, JobState
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.model import OBJECTIVES
+from muster.server.contract import Job, JobState
 from muster.server.pages.buttons import once
 from muster.server.pages.charts import Curve
 from muster.server.pages.editing.draft import Draft

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from muster.exchange.mission_control import PlanEntry
+from muster.server.contract import PlanEntry
 
 
 class ShownPlan(Protocol):

@@ -7,9 +7,9 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import PlanEntry
 from muster.mission.errors import ParameterError
 from muster.running.worlds import WORLDS
+from muster.server.contract import PlanEntry
 from muster.server.pages.buttons import once
 from muster.server.pages.visitor import the_services, the_user
 

@@ -6,7 +6,7 @@ import json
 
 from nicegui import ui
 
-from muster.exchange.mission_control import ConflictError
+from muster.server.contract import ConflictError
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.notices import errors_shown, say
 from muster.server.pages.plan.versions import open_differences, open_versions

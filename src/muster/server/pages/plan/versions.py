@@ -9,7 +9,7 @@ from html import escape
 
 from nicegui import ui
 
-from muster.exchange.mission_control import PAGE_ROWS, VersionEntry
+from muster.server.contract import PAGE_ROWS, VersionEntry
 from muster.server.pages.editing.draft import Draft
 from muster.server.pages.missions.view import ago
 from muster.server.pages.notices import errors_shown

@@ -9,9 +9,9 @@ from typing import Any
 from nicegui import ui
 
 from muster.server.pages.editing.draft import Draft
+from muster.server.pages.editing.editors import Editors
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import errors_shown
-from muster.server.pages.plan.editors import Editors
 from muster.server.pages.plan.plan_panel import PlanPanel
 from muster.server.pages.plan.planning_controls import PlanningControls
 from muster.server.pages.plan.title_bar import TitleBar

@@ -8,8 +8,8 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.exchange.mission_control import MOST_ROWS, OVER, PAGE_ROWS, Action, Entry, Run
 from muster.mission.errors import MusterError
+from muster.server.contract import MOST_ROWS, OVER, PAGE_ROWS, Action, Entry, Run
 from muster.server.pages.frame import frame
 from muster.server.pages.notices import errors_shown, words_of
 from muster.server.pages.records.figures import (

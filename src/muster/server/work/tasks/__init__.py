@@ -49,7 +49,7 @@ TASKS: Mapping[str, Task] = MappingProxyType(
         "picture": Task(f"{_HERE}.picture"),
         "plan": Task(f"{_HERE}.plan", None, long=True, stoppable=True),
         "read_mission": Task(f"{_HERE}.read_mission", 20.0),
-        "record": Task("muster.server.runs.recording", 120.0),
+        "record": Task("muster.server.runs.records.recording", 120.0),
         "upload_plan": Task(f"{_HERE}.upload_plan"),
     }
 )

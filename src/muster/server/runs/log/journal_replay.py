@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from muster.exchange.mission_control import OVER, Action, ConflictError, Entry, NotFoundError
-from muster.server.runs.journal import Journal
+from muster.server.contract import OVER, Action, ConflictError, Entry, NotFoundError
+from muster.server.runs.log.journal import Journal
 
 if TYPE_CHECKING:
     from muster.server.store.store import Store

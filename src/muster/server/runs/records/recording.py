@@ -19,9 +19,9 @@ from muster.report.page.data import MOST_SAMPLES
 from muster.report.page.page import page_text
 from muster.report.record import Recording, RecordWriter, read_record
 from muster.report.record.plan_changes import ReadPlan
-from muster.server.runs.exports import EXPORTS
-from muster.server.runs.record_files import read_log, read_tracks
-from muster.server.runs.tracks import VALUES, Steps
+from muster.server.runs.log.tracks import VALUES, Steps
+from muster.server.runs.records.exports import EXPORTS
+from muster.server.runs.records.record_files import read_log, read_tracks
 from muster.server.work.missions import mission_of
 from muster.state import MissionState, event_of
 

@@ -8,10 +8,10 @@ import pytest
 from tests.server.runs.store import planned
 
 import muster
-from muster.exchange.mission_control import StoreError
-from muster.server.runs import log_writer as module
-from muster.server.runs.journal import Journal
-from muster.server.runs.log_writer import LogWriter
+from muster.server.contract import StoreError
+from muster.server.runs.log import writer as module
+from muster.server.runs.log.journal import Journal
+from muster.server.runs.log.writer import LogWriter
 
 PIECE = b"x" * 100
 

@@ -13,12 +13,12 @@ from tests.state.played import site
 import muster
 from muster.mission.model import Mission, Robot, Station, Task
 from muster.report.record import read_record
-from muster.server.runs.crash_recovery import recovered_from
-from muster.server.runs.recording import flown, write_record
-from muster.server.runs.tracks import VALUES, Steps, unpacked
+from muster.server.runs.log.tracks import VALUES, Steps, unpacked
+from muster.server.runs.records.recording import flown, write_record
+from muster.state.recovery import recovered_from
 from muster.state.words import line_of
 
-FILES = Path(__file__).parents[2] / "data" / "format_1"
+FILES = Path(__file__).parents[3] / "data" / "format_1"
 
 
 def told(name):

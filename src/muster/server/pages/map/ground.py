@@ -1,4 +1,4 @@
-"""The scene of a draft's map: its mission as it was last read, with its floor plan and tiles."""
+"""The scene of a mission with what lies under it: its floor plan, or tiles of a map of the earth."""
 
 from __future__ import annotations
 
@@ -6,19 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
-from muster.exchange.mission_control import MissionVersion
-from muster.server.pages.editing.draft import Draft
-from muster.server.pages.map import scene_of
+from muster.server.contract import MissionVersion
+from muster.server.pages.map.scene import scene_of
 from muster.server.pages.visitor import the_services
 
 TILES = "/tiles/{z}/{x}/{y}.png"
-
-
-def scene_of_draft(draft: Draft) -> dict[str, Any]:
-    """The scene of a draft that has been read at least once."""
-    assert draft.checked.mission is not None
-    impossible = [task["task"] for task in draft.checked.impossible]
-    return ground_of(draft.checked.mission, draft.checked.floor, draft.base, impossible)
 
 
 def ground_of(

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from muster.server.runs.tracks import Steps
+    from muster.server.runs.log.tracks import Steps
 
 LOG, TRACKS = "log.jsonl", "tracks.base64"
 """A line is an entry; a line is a stretch."""
@@ -23,7 +23,7 @@ def read_log(folder: Path) -> Iterator[Mapping[str, Any]]:
 
 def read_tracks(folder: Path) -> Iterator[Steps]:
     """Yield the stretches of tracks."""
-    from muster.server.runs.tracks import unpacked  # NumPy makes a server large, which reads no tracks itself
+    from muster.server.runs.log.tracks import unpacked  # NumPy makes a server large, which reads no tracks itself
 
     with (folder / TRACKS).open("rb") as file:
         yield from (unpacked(base64.b64decode(line)) for line in file)

@@ -12,10 +12,10 @@ from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import OBJECTIVES, Robot, Rules, Station, Task
 from muster.mission.records import instead_of, specified
 from muster.mission.value_types import Number, Whole
+from muster.server.pages.editing.cell_texts import text_of, value_of
 from muster.server.pages.editing.draft import Draft
+from muster.server.pages.editing.table import Column, Table
 from muster.server.pages.notices import warn, words_of
-from muster.server.pages.plan.cell_texts import text_of, value_of
-from muster.server.pages.plan.table import Column, Table
 
 _PLACE = (Column("x", "number", hint="metres east"), Column("y", "number", hint="metres north"))
 _HEIGHT = Column("z", "number", hint="metres above the ground of the map")

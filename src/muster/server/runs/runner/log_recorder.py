@@ -15,7 +15,7 @@ from muster.mission.plan import Plan
 from muster.report.record.json_messages import json_bytes
 from muster.report.record.plan_changes import PlanChanges
 from muster.report.record.routes import RouteLines
-from muster.server.runs.tracks import Floats, Row, Steps, Track, packed
+from muster.server.runs.log.tracks import Floats, Row, Steps, Track, packed
 from muster.state import MissionState
 from muster.state.words import words_of
 

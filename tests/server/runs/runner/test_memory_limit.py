@@ -8,7 +8,7 @@ import pytest
 
 HUNGRY = """
 import sys
-from muster.server.runs import runner
+from muster.server.runs.runner import main as runner
 runner.mission_of = lambda _: bytearray(3 * 2**29)
 runner.alone = lambda *_: __import__("contextlib").nullcontext()
 sys.exit(runner.main(["1024"]))

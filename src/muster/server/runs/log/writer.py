@@ -14,11 +14,11 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.mission_control import Action, Checkpoint, ConflictError, Entry, Stretch
 from muster.mission.errors import MusterError
+from muster.server.contract import Action, Checkpoint, ConflictError, Entry, Stretch
 
 if TYPE_CHECKING:
-    from muster.server.runs.journal import Journal
+    from muster.server.runs.log.journal import Journal
     from muster.server.store.store import Store
 
 BATCH_S = 0.1

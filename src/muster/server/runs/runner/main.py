@@ -1,4 +1,4 @@
-"""The runner process of a run, `python -m muster.server.runs.runner MEMORY_MB`, connected to the server by pipes.
+"""The runner process of a run, `python -m muster.server.runs.runner.main MEMORY_MB`, connected to the server by pipes.
 
 The first line is the run: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`, `settings`, `speed`,
 `lock`, and of a run that goes on `checkpoint`, the entries of the `log` after it up to `seq`, `bodies`, `until_s`,
@@ -30,20 +30,20 @@ from muster.running.begun import Begun
 from muster.running.claim_locks import robots_claimed
 from muster.running.robot_claims import claims_as_far_as_known
 from muster.running.worlds import WORLDS
-from muster.server.runs.checkpoints import unpacked_state
-from muster.server.runs.crash_recovery import recovered_from
-from muster.server.runs.log_recorder import LogRecorder
-from muster.server.runs.pipe import Inbox, Outbox
-from muster.server.runs.run_loop import RunLoop
-from muster.server.runs.runner_lock import alone
+from muster.server.runs.log.checkpoints import unpacked_state
+from muster.server.runs.runner.lock import alone
+from muster.server.runs.runner.log_recorder import LogRecorder
+from muster.server.runs.runner.pipe import Inbox, Outbox
+from muster.server.runs.runner.run_loop import RunLoop
 from muster.server.work.limits import is_of_memory, limit_memory
 from muster.server.work.missions import mission_of
 from muster.server.work.temporary_folders import OF_RUNS
 from muster.state import MissionState
+from muster.state.recovery import recovered_from
 
 if TYPE_CHECKING:
-    from muster.server.runs.real_run import RealRun
-    from muster.server.runs.simulated_run import SimulatedRun
+    from muster.server.runs.runner.real_run import RealRun
+    from muster.server.runs.runner.simulated_run import SimulatedRun
 
 _ENDS_WITHIN_S = 30.0
 """Seconds within which another run of the same robots, which is over, tells them to stand and ends."""
@@ -149,12 +149,12 @@ def _world_run(
 
     request, state = request_of(begin["world"], begin["settings"], plan), recorder.state if begin["seq"] else None
     if begin["world"] in WORLDS:
-        from muster.server.runs.simulated_run import SimulatedRun
+        from muster.server.runs.runner.simulated_run import SimulatedRun
 
         begun = None if state is None else Begun.of(state, begin["bodies"], begin["until_s"], begin["world"])
         return SimulatedRun(mission, plan, request, recorder=recorder, begun=begun)
     from muster.running.fleet_registry import fleet_ready
-    from muster.server.runs.real_run import RealRun
+    from muster.server.runs.runner.real_run import RealRun
 
     fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=state is not None)
     try:

@@ -1,4 +1,4 @@
-"""Recovers what was known in a run after a crash: from its last checkpoint, and the entries of its log after it."""
+"""Recovers what was known in a run after a crash, from its last checkpoint and the entries of its log after it."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import Any
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.state import MissionState, event_of, restored
+from muster.state.checkpoint import restored
+from muster.state.event import event_of
+from muster.state.mission_state import MissionState
 
 _OF_THE_RUN = ("report", "command")
-"""Entries that are no events of the mission."""
+"""Kinds of log entries that are no events of the mission."""
 
 
 def recovered_from(

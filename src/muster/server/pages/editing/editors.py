@@ -1,4 +1,4 @@
-"""The left side of the view *Plan*: map, form and text, three editors of the same draft."""
+"""Map, form and text: three editors of the same draft, on the left of the view *Plan*."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from nicegui import events, ui
 
 from muster.mission.errors import MusterError
 from muster.server.pages.editing.draft import Draft
+from muster.server.pages.editing.findings import Findings
+from muster.server.pages.editing.form import Form
+from muster.server.pages.editing.text_view import TextView
+from muster.server.pages.editing.zone_form import open_zone
 from muster.server.pages.map import MissionMap
+from muster.server.pages.map.ground import ground_of
 from muster.server.pages.notices import errors_shown, warn, words_of
-from muster.server.pages.plan.findings import Findings
-from muster.server.pages.plan.form import Form
-from muster.server.pages.plan.map_scene import scene_of_draft
-from muster.server.pages.plan.text_view import TextView
-from muster.server.pages.plan.zone_form import open_zone
 from muster.server.pages.visitor import may_command, on_the_wall
 
 _MODES = {
@@ -147,7 +147,7 @@ class Editors:
         if not self._draft.is_checked:  # the scene of an older text would put back what was moved since
             return
         if checked.mission is not None:
-            self.map.show(scene_of_draft(self._draft), self._moves)
+            self.map.show(_scene_of(self._draft), self._moves)
         else:
             self.map.wait("The text has errors; the map is drawn when they are mended.")
 
@@ -155,3 +155,10 @@ class Editors:
 def _place(data: Mapping[str, Any]) -> tuple[float, float]:
     """To centimetres, whatever the browser sends."""
     return round(float(data["x"]), 2), round(float(data["y"]), 2)
+
+
+def _scene_of(draft: Draft) -> dict[str, Any]:
+    """Return the scene of a draft that has been read at least once."""
+    assert draft.checked.mission is not None
+    impossible = [task["task"] for task in draft.checked.impossible]
+    return ground_of(draft.checked.mission, draft.checked.floor, draft.base, impossible)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.server.runs.tracks import Steps, Track, packed, unpacked
+from muster.server.runs.log.tracks import Steps, Track, packed, unpacked
 
 VALUE = st.one_of(st.floats(-1e6, 1e6), st.just(float("nan")))
 

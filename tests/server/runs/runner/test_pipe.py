@@ -5,7 +5,7 @@ import threading
 
 import pytest
 
-from muster.server.runs.pipe import Inbox
+from muster.server.runs.runner.pipe import Inbox
 
 
 @pytest.mark.parametrize("left", ["", '{"type": "ac', '{"id": 1}'])

@@ -11,9 +11,9 @@ from tests.server.runs.played import PLAN, entry, play
 from tests.server.runs.store import ADA, planned, settings_of
 
 import muster
-from muster.exchange.mission_control import Entry, StoreError
-from muster.server.runs.journal import Journal
-from muster.server.runs.journal_replay import replay
+from muster.server.contract import Entry, StoreError
+from muster.server.runs.log.journal import Journal
+from muster.server.runs.log.journal_replay import replay
 from muster.server.services.database_lock import journal_of
 from muster.server.services.runs import Runs
 from muster.server.store.actions import new_action

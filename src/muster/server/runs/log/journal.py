@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 from zlib import crc32
 
-from muster.exchange.mission_control import Action, Entry, StoreError
+from muster.server.contract import Action, Entry, StoreError
 from muster.server.store.columns import as_json
 
 Item = Action | Entry

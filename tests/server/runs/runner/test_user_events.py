@@ -6,7 +6,7 @@ from tests.server.runs.stage import performed
 import muster
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Task
-from muster.server.runs.user_events import event_given
+from muster.server.runs.runner.user_events import event_given
 
 START = "2027-03-01T09:59:30+01:00"
 TIMED = {"id": "late", "position": [5, 0], "window": ["10:00", "14:00"], "deadline": "14:30", "due": "10:00:10"}

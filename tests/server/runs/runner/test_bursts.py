@@ -9,10 +9,10 @@ from tests.server.runs.stage import Kept, performed, performed_with_crashes, req
 import muster
 from muster.mission.clock import VirtualClock
 from muster.mission.model import Mission, Robot, Task
-from muster.server.runs.log_recorder import LogRecorder
-from muster.server.runs.run_loop import STEPS_FIRST_S, RunLoop
 from muster.server.runs.run_settings import request_of
-from muster.server.runs.simulated_run import QUANTUM_S, SimulatedRun
+from muster.server.runs.runner.log_recorder import LogRecorder
+from muster.server.runs.runner.run_loop import STEPS_FIRST_S, RunLoop
+from muster.server.runs.runner.simulated_run import QUANTUM_S, SimulatedRun
 from muster.state import MissionState
 
 ROBOTS = tuple(Robot(id=f"r_{k}", position=(k % 5, k // 5), speed_mps=2.0) for k in range(20))

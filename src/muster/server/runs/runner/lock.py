@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from muster.exchange.mission_control import StoreError
 from muster.mission.errors import NetworkError
+from muster.server.contract import StoreError
 
 _WITHIN_S = 30.0
 

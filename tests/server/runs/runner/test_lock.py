@@ -7,16 +7,16 @@ import sys
 
 import pytest
 
-from muster.exchange.mission_control import StoreError
 from muster.mission.errors import NetworkError
-from muster.server.runs.runner_lock import alone
+from muster.server.contract import StoreError
+from muster.server.runs.runner.lock import alone
 from muster.server.services.database_lock import lock_of_runs
 from muster.server.settings import Settings
 
 _HOLD = """
 import sys, time
 from pathlib import Path
-from muster.server.runs.runner_lock import alone
+from muster.server.runs.runner.lock import alone
 with alone(Path(sys.argv[1]), 1):
     print("held", flush=True)
     time.sleep(3600)
@@ -24,7 +24,7 @@ with alone(Path(sys.argv[1]), 1):
 
 
 def test_the_next_runner_waits_until_the_one_before_has_ended(tmp_path, monkeypatch):
-    monkeypatch.setattr("muster.server.runs.runner_lock._WITHIN_S", 0.0)
+    monkeypatch.setattr("muster.server.runs.runner.lock._WITHIN_S", 0.0)
     lock = tmp_path / "new" / "runs.lock"
     with subprocess.Popen([sys.executable, "-c", _HOLD, str(lock)], stdout=subprocess.PIPE, text=True) as other:
         try:

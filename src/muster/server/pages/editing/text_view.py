@@ -9,8 +9,8 @@ from typing import Any
 from nicegui import ui
 
 from muster.server.pages.editing.draft import Draft
+from muster.server.pages.editing.text_editor import Editor
 from muster.server.pages.notices import warn
-from muster.server.pages.plan.editor import Editor
 
 
 class TextView:

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 from muster.execution import RobotStatus, Status
 from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MusterError, ParameterError
-from muster.server.runs.checkpoints import Schedule, packed_state
-from muster.server.runs.log_recorder import LogRecorder
-from muster.server.runs.pacing import Pace
-from muster.server.runs.pipe import Inbox, Outbox
-from muster.server.runs.user_events import event_given
+from muster.server.runs.log.checkpoints import Schedule, packed_state
+from muster.server.runs.runner.log_recorder import LogRecorder
+from muster.server.runs.runner.pacing import Pace
+from muster.server.runs.runner.pipe import Inbox, Outbox
+from muster.server.runs.runner.user_events import event_given
 from muster.state import checkpoint_of
 
 if TYPE_CHECKING:
-    from muster.server.runs.real_run import RealRun
-    from muster.server.runs.simulated_run import SimulatedRun
+    from muster.server.runs.runner.real_run import RealRun
+    from muster.server.runs.runner.simulated_run import SimulatedRun
 
 STATES_S, STATUS_S = 0.095, 0.5
 """Seconds of the wall clock between two tellings of where robots are, and what they do."""
