@@ -8,8 +8,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from muster.exchange.importing import read_site
 from muster.mission.errors import MusterError
-from muster.planning.importing import read_site
 from muster.planning.loading import load_noted
 from tests.raw_counts import raw_count
 

@@ -43,7 +43,9 @@ FAULTS = {
         "src/muster/execution/goods_ledger.py", "sums.get(name, 0.0) + amount", "sums.get(name, 0.0) - amount"
     ),
     "simulation": Fault("src/muster/simulation/batteries.py", "self.level + amount)", "self.level - amount)"),
-    "exchange": Fault("src/muster/exchange/separation.py", "b.robot.radius_m + clearance_m", "b.robot.radius_m"),
+    "exchange": Fault(
+        "src/muster/exchange/altitudes.py", "first + k * options.altitude_step", "first - k * options.altitude_step"
+    ),
     "report (JavaScript)": Fault(
         "src/muster/report/page/player.js", "if (now >= duration) set", "if (now > duration) set"
     ),

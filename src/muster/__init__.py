@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from muster.comparison.compare import compare
     from muster.comparison.comparison import Comparison
+    from muster.exchange.importing import read_site
     from muster.execution import Report
     from muster.generation.generate import generate
     from muster.generation.generator import Generator
@@ -56,7 +57,6 @@ if TYPE_CHECKING:
     from muster.mission.plan_reader import read_plan
     from muster.negotiation.runs.negotiation import Negotiation
     from muster.planning.exporting import export
-    from muster.planning.importing import read_site
     from muster.planning.judging import verify
     from muster.planning.loading import load
     from muster.planning.options import PlanningOptions
@@ -143,7 +143,7 @@ _NAMES_OF = {
     "muster.mission.plan": "Plan Route",
     "muster.mission.plan_reader": "read_plan",
     "muster.planning.exporting": "export",
-    "muster.planning.importing": "read_site",
+    "muster.exchange.importing": "read_site",
     "muster.planning.judging": "verify",
     "muster.planning.loading": "load",
     "muster.planning.options": "PlanningOptions",

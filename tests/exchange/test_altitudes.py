@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from muster import ParameterError, load, verify
 from muster.exchange.altitudes import altitudes_of
-from muster.exchange.export_request import ExportOptions, altitudes_in
-from muster.exchange.files import exported
 from muster.mission.plan_reader import plan_of
+from muster.planning.export_formats import ExportOptions, altitudes_in
+from muster.planning.exporting import exported
 
 KML = "{http://www.opengis.net/kml/2.2}"
 CROSSING = """\

@@ -3,9 +3,9 @@
 import pytest
 
 from muster import ParameterError, load, verify
-from muster.exchange.export_request import ExportOptions
-from muster.exchange.files import exported
 from muster.mission.plan_reader import plan_of
+from muster.planning.export_formats import ExportOptions
+from muster.planning.exporting import exported
 
 YARD = """\
 schema: muster/1

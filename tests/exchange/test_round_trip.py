@@ -15,9 +15,9 @@ from tests.exchange.documented import PLAN
 from tests.mission.strategies import examples
 
 from muster.exchange.earth import Earth
-from muster.exchange.itinerary import itineraries
 from muster.exchange.qgc_reader import read_flight_plans
 from muster.exchange.qgc_writer import PlanFiles
+from muster.execution.itinerary import itineraries
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.model import Action, Camera, Map, Mission, Origin, Robot, Rules, Task, Zone
 from muster.mission.plan import Plan, Route

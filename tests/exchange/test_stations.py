@@ -8,15 +8,15 @@ import pytest
 
 from muster import load, verify
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import ExportOptions
-from muster.exchange.files import exported
 from muster.exchange.geographic_features import features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
-from muster.exchange.itinerary import itineraries
 from muster.exchange.kml import kml_text
 from muster.exchange.qgc_format import NAV_WAYPOINT
+from muster.execution.itinerary import itineraries
 from muster.mission.plan_reader import plan_of
+from muster.planning.export_formats import ExportOptions
+from muster.planning.exporting import exported
 
 GPX, KML = "{http://www.topografix.com/GPX/1/1}", "{http://www.opengis.net/kml/2.2}"
 BAY = """\

@@ -8,10 +8,10 @@ import pytest
 import shapely
 
 import muster
-from muster.exchange.export_request import ExportOptions
 from muster.exchange.files import plan_files
 from muster.mission.geodesy import wgs84_to_enu
 from muster.motion.actions import plan as motion_of
+from muster.planning.export_formats import ExportOptions
 
 ORIGIN = (47.4, 8.5, 400.0)
 REQUIRED = {

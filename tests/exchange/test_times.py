@@ -11,9 +11,9 @@ from muster.exchange.earth import Earth
 from muster.exchange.geographic_features import features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
-from muster.exchange.itinerary import itineraries
 from muster.exchange.kml import kml_text
 from muster.exchange.spreadsheet import csv_text
+from muster.execution.itinerary import itineraries
 from muster.mission.plan_reader import plan_of
 
 GPX, KML = "{http://www.topografix.com/GPX/1/1}", "{http://www.opengis.net/kml/2.2}"

@@ -12,8 +12,10 @@ import muster
 from muster.cli.main import run
 from muster.cli.other_recordings import OTHER_RECORDINGS
 from muster.cli.run_output_options import not_at_server, run_output_options
-from muster.exchange.export_request import FORMATS
 from muster.mission.errors import MissingExtraError, ParameterError
+from muster.planning import export_formats
+from muster.planning.export_formats import FORMATS, Files
+from muster.planning.mission_readers import MISSION_READERS, MissionReader, Noted, converted_suffixes
 from muster.running import fleet_registry
 from muster.running.fleet_registry import FLEETS, fleet_ready
 from muster.running.observed_run import ObservedRun
@@ -234,6 +236,64 @@ def test_a_format_is_exported_to(added, mission, tmp_path, capsys):
     plan.save(tmp_path / "p.json")
     assert run(["export", "31T-6R50", str(tmp_path / "p.json"), "--to", "count"]) == 0
     assert capsys.readouterr().out == f"{plan.tasks_completed}\n"
+
+
+def test_a_format_gets_the_options_that_it_declares(added, mission, tmp_path, capsys):
+    @export_formats.declares(options=("per_robot",))
+    def cards(mission, verdict, options, plan):
+        names = [route.robot for route in verdict.routes] if options.per_robot else ["all"]
+        return Files({f"{name}.txt": f"{plan.allocator}\n" for name in names})
+
+    added(FORMATS, "cards", cards)
+    plan = muster.solve(mission, "greedy")
+    assert muster.export(mission, plan, "cards").texts == {"all.txt": "greedy\n"}
+    with pytest.raises(ParameterError, match="altitude"):
+        muster.export(mission, plan, "cards", altitude=9)
+    plan.save(tmp_path / "p.json")
+    asked = ["export", "31T-6R50", str(tmp_path / "p.json"), "--to", "cards"]
+    assert run([*asked, "--per-robot", "-o", str(tmp_path / "cards")]) == 0
+    assert {path.stem for path in (tmp_path / "cards").iterdir()} == {robot.id for robot in mission.robots}
+    capsys.readouterr()
+    assert run([*asked, "--altitude", "9"]) == 2
+    owners = "qgc or geojson or gpx or kml or sheets or overview or xlsx or ics"
+    assert capsys.readouterr().err == f"--altitude given; expected it with --to {owners}, not cards\n"
+    assert run(["export", "31T-6R50", str(tmp_path / "p.json"), "--to", "csv", "--per-robot"]) == 2
+    assert "expected it with --to sheets or ics or cards, not csv" in capsys.readouterr().err
+
+
+def test_a_format_declares_options_that_there_are():
+    with pytest.raises(ParameterError, match="options: altitud; expected altitude, altitude_step"):
+        export_formats.declares(options=("altitud",))
+
+
+def test_a_mission_of_another_program_is_read(added, tmp_path, capsys):
+    def read(path, robots):
+        return Noted(
+            muster.Mission(
+                robots=[muster.Robot(id=robots or "r", position=(0, 0))], tasks=[muster.Task(id="a", position=(1, 1))]
+            ),
+            ("a note",),
+        )
+
+    own = MissionReader(takes=lambda path: path.suffix == ".route", read=read, flags=("robots",), suffixes=(".route",))
+    added(MISSION_READERS, "routes", own)
+    file = tmp_path / "a.route"
+    file.write_text("anything", encoding="utf-8")
+    assert [robot.id for robot in muster.load(file, robots="lead").robots] == ["lead"]
+    assert run(["check", str(file)]) == 0
+    assert "a note" in capsys.readouterr().err.splitlines()
+    with pytest.raises(ParameterError, match="--depot given; expected no --depot with this kind of mission"):
+        muster.load(file, depot="1")
+    assert ".route" in converted_suffixes()
+    with pytest.raises(ParameterError, match="a second mission"):
+        muster.read_site(file, file)
+
+
+def test_a_reader_of_missions_has_flags_that_there_are():
+    with pytest.raises(ParameterError, match="flags: robot; expected robots, suitability"):
+        MissionReader(takes=callable, read=Noted, flags=("robot",))
+    with pytest.raises(ParameterError, match="it is a function; expected a MissionReader"):
+        MISSION_READERS.add("routes", lambda path: None)
 
 
 def test_what_cannot_be_called_is_refused():

@@ -22,10 +22,10 @@ from muster.mission.plugins import Registry, function_expected
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
     from muster.cli.local_backend import OnLine
-    from muster.exchange.export_request import ExportOptions, Files
     from muster.execution import Report
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
+    from muster.planning.export_formats import ExportOptions, Files
     from muster.planning.request import Request
     from muster.planning.solving import Solution
     from muster.running.coordination import Coordination

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from muster.motion.actions.unseen_places import Unseen
     from muster.planning.explaining import Possible
     from muster.planning.explaining.crossings import BlockedWay
-    from muster.planning.loading import Noted
+    from muster.planning.mission_readers import Noted
 
 _MINIMAL = "without any one of them a plan was found that does the others"
 _NOT_MINIMAL = "some of them may already be too many: not without each of them a plan for the others was found"

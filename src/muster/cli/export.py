@@ -23,17 +23,17 @@ from muster.cli.options import (
     quiet_option,
 )
 from muster.cli.outputs import require_folder, require_writable
-from muster.exchange.export_request import (
+from muster.mission.errors import ParameterError
+from muster.mission.near_matches import did_you_mean
+from muster.planning.export_formats import (
     FIRMWARES,
     FORMATS,
-    OPTIONS_OF,
     ExportOptions,
     Files,
     altitudes_in,
     makes_folder,
+    options_of,
 )
-from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
 
 
 def _format(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -156,11 +156,11 @@ def _require_own_options(form: str) -> None:
     """Refuse options of other formats."""
     context = click.get_current_context()
     for field in fields(ExportOptions):
-        if context.get_parameter_source(field.name) is ParameterSource.COMMANDLINE:
-            owners = [name for name, own in OPTIONS_OF.items() if field.name in own]
-            if form not in owners:
-                option = f"--{field.name.replace('_', '-')}"
-                raise ParameterError(f"{option} given; expected it with --to {' or '.join(owners)}, not {form}")
+        is_given = context.get_parameter_source(field.name) is ParameterSource.COMMANDLINE
+        if is_given and field.name not in options_of(form):
+            owners = [name for name in FORMATS.usable() if field.name in options_of(name)]
+            option = f"--{field.name.replace('_', '-')}"
+            raise ParameterError(f"{option} given; expected it with --to {' or '.join(owners)}, not {form}")
 
 
 def _write_file(files: Files, output: Path | None, form: str) -> None:

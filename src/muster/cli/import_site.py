@@ -67,10 +67,10 @@ def command(
     output. What of the files is not read stands in a table at the end.
     """
     from muster.cli.ledger_table import ledger_lines
+    from muster.exchange.importing import read_site
     from muster.mission.plan import json_text
     from muster.mission.text_files import write_text
     from muster.mission.yaml_writer import with_files_from, yaml_text
-    from muster.planning.importing import read_site
 
     if form == "json" and output is None:
         raise ParameterError("--format json: -o missing; expected a file for the mission beside it")

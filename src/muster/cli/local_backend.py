@@ -15,11 +15,11 @@ from muster.mission.plan import Plan
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
-    from muster.exchange.export_request import ExportOptions, Files
     from muster.execution import ExecutionEvent, Report
     from muster.library import MissionSummary
     from muster.planning.explaining import Possible
     from muster.planning.explaining.tables import Explanation
+    from muster.planning.export_formats import ExportOptions, Files
     from muster.planning.request import Request
     from muster.planning.solving import Solution
     from muster.running.coordination import Coordination
@@ -87,7 +87,7 @@ class LocalBackend:
     def export(
         self, mission: Mission, plan: Plan, form: str, ignore: Sequence[str], options: ExportOptions, file: str
     ) -> Files:
-        from muster.exchange.files import exported
+        from muster.planning.exporting import exported
         from muster.verification.required import require_admissible
 
         return exported(mission, require_admissible(mission, plan, file, ignore), form, options, plan)

@@ -20,7 +20,7 @@ from muster.mission.value_types import FLAGS
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-    from muster.planning.loading import Noted
+    from muster.planning.mission_readers import Noted
     from muster.verification import Verdict
 
 

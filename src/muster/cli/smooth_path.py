@@ -78,9 +78,9 @@ def require_turning_radius(radius: float | None) -> None:
 
 def write_trajectory(file: File, curve: Curve | None, path: Path, robot: Robot | None) -> None:
     """Write the trajectory of a robot along a curve, else a path, as fast as its limits allow: a row each 0.05 s."""
-    from muster.exchange.trajectory_table import trajectory_csv
     from muster.motion.curve import Curve
     from muster.motion.kinematics.registry import kinematics_named
+    from muster.motion.trajectory_table import trajectory_csv
     from muster.motion.velocity import timed
     from muster.motion.wheels import TRACK_RADII
 

@@ -16,11 +16,11 @@ from muster.client.handles import RunningJob, RunningRun, report_from
 from muster.client.resources import MissionText
 from muster.client.server_plan import ServerPlan
 from muster.client.uploads import packed_mission
-from muster.exchange.export_request import ExportOptions, Files
 from muster.mission.errors import Finding, MissionError, MusterError, NetworkError, ParameterError
 from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.planning.export_formats import ExportOptions, Files
 from muster.planning.options import OPTIONS
 from muster.planning.request import Request
 from muster.server.contract import ConflictError, MissionEntry

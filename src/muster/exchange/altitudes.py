@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 
-from muster.exchange.export_request import ExportOptions
-from muster.exchange.itinerary import Itinerary, itineraries
-from muster.exchange.separation import meetings
+from muster.execution.itinerary import Itinerary, heights_of_work, itineraries
+from muster.execution.separation import meetings
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.near_matches import did_you_mean
+from muster.planning.export_formats import ExportOptions
 from muster.verification import Verdict
 
 
@@ -53,11 +53,6 @@ def _require_robots(mission: Mission, drones: Sequence[str], options: ExportOpti
     if options.clearance and len(mission.robots) < 2:
         told = f"expected it with several robots: the mission has {mission.robots[0].id} alone"
         raise ParameterError(f"clearance: {options.clearance:g}; {told}")
-
-
-def heights_of_work(mission: Mission) -> dict[str, float]:
-    """How high work is done whose action says so: `height_m` by task."""
-    return {task.id: task.action.height_m for task in mission.tasks if task.action and task.action.height_m}
 
 
 def at_work(mission: Mission, whole: Sequence[Itinerary]) -> tuple[Itinerary, ...]:

@@ -5,56 +5,31 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 
 from muster.exchange.altitudes import altitudes_of, at_work, height_notes, raised, raised_team
 from muster.exchange.antimeridian import crosses
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import ALTITUDE_MISSING, FORMATS, OPTIONS_OF, ExportOptions, Files
 from muster.exchange.fence import Fence
 from muster.exchange.file_names import file_names
 from muster.exchange.geographic_features import PlanFeatures, features_of
 from muster.exchange.geojson import geojson_text
 from muster.exchange.gpx import gpx_text
-from muster.exchange.itinerary import Itinerary, Passage, itineraries
 from muster.exchange.kml import kml_text
 from muster.exchange.open_ways import require_open_itineraries
 from muster.exchange.qgc_writer import PlanFiles
 from muster.exchange.spreadsheet import csv_text
 from muster.exchange.thinning import thinned
+from muster.execution.itinerary import Itinerary, Passage, itineraries
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.sol_files import sol_text
 from muster.motion.map_world import body_of
 from muster.motion.robot_paths import RobotPaths
+from muster.planning.export_formats import ALTITUDE_MISSING, HEIGHTS, ExportOptions, Files, declares
 from muster.verification import Verdict
 from muster.verification.required import require_geometry
-
-
-def exported(mission: Mission, verdict: Verdict, form: str, options: ExportOptions, plan: Plan | None = None) -> Files:
-    """An admissible plan as files of a format: of qgc a file for each robot, of the others one, unless asked for more.
-
-    Parameters
-    ----------
-    options
-        for the formats in OPTIONS_OF.
-    plan
-        what is judged: who made it, and why tasks are left out; without it that stands nowhere.
-
-    Raises
-    ------
-    MissionError
-        if the format needs a place on Earth, or times of day, and the mission has none.
-    ParameterError
-        if there is no such format, drones have no height to fly at, or an altitude is for no drone.
-    """
-    write = FORMATS.named(form)
-    made = write(mission, verdict, options, plan) if form in OPTIONS_OF else write(mission, verdict)
-    files = made if isinstance(made, Files) else Files({f"plan.{form}": made})
-    cut_short = () if plan is None or not plan.cut_short else (plan.cut_short_line,)
-    return replace(files, messages=(*cut_short, *files.messages)) if cut_short else files
 
 
 def csv_file(mission: Mission, verdict: Verdict) -> str:
@@ -67,18 +42,21 @@ def sol_file(mission: Mission, verdict: Verdict) -> str:
     return sol_text(mission, (tuple(stop.name for stop in route.stops) for route in verdict.routes), verdict.total_cost)
 
 
+@declares(options=HEIGHTS)
 def geojson_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """Ways and stops as GeoJSON."""
     features, notes = _features(mission, verdict, "geojson", options)
     return Files({"plan.geojson": geojson_text(features)}, notes)
 
 
+@declares(options=HEIGHTS)
 def gpx_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """Ways and stops as GPX."""
     features, notes = _features(mission, verdict, "gpx", options)
     return Files({"plan.gpx": gpx_text(features)}, notes)
 
 
+@declares(options=HEIGHTS)
 def kml_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """Ways and stops as KML."""
     features, notes = _features(mission, verdict, "kml", options)
@@ -97,6 +75,7 @@ def _features(
     return features_of(mission, verdict, team, earth, layered=altitudes), notes
 
 
+@declares(options=(*HEIGHTS, "tolerance", "firmware"), folder=True)
 def plan_files(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """An admissible plan as QGroundControl's files, one for each robot that has tasks.
 

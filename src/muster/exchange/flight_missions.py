@@ -18,19 +18,11 @@ from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
 from muster.mission.geodesy import wgs84_to_enu
 from muster.mission.import_ledger import Ledger, LedgerBook, joined
-from muster.mission.model import SCHEMA, Mission
+from muster.mission.model import SCHEMA
 from muster.mission.source import Source
+from muster.planning.mission_readers import Noted
 
 _SAME_PLACE_M = 0.01
-
-
-@dataclass(frozen=True)
-class ReadFlights:
-    """A mission of flights, what there is to say of how it was read, and the fate of every element of the files."""
-
-    mission: Mission
-    notes: tuple[str, ...]
-    ledger: Ledger
 
 
 @dataclass(frozen=True)
@@ -56,7 +48,7 @@ class FlownFile:
         return ends[max(ends)] if ends else self.home
 
 
-def mission_of(path: Path, files: Sequence[FlownFile]) -> ReadFlights:
+def mission_of(path: Path, files: Sequence[FlownFile]) -> Noted:
     """Return the mission of the flights of files; `path` is the file, or the folder of all of them.
 
     Raises
@@ -94,7 +86,7 @@ def mission_of(path: Path, files: Sequence[FlownFile]) -> ReadFlights:
     notes = [note for file in files for note in file.notes]
     if chart is not None and not any(fence.inside for fence in fences):
         notes.append(f"{path}: no fence to stay in: a rectangle 50 m around everything is taken for the boundary")
-    return ReadFlights(mission_from(data, Source(str(path)), []), tuple(notes), ledger)
+    return Noted(mission_from(data, Source(str(path)), []), tuple(notes), ledger)
 
 
 def _ledger(file: FlownFile) -> Ledger:

@@ -8,8 +8,8 @@ from datetime import datetime
 from typing import Any
 
 from muster.exchange.earth import Earth, Spot, anticlockwise
-from muster.exchange.itinerary import Itinerary
 from muster.exchange.task_times import asked, clock, station_properties, stops_of, task_properties, utc
+from muster.execution.itinerary import Itinerary
 from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.areas import whole_id
 from muster.mission.model import Mission, Robot, Task

@@ -38,3 +38,6 @@ GROUND_SPEED = 1
 CLIMB_SPEED = 2
 DESCENT_SPEED = 3
 """First parameter of DO_CHANGE_SPEED."""
+
+WAY_POINTS_HEAD = "QGC WPL"
+"""Begins a file of way points as text; a version follows."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from muster.exchange import qgc_format as qgc
-from muster.exchange.flight_missions import FlownFile, ReadFlights, mission_of
+from muster.exchange.flight_missions import FlownFile, mission_of
 from muster.exchange.qgc_commands import name_of, param_of
 from muster.exchange.qgc_fences import read_fences
 from muster.exchange.qgc_fields import Degrees, PlanFields
@@ -25,13 +25,14 @@ from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, passed_over
 from muster.mission.plan import tie_order
 from muster.mission.text_files import LARGEST_FILE, read_text
+from muster.planning.mission_readers import Noted
 
 _TWICE = passed_over("stands in the parameters too", minor=True)
 _RALLY = passed_over("is a point to go to in an emergency: Muster's drones return or land")
 _SAID = passed_over("is said anew by what is exported", minor=True)
 
 
-def read_flight_plans(path: str | Path) -> ReadFlights:
+def read_flight_plans(path: str | Path) -> Noted:
     """The mission of a `.plan` file, or of all `.plan` files in a folder, with what became of each element.
 
     The mission is in the plane if all vehicles are rovers or boats.

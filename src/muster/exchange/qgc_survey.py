@@ -14,7 +14,7 @@ from typing import Any
 
 from muster.exchange import qgc_format as qgc
 from muster.exchange.earth import Earth, anticlockwise
-from muster.exchange.itinerary import Passage
+from muster.execution.itinerary import Passage
 from muster.mission.model import Action, Camera, Point, Robot, Task
 from muster.motion.actions import Impossible
 from muster.motion.actions.area_coverage import lanes_of, path_over, swath_of

@@ -16,8 +16,8 @@ from typing import Any
 from muster.exchange import qgc_format as qgc
 from muster.exchange.earth import Earth, Spot, anticlockwise
 from muster.exchange.fence import Fence
-from muster.exchange.itinerary import Itinerary, Passage
 from muster.exchange.qgc_survey import survey_item
+from muster.execution.itinerary import Itinerary, Passage
 from muster.mission.model import Mission, Point, Robot, Task
 
 Item = dict[str, Any]

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from muster.exchange import qgc_format as qgc
-from muster.exchange.flight_missions import FlownFile, ReadFlights, mission_of
+from muster.exchange.flight_missions import FlownFile, mission_of
 from muster.exchange.qgc_commands import TAKEOFFS, name_of, param_of
 from muster.exchange.qgc_fences import Fences
 from muster.exchange.qgc_fields import Degrees, PlanFields
@@ -23,9 +23,9 @@ from muster.exchange.qgc_flight import Command, Flight, flight_of
 from muster.exchange.sites.file_sizes import require_few
 from muster.mission.csv_files import number
 from muster.mission.import_ledger import Fate, LedgerBook, passed_over, read_as
-from muster.mission.instance_files import WAY_POINTS
 from muster.mission.number_rows import Row, text_rows
 from muster.mission.text_files import LARGEST_FILE, read_text
+from muster.planning.mission_readers import Noted
 
 _VERSIONS = ("110", "120")
 _COLUMNS = ("number", "current", "frame", "command", *(f"parameter {k}" for k in range(1, 5)))
@@ -37,7 +37,7 @@ _READ, _HOME = read_as("itself"), read_as("home")
 _HOME_PARAMETER = passed_over("is of home, where nothing is done", minor=True)
 
 
-def read_wpl(path: Path) -> ReadFlights:
+def read_wpl(path: Path) -> Noted:
     """Return the mission of a file of way points, with what became of each of its fields.
 
     Raises
@@ -49,8 +49,8 @@ def read_wpl(path: Path) -> ReadFlights:
     """
     head, *rows = text_rows(read_text(path, LARGEST_FILE)) or [Row(1, ())]
     fields = PlanFields(path, head.line)
-    if " ".join(head.words[:2]) != WAY_POINTS or head.words[2:] not in [[version] for version in _VERSIONS]:
-        raise fields.refused_as("", " ".join(head.words) or "empty", f"{WAY_POINTS} {' or '.join(_VERSIONS)}")
+    if " ".join(head.words[:2]) != qgc.WAY_POINTS_HEAD or head.words[2:] not in [[version] for version in _VERSIONS]:
+        raise fields.refused_as("", " ".join(head.words) or "empty", f"{qgc.WAY_POINTS_HEAD} {' or '.join(_VERSIONS)}")
     require_few(len(rows), "lines", str(path), most=_MOST_LINES)
     commands = [_command(path, row, k) for k, row in enumerate(rows)]
     if not commands:

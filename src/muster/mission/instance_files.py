@@ -13,6 +13,7 @@ from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
 from muster.mission.number_rows import Row, text_rows
 from muster.mission.solomon import looks_like_solomon, read_solomon
+from muster.mission.text_files import first_lines
 from muster.mission.vrplib import TYPES, read_vrplib
 
 VehicleReader = Callable[[FilePath, int | None, LineFates | None], Mission]
@@ -21,28 +22,22 @@ VehicleReader = Callable[[FilePath, int | None, LineFates | None], Mission]
 TSPLIB = "TSPLIB"
 """In place of a reader: a file of TSPLIB, which has no robots of its own."""
 
-WAY_POINTS = "QGC WPL"
-"""In place of a reader: way points as text, which are read elsewhere."""
-
 _LAYOUTS: tuple[tuple[Callable[[Sequence[Row]], bool], VehicleReader], ...] = (
     (looks_like_electric_vrptw, read_electric_vrptw),
     (looks_like_li_lim, read_li_lim),
     (looks_like_cordeau, read_cordeau),
     (looks_like_solomon, read_solomon),
 )
-_OTHER_FORMS = (".yaml", ".yml", ".csv", ".plan", ".json")
+_OTHER_FORMS = (".yaml", ".yml", ".csv", ".json", ".sol")
 _TYPE = re.compile(r"^TYPE\s*:\s*(\w*)", re.MULTILINE)
-_FIRST_BYTES = 8192
 
 
 def instance_form(path: FilePath) -> VehicleReader | str | None:
-    """The reader of a file, TSPLIB or WAY_POINTS; None for a file of another form. What decides are its first lines."""
+    """The reader of a file, or TSPLIB; None for a file of another form. What decides are its first lines."""
     suffix = path.suffix.lower()
     if suffix in _OTHER_FORMS or not path.is_file():
         return TSPLIB if suffix in (".tsp", ".atsp") else None
-    text = _first_lines(path)
-    if text.startswith(WAY_POINTS) or suffix in (".waypoints", ".wpl"):
-        return WAY_POINTS
+    text = first_lines(path)
     kind = _TYPE.search(text)
     if suffix == ".vrp" or (kind is not None and kind[1] in TYPES):
         return read_vrplib
@@ -50,11 +45,3 @@ def instance_form(path: FilePath) -> VehicleReader | str | None:
         return TSPLIB
     rows = text_rows(text)
     return next((reader for looks_so, reader in _LAYOUTS if looks_so(rows)), None)
-
-
-def _first_lines(path: FilePath) -> str:
-    try:
-        with path.open("rb") as file:
-            return file.read(_FIRST_BYTES).decode("utf-8-sig", errors="replace")
-    except OSError:
-        return ""  # whoever reads it says why

@@ -10,6 +10,7 @@ from muster.mission.near_matches import near_file
 LARGEST_FILE = 32 * 2**20
 """Bytes of a file of another program, and of all files that are uploaded with one mission."""
 _CHUNK = 2**20
+_FIRST_BYTES = 8192
 _LARGEST_TEXT = 256 * 2**20
 """Bytes of a mission, a plan or a table: a travel table of 5,000 places has as many."""
 
@@ -24,6 +25,15 @@ def read_text(path: Path, most: int = _LARGEST_TEXT) -> str:
         raise MissionError(
             [Finding(str(path), line, "", f"byte {error.start} is not UTF-8", "a text in UTF-8")]
         ) from None
+
+
+def first_lines(path: Path) -> str:
+    """Return the text at the beginning of a file; nothing of a file that cannot be read, which its reader refuses."""
+    try:
+        with path.open("rb") as file:
+            return file.read(_FIRST_BYTES).decode("utf-8-sig", errors="replace")
+    except OSError:
+        return ""
 
 
 def bytes_of(path: Path, most: int = LARGEST_FILE) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -11,10 +12,18 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.plan_reader import plan_of
 from muster.mission.text_files import write_bytes
+from muster.planning.export_formats import (
+    FORMATS,
+    ExportKeywords,
+    ExportOptions,
+    Files,
+    makes_folder,
+    options_of,
+)
 from muster.planning.request import require_mission
 
 if TYPE_CHECKING:
-    from muster.exchange.export_request import ExportKeywords, Files
+    from muster.verification import Verdict
 
 
 def export(
@@ -54,18 +63,45 @@ def export(
     ParameterError
         if the plan is none, there is no such format, or an option is wrong.
     """
-    from muster.exchange.export_request import OPTIONS_OF, ExportOptions, makes_folder
-    from muster.exchange.files import exported
     from muster.verification.required import require_admissible
 
     require_mission(mission)
-    require_known(options, OPTIONS_OF.get(to, ()), f"to {to}")
+    require_known(options, options_of(to), f"to {to}")
     chosen, given = ExportOptions(**options), plan_of(plan)
     verdict = require_admissible(mission, given, "<plan>", ignore)
     files = exported(mission, verdict, to, chosen, given)
     if path is not None:
         _write(files, Path(path), is_folder=makes_folder(to, chosen) or len(files.contents) > 1)
     return files
+
+
+def exported(mission: Mission, verdict: Verdict, form: str, options: ExportOptions, plan: Plan | None = None) -> Files:
+    """Return an admissible plan as files of a format.
+
+    Parameters
+    ----------
+    mission : Mission
+    verdict : Verdict
+        The judge's verdict on the plan.
+    form : str
+        The name of the format.
+    options : ExportOptions
+        For formats that declare options.
+    plan : Plan, optional
+        The judged plan. Without it the files do not say who made it and why tasks are left out.
+
+    Raises
+    ------
+    MissionError
+        if the format needs a place on Earth, or times of day, and the mission has none.
+    ParameterError
+        if there is no such format, drones have no height to fly at, or an altitude is for no drone.
+    """
+    write = FORMATS.named(form)
+    made = write(mission, verdict, options, plan) if options_of(form) else write(mission, verdict)
+    files = made if isinstance(made, Files) else Files({f"plan.{form}": made})
+    cut_short = () if plan is None or not plan.cut_short else (plan.cut_short_line,)
+    return replace(files, messages=(*cut_short, *files.messages)) if cut_short else files
 
 
 def _write(files: Files, path: Path, *, is_folder: bool) -> None:

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from tests.exchange.sheets.crew import CREW, crew
 
 from muster import MissionError
-from muster.exchange.export_request import ExportOptions
-from muster.exchange.files import exported
 from muster.exchange.sheets.appointments import escaped, folded
+from muster.planning.export_formats import ExportOptions
+from muster.planning.exporting import exported
 
 
 def texts(folder, text=CREW, **options):

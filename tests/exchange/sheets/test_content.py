@@ -6,13 +6,13 @@ import pytest
 from tests.exchange.sheets.crew import CREW, crew
 
 from muster import load, verify
-from muster.exchange.export_request import ExportOptions
 from muster.exchange.sheets.content import sheets_of
 from muster.exchange.sheets.instructions import at_task, plain
 from muster.exchange.sheets.times import Times
 from muster.mission.model import Action, Task
 from muster.mission.plan_reader import plan_of
 from muster.motion.actions import plan as motion_of
+from muster.planning.export_formats import ExportOptions
 from muster.verification import Stop
 
 FIELD = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0))

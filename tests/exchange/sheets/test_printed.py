@@ -7,10 +7,10 @@ import pytest
 from tests.exchange.sheets.crew import CREW, crew
 
 from muster import load, verify
-from muster.exchange.export_request import ExportOptions
-from muster.exchange.files import exported
 from muster.mission.errors import MissingExtraError
 from muster.mission.plan_reader import plan_of
+from muster.planning.export_formats import ExportOptions
+from muster.planning.exporting import exported
 
 
 def pages(pdf: bytes) -> list[str]:

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.exchange.sheets.crew import CREW, crew
 
-from muster.exchange.export_request import ExportOptions
-from muster.exchange.files import exported
 from muster.exchange.sheets.workbook import worksheet_names
+from muster.planning.export_formats import ExportOptions
+from muster.planning.exporting import exported
 
 
 def book_of(folder, text=CREW, **options):

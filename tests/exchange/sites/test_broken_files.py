@@ -11,8 +11,8 @@ import pytest
 import shapely
 from tests.exchange.sites import writers
 
+from muster.exchange.importing import read_site
 from muster.mission.errors import MissionError, MusterError
-from muster.planning.importing import read_site
 
 KINDS = ("csv", "xlsx", "geojson", "kml", "kmz", "gpx", "gpkg")
 FILES_A_KIND = 43

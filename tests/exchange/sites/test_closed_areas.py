@@ -15,8 +15,8 @@ import shapely
 from tests.exchange.sites import names, writers
 
 from muster import MissionError, read_site, solve, verify
-from muster.exchange.export_request import ExportOptions
-from muster.exchange.files import exported
+from muster.planning.export_formats import ExportOptions
+from muster.planning.exporting import exported
 
 LAT, LON = 47.265, 11.394
 M_LAT = 111_200.0

@@ -13,11 +13,11 @@ from tests.mission.strategies import examples
 from tests.raw_counts import raw_count
 
 import muster
+from muster.exchange.importing import read_site
 from muster.exchange.sites.keys import ROLES, keys_of
 from muster.mission.errors import MissionError
 from muster.mission.import_ledger import summary_lines
 from muster.mission.yaml_writer import file_data
-from muster.planning.importing import read_site
 
 ORIGIN = (47.37, 8.54)
 

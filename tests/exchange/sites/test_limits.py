@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from tests.exchange.sites import writers
 
+from muster.exchange.importing import read_site
 from muster.mission.errors import MissionError
 from muster.mission.text_files import LARGEST_FILE
-from muster.planning.importing import read_site
 
 HEAD, TAIL = b'<kml xmlns="http://www.opengis.net/kml/2.2"><Document>', b"</Document></kml>"
 MARK = b"<Placemark><name>a</name><Point><coordinates>8.5,47.3</coordinates></Point></Placemark>"
@@ -24,7 +24,7 @@ import json, resource, sys
 resource.setrlimit(resource.RLIMIT_AS, ({MEMORY}, {MEMORY}))
 from pathlib import Path
 from muster.mission.errors import MusterError
-from muster.planning.importing import read_site
+from muster.exchange.importing import read_site
 from muster.planning.loading import load
 told = {{}}
 for name in sys.argv[1:]:

@@ -15,14 +15,14 @@ from tests.mission.strategies import examples
 
 from muster.exchange.antimeridian import cut_ring
 from muster.exchange.earth import Earth
-from muster.exchange.export_request import ExportOptions
-from muster.exchange.files import exported
+from muster.exchange.importing import read_site
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.model import Map, Mission, Origin, Robot, Rules, Station, Task, Zone
 from muster.mission.plan import Plan, Route
 from muster.mission.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
-from muster.planning.importing import read_site
+from muster.planning.export_formats import ExportOptions
+from muster.planning.exporting import exported
 from muster.verification import verify
 
 WITHIN_M = 0.01

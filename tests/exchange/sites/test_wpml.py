@@ -7,8 +7,8 @@ import pytest
 from tests.exchange.sites import writers
 from tests.raw_counts import raw_count
 
+from muster.exchange.importing import read_site
 from muster.mission.errors import MissionError
-from muster.planning.importing import read_site
 
 CASES = Path(__file__).parents[2] / "data" / "cases" / "import"
 ORIGIN = (47.377, 8.5417)

@@ -492,8 +492,9 @@ import sys
 import muster.server.services.jobs, muster.server.services.plans
 heavy = ("numpy", "scipy", "shapely", "matplotlib", "muster.allocation.", "muster.simulation", "muster.verification",
          "muster.exchange.", "muster.report", "muster.mission.yaml_reader")
-light = {"muster.server.contract", "muster.exchange.export_request", "muster.allocation.parameter_types",
-         "muster.exchange.sites", "muster.exchange.sites.readers"}
+light = {"muster.server.contract", "muster.allocation.parameter_types",
+         "muster.exchange.sites", "muster.exchange.sites.readers", "muster.exchange.mission_readers",
+         "muster.exchange.qgc_format"}
 print([name for name in sys.modules if name.startswith(heavy) and name not in light])
 """
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

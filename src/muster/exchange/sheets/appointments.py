@@ -13,7 +13,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from muster.exchange.export_request import ExportOptions, Files
 from muster.exchange.file_names import file_names
 from muster.exchange.sheets.content import Line, Sheet, Sheets, sheets_of
 from muster.exchange.sheets.instructions import metres
@@ -22,12 +21,14 @@ from muster.mission.goods import shown_amounts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.stations import station_sign
+from muster.planning.export_formats import HEIGHTS, ExportOptions, Files, declares
 from muster.verification import Verdict
 
 _LINE_BYTES = 75  # RFC 5545, section 3.1, without the line break
 _ESCAPED = str.maketrans({"\\": "\\\\", ";": "\\;", ",": "\\,", "\n": "\\n", "\r": None})
 
 
+@declares(options=(*HEIGHTS, "per_robot"))
 def calendar_files(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """The calendar of all robots; or one for each robot that has stops, with an event for each of its stops.
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 from muster.exchange.altitudes import altitudes_of, raised_team
 from muster.exchange.earth import Earth, Spot
-from muster.exchange.export_request import ExportOptions
 from muster.exchange.sheets.instructions import at_station, at_task
 from muster.exchange.sheets.times import Times
 from muster.exchange.sheets.waiting import Waiting
@@ -21,6 +20,7 @@ from muster.mission.model import Mission, Point, Robot, Station, Task
 from muster.mission.plan import Plan, Unassigned
 from muster.motion.actions import Impossible
 from muster.motion.actions import plan as motion_of
+from muster.planning.export_formats import ExportOptions
 from muster.verification import RouteFigures, Stop, Verdict
 
 _MOST_ROBOTS = 4  # that are named beside one reason

@@ -10,12 +10,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from muster.exchange.export_request import ExportOptions, Files
 from muster.exchange.sheets.content import Sheet, Sheets, sheets_of
 from muster.exchange.sheets.instructions import metres, plain
 from muster.exchange.sheets.wordings import mission_facts, places_words, stops_words
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.planning.export_formats import HEIGHTS, ExportOptions, Files, declares
 from muster.report.fonts import Names
 from muster.report.gantt import plot_gantt
 from muster.report.routes import plot_routes
@@ -35,6 +35,7 @@ _SHRUNK = 1.2  # pictures are drawn so much larger than they are printed: more n
 _MOST_ROWS = 12  # robots whose chart is beside the map
 
 
+@declares(options=HEIGHTS)
 def overview_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """The overview as PDF.
 

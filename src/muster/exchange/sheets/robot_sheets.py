@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from muster.exchange.export_request import ExportOptions, Files
 from muster.exchange.file_names import file_names
 from muster.exchange.sheets.content import Line, Sheet, Sheets, sheets_of
 from muster.exchange.sheets.instructions import metres, plain
@@ -22,6 +21,7 @@ from muster.mission.goods import shown_amounts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
+from muster.planning.export_formats import HEIGHTS, ExportOptions, Files, declares
 from muster.report.fonts import Names
 from muster.report.route_lines import RobotLines, robot_lines
 from muster.verification import Verdict
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 _MAP_MM = (105.0, 76.0)
 
 
+@declares(options=(*HEIGHTS, "per_robot"))
 def sheets_files(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """The sheets of all robots in one PDF, or a PDF for each robot that has stops.
 

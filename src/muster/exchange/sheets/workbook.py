@@ -13,13 +13,13 @@ from datetime import datetime, timedelta
 from io import BytesIO
 from typing import Any
 
-from muster.exchange.export_request import ExportOptions, Files
 from muster.exchange.sheets.content import Line, Sheet, Sheets, sheets_of
 from muster.exchange.sheets.wordings import mission_facts, robot_facts
 from muster.mission.errors import MissingExtraError
 from muster.mission.goods import ONLY, shown_amounts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.planning.export_formats import HEIGHTS, ExportOptions, Files, declares
 from muster.verification import Verdict
 
 _EPOCH = datetime(2000, 1, 1)
@@ -31,6 +31,7 @@ _A4 = 9
 _MOST_CHARACTERS = 32_767  # in a cell
 
 
+@declares(options=HEIGHTS)
 def workbook_file(mission: Mission, verdict: Verdict, options: ExportOptions, plan: Plan | None) -> Files:
     """The workbook.
 

@@ -17,7 +17,7 @@ from muster.exchange.sites.readers import READERS
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.yaml_writer import YAML_SUFFIXES
-from muster.planning.loading import CONVERTED
+from muster.planning.mission_readers import converted_suffixes
 from muster.server.contract import (
     PAGE_ROWS,
     ConflictError,
@@ -40,7 +40,7 @@ from muster.server.services.uploads import (
 from muster.server.store import Store
 from muster.server.store.missions import words_of
 
-_CONVERTED = (*(f".{name}" for name in READERS), *CONVERTED)
+_CONVERTED = (*(f".{name}" for name in READERS), *converted_suffixes())
 
 
 class Workers(Protocol):

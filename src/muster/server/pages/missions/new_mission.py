@@ -12,7 +12,7 @@ from nicegui import events, ui
 
 from muster.exchange.sites.readers import READERS
 from muster.mission.yaml_writer import YAML_SUFFIXES, flow_text
-from muster.planning.loading import CONVERTED
+from muster.planning.mission_readers import converted_suffixes
 from muster.server.contract import MissionVersion
 from muster.server.pages.buttons import once
 from muster.server.pages.notices import end_warning, errors_shown, warn
@@ -47,7 +47,8 @@ _STARTS = {
     "/3-D": (EMPTY_IN_SPACE, "A small start in 3-D: two drones, one task"),
 }
 _SITES = tuple(f".{name}" for name in READERS.shipped)
-_ACCEPT = ",".join((*YAML_SUFFIXES, *_SITES, *CONVERTED, ".png,.pgm,.jpg"))
+_CONVERTED = converted_suffixes()
+_ACCEPT = ",".join((*YAML_SUFFIXES, *_SITES, *_CONVERTED, ".png,.pgm,.jpg"))
 _MOST_BYTES = 16 * 2**20
 _REJECTED = "entries => emit(entries.map(entry => [entry.failedPropValidation, entry.file.name, entry.file.size]))"
 _CSV = (  # as `mission.thesis_csv` reads them
@@ -258,6 +259,6 @@ def sorted_out(names: list[str]) -> tuple[str, dict[str, str]]:
         if named_so and len(names) > 1:
             beside[kind] = named_so[0]
     rest = [name for name in names if name not in beside.values()]
-    kinds = (YAML_SUFFIXES, (*CONVERTED, *_SITES))
+    kinds = (YAML_SUFFIXES, (*_CONVERTED, *_SITES))
     rest.sort(key=lambda name: next((k for k, ends in enumerate(kinds) if name.lower().endswith(ends)), len(kinds)))
     return rest[0], beside

@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable, Mapping
 
 from nicegui import ui
 
-from muster.exchange.export_request import RANGES
+from muster.planning.export_formats import RANGES
 from muster.server.pages.buttons import once
 from muster.server.pages.notices import warn
 

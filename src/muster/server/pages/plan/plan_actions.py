@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 from nicegui import events, ui
 
-from muster.exchange.export_request import ALTITUDE_MISSING, FORMATS
 from muster.mission.errors import ParameterError
 from muster.mission.plan import json_text
+from muster.planning.export_formats import ALTITUDE_MISSING, FORMATS
 from muster.server.pages.notices import errors_shown, say
 from muster.server.pages.plan.heights_form import open_heights
 from muster.server.pages.plan.shown_plan import ShownPlan

@@ -6,17 +6,18 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from muster.exchange.importing import is_site_file, read_site
 from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
-from muster.planning.importing import read_site
-from muster.planning.loading import CONVERTED, is_site_file, load_noted
+from muster.planning.loading import load_noted
+from muster.planning.mission_readers import converted_suffixes
 from muster.server.work.missions import written_files
 
-_MISSIONS = (*YAML_SUFFIXES, *CONVERTED)
+_MISSIONS = (*YAML_SUFFIXES, *converted_suffixes())
 _ANSWERS = ("kinds", "height_m", "fov_deg", "width_m")
 """What a user says of a site, as `read_site` has it."""
 _OPTIONS = ("robots", "suitability", "salesmen", "depot")

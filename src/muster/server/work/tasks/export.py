@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 from pathlib import PurePath
 from typing import Any
 
-from muster.exchange.export_request import FORMATS, OPTIONS_OF, ExportOptions, altitudes_in, makes_folder
-from muster.exchange.files import exported
 from muster.mission.errors import ParameterError
 from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.planning.export_formats import FORMATS, ExportOptions, altitudes_in, makes_folder, options_of
+from muster.planning.exporting import exported
 from muster.server.work.missions import mission_of, plan_of
 from muster.verification.required import require_admissible
 
@@ -47,7 +47,7 @@ def _answer(contents: Mapping[str, bytes], messages: tuple[str, ...] = ()) -> di
 
 def _options(form: str, options: Mapping[str, Any]) -> ExportOptions:
     """The options, checked as the command checks them."""
-    known = OPTIONS_OF.get(form, ())
+    known = options_of(form) if form in FORMATS else ()
     if options and not known:
         raise ParameterError(f"options: {shown(options)}; expected none with {form}")
     for name in options:

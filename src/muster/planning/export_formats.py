@@ -1,8 +1,8 @@
-"""The formats of exported plans, their options, and the resulting files, as data; exporters are loaded when used."""
+"""The interface of formats of exported plans: their options, the resulting files, and the registry of formats."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, TypedDict
 
@@ -41,7 +41,7 @@ class Files:
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """The options of formats; OPTIONS_OF says which format has which.
+    """The options of formats; each format declares which of them it takes.
 
     Parameters
     ----------
@@ -147,22 +147,14 @@ class ExportKeywords(TypedDict, total=False):
     per_robot: bool
 
 
-_HEIGHTS = ("altitude", "altitude_step", "altitudes", "clearance")
-OPTIONS_OF: Mapping[str, tuple[str, ...]] = {
-    "qgc": (*_HEIGHTS, "tolerance", "firmware"),
-    "geojson": _HEIGHTS,
-    "gpx": _HEIGHTS,
-    "kml": _HEIGHTS,
-    "sheets": (*_HEIGHTS, "per_robot"),
-    "overview": _HEIGHTS,
-    "xlsx": _HEIGHTS,
-    "ics": (*_HEIGHTS, "per_robot"),
-}
-"""The options of each format that has any. Its exporter gets them, and the plan, beside mission and verdict."""
+HEIGHTS = ("altitude", "altitude_step", "altitudes", "clearance")
+"""The options of heights and distances, which formats with places of drones have."""
 
 Exporter = Callable[..., "str | bytes | Files"]
-"""Writes an admissible plan, from mission and verdict, as the text or the bytes of one file, or as several files."""
+"""Writes an admissible plan, from mission and verdict, as the text or the bytes of one file, or as several files.
 
+One that declares options gets these too, as `ExportOptions`, and the plan, if there is one.
+"""
 
 FORMATS: Registry[Exporter] = Registry(
     "format",
@@ -172,6 +164,43 @@ FORMATS: Registry[Exporter] = Registry(
 """By name, those of installed packages included."""
 
 
+def declares(*, options: Collection[str] = (), folder: bool = False) -> Callable[[Exporter], Exporter]:
+    """Declare which options a format has, and where its files go.
+
+    Parameters
+    ----------
+    options : collection of str
+        Names of fields of `ExportOptions`: the function is called with mission, verdict, options and plan.
+    folder : bool
+        Whether the files go into a folder, even a single one.
+    """
+    if unknown := [name for name in options if name not in ExportKeywords.__annotations__]:
+        raise ParameterError(f"options: {unknown[0]}; expected {', '.join(ExportKeywords.__annotations__)}")
+
+    def declared(write: Exporter) -> Exporter:
+        write.options, write.folder = tuple(options), folder  # type: ignore[attr-defined]
+        return write
+
+    return declared
+
+
+def options_of(form: str) -> tuple[str, ...]:
+    """Return the names of the options that a format declares.
+
+    Raises
+    ------
+    ParameterError, PluginError
+        if there is no such format, or its package cannot be loaded.
+    """
+    return tuple(getattr(FORMATS.named(form), "options", ()))
+
+
 def makes_folder(form: str, options: ExportOptions) -> bool:
-    """Whether a format that ships makes a file for each robot."""
-    return form == "qgc" or options.per_robot
+    """Return whether the files of a format go into a folder.
+
+    Raises
+    ------
+    ParameterError, PluginError
+        as `options_of`.
+    """
+    return options.per_robot or bool(getattr(FORMATS.named(form), "folder", False))

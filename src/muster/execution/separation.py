@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from muster.exchange.itinerary import Itinerary
+from muster.execution.itinerary import Itinerary
 
 Floats = npt.NDArray[np.float64]
 _ROUNDING_M = 1e-9

@@ -1,4 +1,4 @@
-"""The places and times of each robot by the judge's schedule; every format is made from them."""
+"""The places and times of each robot by the judge's schedule: what exports write, and what distances are taken from."""
 
 from __future__ import annotations
 
@@ -101,6 +101,11 @@ def itineraries(mission: Mission, verdict: Verdict, robot_paths: RobotPaths | No
     tasks = {task.id: task for task in mission.tasks}
     pairs = zip(mission.robots, verdict.routes, strict=True)
     return tuple(_itinerary(mission, robot, figures, tasks, way) for robot, figures in pairs)
+
+
+def heights_of_work(mission: Mission) -> dict[str, float]:
+    """Return the heights, metres, at which actions state that work is done (`height_m`), by task."""
+    return {task.id: task.action.height_m for task in mission.tasks if task.action and task.action.height_m}
 
 
 def _itinerary(mission: Mission, robot: Robot, figures: RouteFigures, tasks: dict[str, Task], way: Way) -> Itinerary:

@@ -8,7 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster.mission.errors import ParameterError
-from muster.planning.loading import is_site_file, load_noted, team_of
+from muster.mission.model import Mission
+from muster.mission.yaml_writer import YAML_SUFFIXES
+from muster.planning.loading import load, load_noted
+from muster.planning.mission_readers import converted_suffixes
 
 if TYPE_CHECKING:
     from muster.exchange.sites.site_files import SiteMission
@@ -83,7 +86,7 @@ def read_site(
         raise ParameterError(f"{missions[1]}: a second mission; expected one, to which files of a site are added")
     if missions and robots is not None and not is_site_file(robots):
         raise ParameterError(f"--robots: {robots} beside {missions[0]}; expected one mission that has robots")
-    team, robots_file = team_of(robots)
+    team, robots_file = _team_of(robots)
     options = SiteOptions(
         columns=columns or {},
         kinds=kinds or {},
@@ -105,3 +108,15 @@ def read_site(
     if base is None:
         return found
     return replace(found, notes=(*base.notes, *found.notes), ledger=base.ledger + found.ledger)
+
+
+def is_site_file(path_or_name: str | Path) -> bool:
+    """Return whether a file is one of a site, and not a mission by itself."""
+    return Path(path_or_name).suffix.lower() not in (*YAML_SUFFIXES, *converted_suffixes(), "")
+
+
+def _team_of(robots: str | Path | None) -> tuple[Mission | None, Path | None]:
+    """The mission whose robots are taken; or the file that has robots alone."""
+    if robots is None:
+        return None, None
+    return (None, Path(robots)) if is_site_file(robots) else (load(robots), None)
