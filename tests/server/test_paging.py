@@ -131,6 +131,7 @@ def chromium():
         yield browser
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("path", PAGES)
 def test_a_page_reads_no_more_rows_than_it_shows(site, chromium, path):
     url, file = site
