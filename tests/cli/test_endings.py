@@ -4,7 +4,7 @@ import json
 import shutil
 
 import pytest
-from tests.server.serving import served
+from tests.server.serving import after, served
 
 from muster import load, solve
 from muster.cli.exit_codes import Ending
@@ -125,8 +125,6 @@ def test_the_api_begins_no_run_with_a_part(http, plan, settings, status):
 
 def test_a_run_through_a_closed_area_fails_before_it_begins(http):
     run_id = begun(http, "zone.yaml", "east.json").json()["id"]
-    seen = {"state": "going"}
-    while seen["state"] not in ("failed", "ended", "cancelled"):
-        seen = http.get(f"/runs/{run_id}").json()
+    seen = after(http, f"/runs/{run_id}", "starting", "running")
     assert seen["state"] == "failed"
     assert "closed-area: r, east, the leg from its start to task east enters zone 0" in seen["remark"]

@@ -47,7 +47,7 @@ def answer(muster, *arguments):
     return json.loads(out)
 
 
-@pytest.mark.long(keep=8)
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("name", [name for name in mission_names() if name not in ("eil51", "berlin52", "eil76")])
 def test_shipped_missions_are_carried_out(name):
     """Every planned task is done, once, no contact, and nothing starts before what it waits for has ended.

@@ -12,12 +12,12 @@ from tests.mixed_missions.missions import RULES, mixed_mission
 from tests.mixed_missions.trial import trial
 
 pytest.importorskip("ortools", reason="needs the extra exact")
-CHUNK = 10
+CHUNK = 5
 DECIDED = (7, 11, 60, 190, 293, 381, 430, 480, 501, 609, 738, 1130, 1398, 2276, 3798, 4245, 5715, 6098, 8671)
 """Seeds of which something was wrong once: crashes, reasons that are refuted, plans that the judge rejects."""
 
 
-@pytest.mark.parametrize("first", [0, *(pytest.param(k * CHUNK, marks=pytest.mark.long) for k in range(1, 11))])
+@pytest.mark.parametrize("first", [0, *(pytest.param(k * CHUNK, marks=pytest.mark.long) for k in range(1, 22))])
 def test_nothing_that_is_said_is_refuted(first):
     reports = [trial(seed) for seed in range(first, first + CHUNK)]
     assert {report.seed: report.failures for report in reports if report.failures} == {}
@@ -25,7 +25,7 @@ def test_nothing_that_is_said_is_refuted(first):
     assert counts["search finds the best"] >= 0.9 * CHUNK
 
 
-@pytest.mark.long(keep=6)
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("seed", DECIDED)
 def test_seeds_that_were_wrong_once(seed):
     assert trial(seed).failures == []

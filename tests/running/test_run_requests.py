@@ -185,7 +185,7 @@ def plain(report):
     return data
 
 
-@pytest.mark.long(keep=8)
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("row", [pytest.param(given(row), id=str(k)) for k, row in enumerate(ROWS)])
 def test_the_doors_answer_alike(row, plan, files, capsys):
     if row.get("world") == "physics" and find_spec("mujoco") is None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+import time
 from contextlib import contextmanager
 
 import uvicorn
@@ -41,12 +42,21 @@ def served(folder, **others):
         socket.close()
 
 
+def after(http, path, *states):
+    """Return what the server tells of a job or run once its state is none of these.
+
+    Asked without a pause, the server spends its time on answers instead of on the job.
+    """
+    while (seen := http.get(path).json())["state"] in states:
+        time.sleep(0.02)
+    return seen
+
+
 def plan_of(http, mission, **how):
     """Have a mission planned; the id of the plan."""
     job = http.post(f"/missions/{mission}/plans", json={"iterations": 20, **how})
     assert job.status_code == 202, job.text
     where = job.headers["location"].removeprefix("/api/v1")
-    while (seen := http.get(where).json())["state"] in ("queued", "running"):
-        pass
+    seen = after(http, where, "queued", "running")
     assert seen["state"] == "done", seen["error"]
     return seen["result"]["plan"]

@@ -131,6 +131,7 @@ def chromium():
         yield browser
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("path", PAGES)
 def test_a_page_reads_no_more_rows_than_it_shows(site, chromium, path):
     url, file = site
@@ -163,6 +164,7 @@ def test_pages_lead_to_the_next_rows(site, chromium):
     page.close()
 
 
+@pytest.mark.long
 def test_older_plans_and_versions_are_listed_when_they_are_asked_for(site, chromium):
     page = chromium.new_page()
     page.goto(f"{site[0]}/plan/yard-1")

@@ -48,7 +48,7 @@ HELP = [
 ]
 LACKING = {"physics": ["study", "thesis-6.1"], "plot": ["solve", "6T-2R", "--plot", "plan.png", "-q"]}
 """What cannot be done with the core install alone, by the extra that it needs."""
-FAST = ((), ("physics",))
+FAST = ((),)
 """The sets of extras whose studies the fast suite runs; each set costs a process with its imports."""
 
 
@@ -126,6 +126,7 @@ def test_the_first_table_needs_the_extras_of_its_study_alone(answers, extras):
 
 
 @group(("physics",))
+@pytest.mark.long
 def test_a_drone_finds_a_tag_in_the_physics_world_with_that_extra_alone(answers, one_tag):
     """As in the tables of `thesis-6.1` that take long; only pictures of a study import later than it does."""
     code, out, err = answers(("physics",), one_tag)

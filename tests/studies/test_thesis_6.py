@@ -226,6 +226,7 @@ def test_without_the_extra_the_physics_table_says_what_to_install(monkeypatch):
     assert "muster-robotics[physics]" in report.tables[0].notes[0]
 
 
+@pytest.mark.long
 def test_table_of_laws():
     """Of the smallest mission."""
     rows = table_of(ByLaw(routes=("6.8",))).records()
@@ -236,6 +237,7 @@ def test_table_of_laws():
         assert row["flown"] == pytest.approx(row["planned"], rel=0.25)
 
 
+@pytest.mark.long
 def test_table_of_misaligned_markers(monkeypatch):
     """In the kinematic world; both are in docs/measured."""
     monkeypatch.setattr(misaligned, "lacking_physics", lambda: "not asked for")

@@ -240,7 +240,7 @@ def test_a_plan_that_was_cut_short_is_not_flown_unless_told(mission, port, drone
         return replace(solution, plan=replace(solution.plan, cut_short=True))
 
     monkeypatch.setattr(solving, "answer", cut)
-    cut(Request(mission=muster.load(mission))).plan.save(file)
+    cut(Request(mission=muster.load(mission), time_limit=0.1)).plan.save(file)
     plan = ["--plan", str(file)] if given else []
     assert fly(mission, port, "--arm", *plan) == INCOMPLETE
     said = (

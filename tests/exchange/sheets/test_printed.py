@@ -114,6 +114,7 @@ def test_the_overview_of_many_robots_and_tasks_left_out_goes_on(tmp_path):
     assert "the plan does not say" in "".join(found)
 
 
+@pytest.mark.long
 def test_heights_of_drones_stand_on_sheets_and_overview(tmp_path):
     given = crew(tmp_path, CREW.replace("{id: t, ", "{id: t, kind: air, "))
     files = printed(given, "sheets", altitude_step=12.0)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from tests.cli.yard import MISSION
-from tests.server.serving import plan_of
+from tests.server.serving import after, plan_of
 
 ON_EARTH = MISSION.replace("name: yard", "name: on earth\norigin_wgs84: {lat_deg: 47.0, lon_deg: 8.0}")
 TRAVEL = ",look,open\n"
@@ -151,11 +151,9 @@ def test_a_plan_from_elsewhere(http, yard):
 
 def test_a_job_is_stopped_with_its_plan(http, yard):
     job = http.post(f"/missions/{yard}/plans", json={"time_limit": 60.0}).json()["id"]
-    while http.get(f"/jobs/{job}").json()["state"] == "queued":
-        pass
+    after(http, f"/jobs/{job}", "queued")
     assert http.post(f"/jobs/{job}/stop").status_code == 202
-    while (seen := http.get(f"/jobs/{job}").json())["state"] == "running":
-        pass
+    seen = after(http, f"/jobs/{job}", "running")
     assert seen["state"] == "done"
     assert http.get(f"/plans/{seen['result']['plan']}").status_code == 200
     assert http.post(f"/jobs/{job}/stop").status_code == 409
@@ -178,9 +176,7 @@ def run(http, plan):
     begun = http.post("/runs", json={"plan": plan, "speed": None, "settings": {"seed": 1}})
     assert begun.status_code == 201, begun.text
     where = begun.headers["location"].removeprefix("/api/v1")
-    while http.get(where).json()["state"] in ("starting", "running"):
-        pass
-    assert http.get(where).json()["state"] == "ended"
+    assert after(http, where, "starting", "running")["state"] == "ended"
     return begun.json()["id"]
 
 
@@ -201,8 +197,7 @@ def test_a_run_is_acted_upon(http, plan):
         asked = http.post(f"/runs/{run}/actions", json=wish)
         assert (asked.status_code, asked.json()["verb"]) == (202, f"run.{wish['verb']}")
     assert http.post(f"/runs/{run}/actions", json={"verb": "cancel"}).status_code == 202
-    while http.get(f"/runs/{run}").json()["state"] != "cancelled":
-        pass
+    assert after(http, f"/runs/{run}", "starting", "running")["state"] == "cancelled"
     assert http.post(f"/runs/{run}/actions", json={"verb": "pause"}).status_code == 409
     verbs = [action["verb"] for action in http.get("/actions", params={"run": run}).json()]
     assert {"run.start", "run.speed", "run.event", "run.cancel"} <= set(verbs)

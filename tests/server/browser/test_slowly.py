@@ -172,6 +172,7 @@ def gone():
         yield
 
 
+@pytest.mark.long
 def test_live_opens_and_stops_robots_while_the_database_is_gone(watched, client):
     page = watched.page
     run = client.start(client.plan(MISSION, iterations=20).wait(), speed=0.2).id

@@ -9,6 +9,7 @@ from tests.server.browser.missions_and_plan.plan_view import plan_view, text_of
 pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
 
+@pytest.mark.long
 def test_a_cell_of_the_form_changes_the_text_and_keeps_comments(watched, page):
     plan_view(watched, "floor")
     page.get_by_role("button", name="Form", exact=True).click()

@@ -63,6 +63,7 @@ AREA = b"""{"type": "FeatureCollection", "features": [{"type": "Feature", "prope
 {"type": "Polygon", "coordinates": [[[8, 47], [8.001, 47], [8.001, 47.001], [8, 47]]]}}]}"""
 
 
+@pytest.mark.long
 def test_what_a_site_does_not_say_is_asked_and_answered_without_choosing_its_files_again(watched, page):
     watched.open("/")
     page.get_by_role("button", name="New mission").click()

@@ -95,6 +95,7 @@ def test_drones_in_the_plane_get_heights_where_they_are_exported(watched, page):
     assert [max(item.get("Altitude", 0) for item in own) for own in items] == [30, 35]
 
 
+@pytest.mark.long
 def test_robots_keep_the_colours_of_the_plan_that_is_shown_while_others_come(watched, page):
     with Client(watched.origin) as client:
         made = client.missions.create(FLAT)

@@ -10,6 +10,7 @@ from muster.client import Client
 pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server
 
 
+@pytest.mark.long
 def test_who_saves_second_is_told_and_asked(watched, page, chromium, yard):
     plan_view(watched, yard)
     other = chromium.new_page()
