@@ -181,7 +181,6 @@ $(VENV)/developed: $(BUILT_FROM) | $(VENV)/made
 	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'  # knows dependency groups
 	$(BIN)/pip install --quiet --group dev --editable '.[all]' \
 		-C cmake.define.MUSTER_WERROR=ON -C cmake.define.MUSTER_UNITY=OFF  # a change of one file compiles one file
-	-$(BIN)/python -m pytest --collect-only -q >$(VENV)/collected  # compiles all tests once, which else each worker does
 	@touch $(VENV)/installed $@
 
 $(VENV)/documented: $(VENV)/developed
