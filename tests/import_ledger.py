@@ -8,9 +8,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from muster.exchange.importing import read_site
 from muster.mission.errors import MusterError
 from muster.planning.loading import load_noted
+from muster_files.importing import read_site
 from tests.raw_counts import raw_count
 
 ROOT = Path(__file__).parent.parent

@@ -44,7 +44,7 @@ FAULTS = {
     ),
     "simulation": Fault("src/muster/simulation/batteries.py", "self.level + amount)", "self.level - amount)"),
     "exchange": Fault(
-        "src/muster/exchange/altitudes.py", "first + k * options.altitude_step", "first - k * options.altitude_step"
+        "src/muster_files/altitudes.py", "first + k * options.altitude_step", "first - k * options.altitude_step"
     ),
     "report (JavaScript)": Fault(
         "src/muster/report/page/player.js", "if (now >= duration) set", "if (now > duration) set"

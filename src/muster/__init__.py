@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from muster.comparison.compare import compare
     from muster.comparison.comparison import Comparison
-    from muster.exchange.importing import read_site
     from muster.execution import Report
     from muster.generation.generate import generate
     from muster.generation.generator import Generator
@@ -67,6 +66,7 @@ if TYPE_CHECKING:
     from muster.running.simulate import simulate
     from muster.running.simulation import Simulation
     from muster.verification import Verdict
+    from muster_files.importing import read_site
 
 __all__ = [
     "Action",
@@ -143,7 +143,7 @@ _NAMES_OF = {
     "muster.mission.plan": "Plan Route",
     "muster.mission.plan_reader": "read_plan",
     "muster.planning.exporting": "export",
-    "muster.exchange.importing": "read_site",
+    "muster_files.importing": "read_site",
     "muster.planning.judging": "verify",
     "muster.planning.loading": "load",
     "muster.planning.options": "PlanningOptions",

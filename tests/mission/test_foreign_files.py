@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from tests.exchange.sites import writers
+from tests.muster_files.sites import writers
 
 import muster
 from muster.mission.errors import MissionError

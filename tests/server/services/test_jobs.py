@@ -491,10 +491,10 @@ def test_the_server_loads_nothing_heavy():
 import sys
 import muster.server.services.jobs, muster.server.services.plans
 heavy = ("numpy", "scipy", "shapely", "matplotlib", "muster.allocation.", "muster.simulation", "muster.verification",
-         "muster.exchange.", "muster.report", "muster.mission.yaml_reader")
+         "muster_files.", "muster.report", "muster.mission.yaml_reader")
 light = {"muster.server.contract", "muster.allocation.parameter_types",
-         "muster.exchange.sites", "muster.exchange.sites.readers", "muster.exchange.mission_readers",
-         "muster.exchange.qgc_format"}
+         "muster_files.sites", "muster_files.sites.readers", "muster_files.mission_readers",
+         "muster_files.qgc_format"}
 print([name for name in sys.modules if name.startswith(heavy) and name not in light])
 """
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

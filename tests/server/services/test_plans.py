@@ -5,7 +5,7 @@ import base64
 import json
 
 import pytest
-from tests.exchange.bay import BAY, bay_plan
+from tests.muster_files.bay import BAY, bay_plan
 from tests.server.services.opened import TINY, WATCHER, WHO, told
 
 import muster

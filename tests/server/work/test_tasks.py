@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
-from tests.exchange.sites.writers import CSV, ROBOTS, area, geojson
+from tests.muster_files.sites.writers import CSV, ROBOTS, area, geojson
 from tests.server.work.asking import FLOOR, MAPPED, TINY, given, shipped
 
 import muster

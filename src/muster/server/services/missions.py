@@ -13,7 +13,6 @@ from datetime import datetime
 from pathlib import PurePath
 from typing import Any, Protocol
 
-from muster.exchange.sites.readers import READERS
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.yaml_writer import YAML_SUFFIXES
@@ -39,6 +38,7 @@ from muster.server.services.uploads import (
 )
 from muster.server.store import Store
 from muster.server.store.missions import words_of
+from muster_files.sites.readers import READERS
 
 _CONVERTED = (*(f".{name}" for name in READERS), *converted_suffixes())
 

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import PurePath
 from typing import Any
 
-from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError, ParameterError
 from muster.mission.text_files import LARGEST_FILE as LARGEST_FILES
 from muster.mission.value_types import shown
+from muster_files.sites.readers import READERS
 
 LONGEST_TEXT = 16 * 2**20
 MOST_FILES = 64

@@ -10,7 +10,6 @@ from typing import Any
 
 from nicegui import events, ui
 
-from muster.exchange.sites.readers import READERS
 from muster.mission.yaml_writer import YAML_SUFFIXES, flow_text
 from muster.planning.mission_readers import converted_suffixes
 from muster.server.contract import MissionVersion
@@ -20,6 +19,7 @@ from muster.server.pages.visitor import the_services, the_user
 from muster.server.services.shipped import shipped_entries
 from muster.server.services.uploads import answers_of
 from muster.server.work import WorkError
+from muster_files.sites.readers import READERS
 
 _UNNAMED = "my mission"
 EMPTY = """\

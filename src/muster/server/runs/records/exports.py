@@ -16,12 +16,12 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 
-from muster.exchange.antimeridian import cut_line
-from muster.exchange.earth import Earth, Spot
-from muster.exchange.formula_cells import cell
-from muster.exchange.geojson import one_or_many
-from muster.exchange.xml_text import add, decimal, text_of
 from muster.report.record import Recording
+from muster_files.antimeridian import cut_line
+from muster_files.earth import Earth, Spot
+from muster_files.formula_cells import cell
+from muster_files.geojson import one_or_many
+from muster_files.xml_text import add, decimal, text_of
 
 Log = Iterable[Mapping[str, Any]]
 

@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from muster.exchange.importing import is_site_file, read_site
-from muster.exchange.sites.readers import READERS
 from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
@@ -16,6 +14,8 @@ from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 from muster.planning.loading import load_noted
 from muster.planning.mission_readers import converted_suffixes
 from muster.server.work.missions import written_files
+from muster_files.importing import is_site_file, read_site
+from muster_files.sites.readers import READERS
 
 _MISSIONS = (*YAML_SUFFIXES, *converted_suffixes())
 _ANSWERS = ("kinds", "height_m", "fov_deg", "width_m")

@@ -1,0 +1,58 @@
+"""The readers of whole missions that `muster.load` finds: sites, and plans of ground stations. They load when used."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from muster.mission.text_files import first_lines
+from muster.planning.mission_readers import MissionReader, Noted, converted_suffixes
+from muster_files.qgc_format import WAY_POINTS_HEAD
+from muster_files.sites.readers import is_site, unknown_file
+
+_WAY_POINTS = (".waypoints", ".wpl")
+_NO_WAY_POINTS = (".yaml", ".yml", ".csv", ".plan", ".json")
+
+
+def _is_site(path: Path) -> bool:
+    return path.suffix.lower() not in converted_suffixes() and is_site(path)
+
+
+def _read_site(
+    path: Path,
+    robots: str | Path | None = None,
+    suitability: str | Path | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> Noted:
+    from muster_files.importing import read_site
+
+    found = read_site(path, robots=robots, suitability=suitability, columns=columns)
+    return Noted(found.mission, found.notes, found.ledger)
+
+
+def _are_plans(path: Path) -> bool:
+    return path.suffix.lower() == ".plan" or path.is_dir()
+
+
+def _read_plans(path: Path) -> Noted:
+    from muster_files.qgc_reader import read_flight_plans
+
+    return read_flight_plans(path)
+
+
+def _are_way_points(path: Path) -> bool:
+    suffix = path.suffix.lower()
+    if suffix in _NO_WAY_POINTS or not path.is_file() or _is_site(path):
+        return False
+    return suffix in _WAY_POINTS or first_lines(path).startswith(WAY_POINTS_HEAD)
+
+
+def _read_way_points(path: Path) -> Noted:
+    from muster_files.wpl_reader import read_wpl
+
+    return read_wpl(path)
+
+
+SITE = MissionReader(takes=_is_site, read=_read_site, flags=("robots", "suitability", "columns"), refusal=unknown_file)
+PLANS = MissionReader(takes=_are_plans, read=_read_plans, suffixes=(".plan",))
+WAY_POINTS = MissionReader(takes=_are_way_points, read=_read_way_points, suffixes=_WAY_POINTS)
