@@ -30,8 +30,8 @@ def world_figure(mission: Mission, plan: Plan, title: str, ignored: tuple[str, .
         if nothing draws here.
     """
     require_physics("views of the physics world", "mujoco", "cv2")
-    from muster.report.film import Footage
-    from muster.report.film.scenery import FilmScene
+    from muster_physics.film import Footage
+    from muster_physics.film.scenery import FilmScene
 
     footage = Footage(mission)
     how: dict[str, Any] = {

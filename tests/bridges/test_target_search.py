@@ -42,7 +42,7 @@ INTRINSICS = intrinsics_of_mission(CAMERA)
 
 @pytest.fixture(scope="module")
 def picture():
-    from muster.simulation.physics.placed_camera import PlacedCamera
+    from muster_physics.placed_camera import PlacedCamera
 
     try:
         camera = PlacedCamera(YARD, INTRINSICS)

@@ -362,7 +362,7 @@ def test_the_physics_world_without_its_extra_is_one_line():
 
 
 def test_a_mission_is_carried_out_in_the_physics_world(muster):
-    pytest.importorskip("muster.simulation.physics", reason="needs the extra `physics`", exc_type=ImportError)
+    pytest.importorskip("muster_physics", reason="needs the extra `physics`", exc_type=ImportError)
     exact, physical = (answer(muster, "6T-2R", "--world", world) for world in ("kinematic", "physics"))
     assert physical["contacts"] == 0
     assert [task["robot"] for task in physical["tasks"]] == [task["robot"] for task in exact["tasks"]]

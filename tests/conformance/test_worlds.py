@@ -31,7 +31,7 @@ def share_of_swings(kind):
 def world_of(request):
     if request.param == "kinematic":
         return KinematicWorld
-    from muster.simulation.physics import PhysicsWorld
+    from muster_physics import PhysicsWorld
 
     return PhysicsWorld
 

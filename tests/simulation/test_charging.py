@@ -18,7 +18,7 @@ def charge(world):
 
 
 def worlds():
-    return [KinematicWorld, pytest.importorskip("muster.simulation.physics").PhysicsWorld]
+    return [KinematicWorld, pytest.importorskip("muster_physics").PhysicsWorld]
 
 
 @pytest.mark.parametrize("which", [0, 1])

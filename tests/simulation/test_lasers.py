@@ -24,7 +24,7 @@ def made(name, mission, **how):
     if name == "physics":
         if find_spec("mujoco") is None:  # not imported here: first it must be said how it draws
             pytest.skip("the extra `physics` is not installed")
-        from muster.simulation.physics import PhysicsWorld
+        from muster_physics import PhysicsWorld
 
         return PhysicsWorld(mission, **how)
     return KinematicWorld(mission, **how)

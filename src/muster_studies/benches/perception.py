@@ -27,9 +27,9 @@ def perception(runs: int) -> list[Measurement]:
     MissingExtraError
         if the extra `physics` is not installed.
     """
-    from muster.simulation.physics import PhysicsWorld
-    from muster.simulation.physics.rendered_cameras import RenderedCameras
-    from muster.simulation.physics.rendering import Lens, Renderer
+    from muster_physics import PhysicsWorld
+    from muster_physics.rendered_cameras import RenderedCameras
+    from muster_physics.rendering import Lens, Renderer
 
     mission = load(MISSION)
     camera = mission.robots[0].camera

@@ -38,8 +38,8 @@ def physics(runs: int) -> list[Measurement]:
     MissingExtraError
         if MuJoCo is not installed.
     """
-    from muster.simulation.physics import PhysicsWorld
-    from muster.simulation.physics.rendering import Lens, Renderer
+    from muster_physics import PhysicsWorld
+    from muster_physics.rendering import Lens, Renderer
 
     rates, contacts = [], 0
     for seed in range(runs):

@@ -9,7 +9,7 @@ import numpy as np
 from muster_studies.rotors.reference import Floats
 
 if TYPE_CHECKING:
-    from muster.simulation.physics.simulated_model import SimulatedModel
+    from muster_physics.simulated_model import SimulatedModel
 
 STEP_S = 0.005
 """The world's step of physics."""
@@ -31,8 +31,8 @@ def step_response(goal: Floats, heading: float, seconds: float) -> Floats:
 
 def motor_constants() -> tuple[float, float]:
     """The time constants of a rotor's speed, up and down, in seconds: by what is left of a change after a step."""
-    from muster.simulation.physics.airframes import FIREFLY
-    from muster.simulation.physics.rotors import Rotors
+    from muster_physics.airframes import FIREFLY
+    from muster_physics.rotors import Rotors
 
     found = []
     for begin, end in ((500.0, 600.0), (600.0, 500.0)):
@@ -42,11 +42,11 @@ def motor_constants() -> tuple[float, float]:
 
 
 def _firefly() -> SimulatedModel:
-    from muster.simulation.physics.airframes import FIREFLY
-    from muster.simulation.physics.bodies import BodyKind, RobotBody
-    from muster.simulation.physics.model import PlacedRobot
-    from muster.simulation.physics.scenery import Scenery
-    from muster.simulation.physics.simulated_model import SimulatedModel
+    from muster_physics.airframes import FIREFLY
+    from muster_physics.bodies import BodyKind, RobotBody
+    from muster_physics.model import PlacedRobot
+    from muster_physics.scenery import Scenery
+    from muster_physics.simulated_model import SimulatedModel
 
     body = RobotBody(BodyKind.ROTORCRAFT, 1.0, FIREFLY)
     return SimulatedModel([PlacedRobot(body, _BEGIN, 0.0, None)], (), Scenery(None, (), 0.0), STEP_S)
@@ -54,8 +54,8 @@ def _firefly() -> SimulatedModel:
 
 def _fly(simulated: SimulatedModel, goal: Floats, heading: float, steps: int) -> Floats:
     """Errors of place and heading come with the command: gain times error over the gain of velocity."""
-    from muster.simulation.physics.controller import Commands
-    from muster.simulation.physics.rotorcraft_control import RotorcraftController
+    from muster_physics.controller import Commands
+    from muster_physics.rotorcraft_control import RotorcraftController
 
     controller = RotorcraftController(simulated, compensates=False)
     wanted, poses = np.array([*(np.array(_BEGIN) + goal), heading]), np.empty((steps + 1, 4))

@@ -53,7 +53,7 @@ def _perform(job: Job) -> Found:
 
 
 def _hovered(job: Hover) -> Found:
-    from muster.simulation.physics.airframes import FIREFLY
+    from muster_physics.airframes import FIREFLY
 
     speeds, (up_s, down_s) = flown.hovering(job.seconds), flown.motor_constants()
     lift = len(FIREFLY.rotors) * FIREFLY.motor_constant * FIREFLY.most_radps**2

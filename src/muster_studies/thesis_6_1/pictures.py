@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.mission.plan import Plan, Route
-from muster.report.camera_view import with_sightings
 from muster.report.canvas import frame_of_map, limits, new_figure
 from muster.report.found import plot_found
 from muster.report.styles import FRAME, TEXT
+from muster_physics.camera_view import with_sightings
 from muster_studies.effort import Effort
 from muster_studies.figures import Draw
 from muster_studies.runs import mission_named

@@ -12,7 +12,7 @@ if find_spec("mujoco") is None:
     pytest.skip("the extra `physics` is not installed", allow_module_level=True)
 
 from muster.perception.laser import Scanner
-from muster.simulation.physics.optional_parts import BACKENDS, _is_there
+from muster_physics.optional_parts import BACKENDS, _is_there
 
 if not any(map(_is_there, BACKENDS.values())):
     pytest.skip("neither EGL nor OSMesa is installed", allow_module_level=True)

@@ -25,7 +25,7 @@ from muster.bridges.ros2.sensor_message_types import CameraInfo, Image, LaserSca
 from muster.bridges.ros2.serialization import from_cdr, to_cdr
 from muster.mission.errors import ParameterError
 from muster.perception.camera import Intrinsics
-from muster.simulation.physics.optional_parts import BACKENDS, _is_there
+from muster_physics.optional_parts import BACKENDS, _is_there
 
 VGA = Intrinsics.of_view(320, 240, math.radians(60))
 YARD = """

@@ -1,0 +1,1 @@
+"""The outputs of runs that need bodies: films, stills, pictures of cameras."""
