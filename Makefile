@@ -69,7 +69,7 @@ campaign-state: $(VENV)/developed
 	$(BIN)/python -m tests.state.campaign $(CAMPAIGN_FLAGS)
 
 campaign-auction: $(VENV)/developed
-	$(BIN)/python -m tests.negotiation.campaign $(CAMPAIGN_FLAGS)
+	$(BIN)/python -m tests.muster_team.campaign $(CAMPAIGN_FLAGS)
 
 campaign-server: $(VENV)/developed
 	$(BIN)/python -m tests.server.runs.campaign $(CAMPAIGN_FLAGS)
@@ -84,7 +84,7 @@ campaign-api: $(VENV)/developed
 	MUSTER_SCHEMA_EXAMPLES=$(or $(CAMPAIGN_FLAGS),60) $(BIN)/python -m pytest tests/server/api/test_schema.py
 
 network-figures: $(VENV)/developed
-	$(BIN)/python -m tests.negotiation.real_figures $(NETWORK_FLAGS)
+	$(BIN)/python -m tests.muster_team.real_figures $(NETWORK_FLAGS)
 
 disturbances: $(VENV)/developed
 	$(BIN)/python -m tests.disturbances $(DISTURBANCES_FLAGS)

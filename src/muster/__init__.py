@@ -54,7 +54,6 @@ if TYPE_CHECKING:
     )
     from muster.mission.plan import Plan, Route
     from muster.mission.plan_reader import read_plan
-    from muster.negotiation.runs.negotiation import Negotiation
     from muster.planning.exporting import export
     from muster.planning.judging import verify
     from muster.planning.loading import load
@@ -67,6 +66,7 @@ if TYPE_CHECKING:
     from muster.running.simulation import Simulation
     from muster.verification import Verdict
     from muster_files.importing import read_site
+    from muster_team.runs.negotiation import Negotiation
 
 __all__ = [
     "Action",
@@ -151,7 +151,7 @@ _NAMES_OF = {
     "muster.planning.questions": "check explain",
     "muster.planning.solve": "solve",
     "muster.running.carry_out": "carry_out",
-    "muster.negotiation.runs.negotiation": "Negotiation",
+    "muster_team.runs.negotiation": "Negotiation",
     "muster.running.simulate": "simulate",
     "muster.running.simulation": "Simulation",
     "muster.verification": "Verdict",

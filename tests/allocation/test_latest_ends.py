@@ -3,8 +3,8 @@
 from random import Random
 
 import pytest
-from tests.negotiation.networks import agree, network
-from tests.negotiation.trials.random_missions import random_mission, with_times
+from tests.muster_team.networks import agree, network
+from tests.muster_team.trials.random_missions import random_mission, with_times
 
 import muster
 from muster import Mission, Robot, Rules, Task
@@ -13,7 +13,7 @@ from muster.allocation.latest_ends import LatestEnds
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.model import Lag
-from muster.negotiation.participation import plan_of
+from muster_team.participation import plan_of
 
 
 def mission_of(*tasks, robots=2, **rules):

@@ -8,9 +8,9 @@ pytest.importorskip("msgpack", reason="the extra `net` is not installed")
 
 from muster.allocation.problem import Problem
 from muster.cli.main import run as muster
-from muster.negotiation.methods import METHODS
 from muster_studies.effort import Effort
 from muster_studies.negotiation.cost import AuctionRun, Cost, hold
+from muster_team.methods import METHODS
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -41,7 +41,7 @@ SERVICES = (  # folders of which the tests start servers, browsers, a ROS master
     "tests/cli/test_serve.py",
     "tests/cli/test_server_option.py",
     "tests/conformance/test_planning_doors.py",
-    "tests/negotiation/test_real_network.py",
+    "tests/muster_team/test_real_network.py",
 )
 
 

@@ -15,11 +15,11 @@ from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MusterError
-from muster.negotiation.keys import new_key
-from muster.negotiation.process_reports import TeamSetup
-from muster.negotiation.team import Team, timeouts_for
-from muster.negotiation.transport import TRANSPORTS
 from muster_studies.benches.measurement import Measurement
+from muster_team.keys import new_key
+from muster_team.process_reports import TeamSetup
+from muster_team.team import Team, timeouts_for
+from muster_team.transport import TRANSPORTS
 
 ROBOTS, TASKS, GUARD_S = 20, 50, 120.0
 VICTIMS, KILLED_IN_ROUND = ("r_0", "r_7", "r_13"), 10

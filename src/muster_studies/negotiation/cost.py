@@ -12,14 +12,14 @@ from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.generation.uniform import uniform_mission
 from muster.mission.model import Mission
-from muster.negotiation.codec import Codec
-from muster.negotiation.encryption import OVERHEAD
-from muster.negotiation.memory_network import LinkConditions, MemoryNetwork
-from muster.negotiation.methods import METHODS
-from muster.negotiation.robot_view import view_of
 from muster.verification import verify
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table
+from muster_team.codec import Codec
+from muster_team.encryption import OVERHEAD
+from muster_team.memory_network import LinkConditions, MemoryNetwork
+from muster_team.methods import METHODS
+from muster_team.robot_view import view_of
 
 TASKS_A_ROBOT = 2.5
 DELAY_S = 0.05

@@ -8,11 +8,11 @@ from tests.state.drawn_events import one_of_each, tied_site
 
 from muster.allocation.problem import Problem
 from muster.mission.model import Event, Mission, Robot, Task
-from muster.negotiation.runs.team_log import TeamLog
 from muster.report.page import write_page
 from muster.report.record import RecordWriter, read_record
 from muster.state.event import KINDS
 from muster.state.words import ALARM, DETAIL
+from muster_team.runs.team_log import TeamLog
 
 pytest.importorskip("mcap")
 pytest.importorskip("shapely")

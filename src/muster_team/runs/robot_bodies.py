@@ -1,0 +1,226 @@
+"""The robots' bodies and the mission's events, between the simulated world and the robots' processes."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Mapping
+
+from muster.execution.changes import may_bring_work
+from muster.mission.errors import MusterError
+from muster.mission.model import Event, Mission
+from muster.mission.yaml_writer import plain
+from muster.motion.port import RobotPort
+from muster.running.camera_search import CameraSearch
+from muster.running.state_estimation import RobotsInWorld
+from muster.simulation import SimulatedWorld
+from muster.state import OtherEvent
+from muster_team.messages import Stage
+from muster_team.methods import method_named
+from muster_team.process_reports import TeamSetup
+from muster_team.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
+from muster_team.runs.team_log import TeamLog
+from muster_team.team import Team
+
+_STEP_S = 0.05
+"""The real time between two steps, seconds."""
+
+_MOST_STEP_S = 0.5
+"""The longest step in the mission's time, seconds: robots receive no sensor data within a step."""
+
+MOST_SPEED = _MOST_STEP_S / _STEP_S
+"""The largest speed-up over real time."""
+
+
+class RobotBodies:
+    """The bodies of the robots and the mission's events, between the world and the robots' processes."""
+
+    team: Team
+    camera_search: CameraSearch | None = None
+
+    def __init__(
+        self, mission: Mission, world: SimulatedWorld, robots: RobotsInWorld, setup: TeamSetup, log: TeamLog
+    ) -> None:
+        self._world, self._setup, self._log = world, setup, log
+        self._telemetry_source = robots
+        self._method = method_named(setup.method)
+        self._future_events = sorted(mission.events, key=lambda event: event.at_s)
+        self._work_reports: dict[str, WorkReport] = {}
+        self._events_sent: dict[str, int] = {}  # the number of events sent to each robot
+        self._cut_off: set[str] = set()
+        self._due_s = world.time_s
+        self._unsent: list[Event] = []  # of what concerns tasks, while no robot can be reached
+        self._sent_to: dict[str, list[Event]] = {}  # the same by the robot that received them
+        self._last_move: dict[str, Event] = {}  # of each task
+        self._orders: dict[str, int] = {}  # that bodies were given
+        self._agreed_at: Stage | None = None  # of the auction, when its plan was taken in last
+
+    def take_report(self, robot: str, report: object) -> None:
+        """Process what a robot sends to its body, or reports of itself."""
+        if isinstance(report, SteerCommand):
+            self._orders[robot] = self._world.ports[robot].send(report.waypoints)
+        elif isinstance(report, WorkReport):
+            self._work_reports[robot], self._log.used[robot] = report, report.used
+            for at_s, kind, data in report.events:
+                self._log.take(robot, at_s, kind, data, report.used)
+
+    @property
+    def ports(self) -> Mapping[str, RobotPort]:
+        """The ports of the robots' bodies, with telemetry."""
+        return self._telemetry_source.ports
+
+    @property
+    def time_s(self) -> float:
+        """The mission's time."""
+        return round(self._world.time_s, 9)
+
+    @property
+    def over(self) -> bool:
+        """Whether no robot has anything left to do, and no future event brings work."""
+        if any(may_bring_work(event, open_tasks=self._log.open_tasks) for event in self._future_events):
+            return False
+        agreed = not self._connected or self.team.agree(self._connected)
+        return agreed and all(map(self._is_idle, self.team.living))
+
+    def await_agreement(self, limit_s: float, halt: threading.Event) -> None:
+        """Wait until the robots have agreed for the first time."""
+        until_s = time.monotonic() + limit_s
+        while self._agreed_at is None and not halt.is_set():
+            self.team.poll(_STEP_S)
+            self._take_agreement()
+            if time.monotonic() > until_s:
+                raise MusterError(f"no agreement within {limit_s:g} s; expected robots to agree before they begin")
+
+    def step(self, speed: float) -> None:
+        """Advance by one step: move bodies, let events happen, send sensor data to robots, and process their reports.
+
+        `speed` is the speed-up over real time, at most MOST_SPEED.
+        """
+        until_s = time.monotonic() + _STEP_S
+        self._due_s += _STEP_S * speed
+        while self._telemetry_source.advance(self._due_s):  # it stops wherever a way point is passed
+            pass
+        while self._future_events and self._future_events[0].at_s <= self.time_s + 1e-9:
+            self._take_event(self._future_events.pop(0))
+        self._check_cameras()
+        for robot in self._sent_to.keys() & self.team.ended.keys():
+            self._unsent += filter(self._is_valid, self._sent_to.pop(robot))  # other robots may not know of it
+        while self._unsent and self._connected:
+            self._send(self._unsent.pop(0), self._connected[0])
+        for robot in self.team.living:
+            said = self._telemetry_source.ports[robot].telemetry()
+            assert said is not None
+            self.team.send(robot, BodyState(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot]))
+            self._log.see(robot, said, self.time_s)
+        self.team.poll(0.0)  # even if the step took all the time: unread reports fill the pipes
+        while (left_s := until_s - time.monotonic()) > 0:
+            self.team.poll(left_s)
+        self._take_agreement()
+
+    def _check_cameras(self) -> None:
+        """Evaluate the cameras. Tasks from their findings go to one robot, which sends them to the others."""
+        if self.camera_search is None:
+            return
+        unheard = self._world.ports.keys() - self._connected
+        for found, event in self.camera_search.look(self.time_s, unheard):
+            self._log.tell(OtherEvent(time_s=self.time_s, kind="found", content=found))
+            if event is not None:
+                self._take_event(event)
+
+    @property
+    def _connected(self) -> list[str]:
+        return [robot for robot in self.team.living if robot not in self._cut_off]
+
+    def _is_idle(self, robot: str) -> bool:
+        report = self._work_reports.get(robot)
+        if report is None or not report.idle or report.heard < self._events_sent.get(robot, 0):
+            return False
+        return report.settled or robot in self._cut_off
+
+    def _take_agreement(self) -> None:
+        """Record the plan if the connected robots have agreed on another one."""
+        connected = self._connected
+        if not connected or not self.team.agree(connected):
+            return
+        stage = self.team.progress[connected[0]].stage
+        if stage == self._agreed_at:
+            return
+        for view in self.team.views(connected[:1]).values():
+            if view.stage != stage:  # the robot has gone on meanwhile, and there is no agreement on its route yet
+                return
+            self._agreed_at = stage
+            self._log.agreed(self._method.plan(self._setup.problem, self._setup.terms, view, None), self.time_s)
+
+    def _take_event(self, event: Event) -> None:
+        """Apply an event to bodies, processes and their radio; send an event that concerns tasks to one robot."""
+        if not self._is_possible(event):
+            self._log.tell(OtherEvent(time_s=self.time_s, kind="without_effect", content=plain(event)))
+            return
+        if event.robot_fails is not None:
+            self._fail(event.robot_fails)  # first, as its last reports precede the event
+        if not self._log.take_event(event, self.time_s) or event.robot_fails is not None:
+            return
+        if event.robot_silent is not None:
+            self._set_radio(event.robot_silent, on=False)
+        elif event.robot_returns is not None:
+            self._return(event)
+        elif event.robot_joins is not None:
+            self._world.join(event.robot_joins)
+            if self.camera_search is not None:
+                self.camera_search.join(event.robot_joins)
+            self.team.start(event.robot_joins.id)
+        elif event.delay_task is not None:
+            for robot in self.team.living:  # the robot at work notices it by itself
+                self._send(event, robot)
+        else:
+            self._unsent.append(event)
+            if event.move_task is not None:
+                self._last_move[event.move_task.task] = event
+
+    def _is_possible(self, event: Event) -> bool:
+        """Whether the robot of an event is in a state to which the event applies."""
+        if event.robot_fails is not None:
+            return event.robot_fails in self.team.living
+        if event.robot_silent is not None:
+            return event.robot_silent in self._connected
+        if event.robot_returns is not None:
+            robot = event.robot_returns
+            if robot in self.team.ended:
+                return self.team.may_start(robot)  # not if it was killed from outside
+            return robot in self._cut_off or self._log.is_out(robot)
+        return True
+
+    def _fail(self, robot: str) -> None:
+        """A robot breaks down, with its process."""
+        self._world.fail(robot)
+        self.team.kill(robot)
+        self._cut_off.discard(robot)  # its next process has a radio that works
+        while robot in self.team.living:
+            self.team.poll(_STEP_S)
+
+    def _return(self, event: Event) -> None:
+        robot = event.robot_returns
+        assert robot is not None
+        if robot in self.team.ended:
+            self._world.recover(robot)
+            self._work_reports.pop(robot, None)
+            self._events_sent.pop(robot, None)
+            self.team.start(robot)
+        elif robot in self._cut_off:
+            self._set_radio(robot, on=True)
+        else:
+            self._send(event, robot)
+
+    def _set_radio(self, robot: str, *, on: bool) -> None:
+        (self._cut_off.discard if on else self._cut_off.add)(robot)
+        self.team.send(robot, RadioState(on))
+
+    def _is_valid(self, event: Event) -> bool:
+        """Whether no later event has replaced this one."""
+        return event.move_task is None or event is self._last_move[event.move_task.task]
+
+    def _send(self, event: Event, robot: str) -> None:
+        self._events_sent[robot] = self._events_sent.get(robot, 0) + 1
+        if event.new_task or event.move_task or event.cancel_task:
+            self._sent_to.setdefault(robot, []).append(event)
+        self.team.send(robot, OperatorEvent(event))

@@ -1,5 +1,0 @@
-"""Trials of auctions without a centre in a simulated network: random teams, conditions and faults by a seed."""
-
-from tests.negotiation.trials.trial import Report, replay
-
-__all__ = ["Report", "replay"]
