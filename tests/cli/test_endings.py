@@ -93,7 +93,7 @@ def test_each_verb_ends_as_the_table_says(arguments, ending, code, capsys):
 
 def test_every_ending_that_is_no_robots_is_shown_here_or_by_a_test_of_its_own():
     shown = {ending for _, ending, _ in CASES}
-    robots = {Ending.STILL_MOVING, Ending.TASKS_LOST}  # tests/bridges
+    robots = {Ending.STILL_MOVING, Ending.TASKS_LOST}  # tests/muster_robots
     others = {Ending.INTERNAL_ERROR, Ending.INTERRUPTED, Ending.BROKEN_PIPE, Ending.NO_PLAN}  # tests/cli
     assert shown | robots | others == set(Ending)
 

@@ -15,7 +15,7 @@ TEXT = (Path(__file__).parents[2] / "docs" / "records.md").read_text(encoding="u
 
 def write_others(record, bag):
     """A bag as others write it: poses 3 cm east and 4 cm north of the robots, from 1.7e9 s on."""
-    from tests.report.recordings.conftest import told_of, write
+    from tests.muster_robots.recordings.conftest import told_of, write
 
     from muster.report.record import read_record
 

@@ -11,7 +11,6 @@ from tests.running.test_live import mission as a_mission_for_fleets
 from tests.server.runs.stage import performed
 
 import muster
-from muster.bridges.fleet_settings import Ros1Settings
 from muster.cli.main import run
 from muster.cli.request_options import option_name
 from muster.mission.errors import MusterError
@@ -24,6 +23,7 @@ from muster.running.fleet_registry import FLEETS, declares
 from muster.running.observed_run import ObservedRun
 from muster.running.run_request import BESIDE_SETTINGS, RunRequest
 from muster.server.runs.run_settings import new_request
+from muster_robots.fleet_settings import Ros1Settings
 
 MISSION = Mission(
     name="pairs",

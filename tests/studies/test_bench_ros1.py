@@ -2,8 +2,8 @@
 
 import pytest
 
-from muster.bridges.ros1 import extra
 from muster.mission.errors import MissingExtraError
+from muster_robots.ros1 import extra
 from muster_studies.benches.ros1 import under_load
 from muster_studies.benches.ros1_load import Heard
 

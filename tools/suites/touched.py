@@ -32,8 +32,8 @@ FOLDERS = [
     (r"\.[a-z-]+$|[A-Z_]+(\.[a-z]+)?$|\.github/", []),  # rules of formatters, licence, and the like
 ]
 SERVICES = (  # folders of which the tests start servers, browsers, a ROS master or other processes beside them
-    "tests/bridges/ros1/",
-    "tests/bridges/ros2/",
+    "tests/muster_robots/ros1/",
+    "tests/muster_robots/ros2/",
     "tests/client/",
     "tests/server/api/",
     "tests/server/browser/",

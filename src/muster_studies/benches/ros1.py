@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from muster.bridges.ros1.master import Master, running_master
 from muster.mission.errors import MusterError
+from muster_robots.ros1.master import Master, running_master
 from muster_studies.benches.measurement import Measurement
 
 ROBOTS, RATE_HZ, WINDOW_S = 50, 20.0, 10.0
@@ -37,7 +37,7 @@ def under_load(runs: int, robots: int, window_s: float) -> list[Measurement]:
     MusterError
         if robots or the bridge end too early.
     """
-    from muster.bridges.ros1.extra import require_rospy
+    from muster_robots.ros1.extra import require_rospy
 
     require_rospy()
     with (

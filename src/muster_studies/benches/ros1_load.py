@@ -17,7 +17,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from typing import Any, NoReturn
 
-from muster.bridges.ros1.extra import require_rospy
+from muster_robots.ros1.extra import require_rospy
 
 SIDE_M, APART_M, SPEED_MPS = 2.0, 4.0, 0.5
 
@@ -103,10 +103,10 @@ class Heard:
 
 def bridge(count: int, windows: int, window_s: float) -> None:
     """Measure."""
-    from muster.bridges.ros1.fleet import Ros1Fleet
-    from muster.bridges.ros1.node import become_node, leave
     from muster.mission.model import Mission, Robot
     from muster.motion.port import Waypoint
+    from muster_robots.ros1.fleet import Ros1Fleet
+    from muster_robots.ros1.node import become_node, leave
 
     body = {"kinematics": "differential-drive", "radius_m": 0.2, "speed_mps": SPEED_MPS}
     team = tuple(Robot(id=name, position=place, **body) for name, place in starts(count))  # type: ignore[arg-type]

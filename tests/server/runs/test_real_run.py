@@ -7,14 +7,14 @@ import time
 from collections import Counter
 
 import pytest
-from tests.bridges.mavlink.drones import ORIGIN
+from tests.muster_robots.mavlink.drones import ORIGIN
 from tests.server.runs.process import gone, serving, until
 from tests.server.runs.store import planned
 
-from muster.bridges.mavlink.dialect import mavlink
-from muster.bridges.mavlink.simulated_earth import origin_at
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.server.store.store import Store
+from muster_robots.mavlink.dialect import mavlink
+from muster_robots.mavlink.simulated_earth import origin_at
 
 ONCE = {"across_partition": "at-most-once"}
 
@@ -37,7 +37,7 @@ def sky():
             free.bind(("127.0.0.1", 0))
             ports.append(free.getsockname()[1])
         at = origin_at(ORIGIN, robot.position)
-        command = [sys.executable, "-m", "muster.bridges.mavlink.simulated_autopilot", "--port", str(ports[-1])]
+        command = [sys.executable, "-m", "muster_robots.mavlink.simulated_autopilot", "--port", str(ports[-1])]
         drones.append(
             subprocess.Popen(
                 [*command, "--system", str(k + 1), "--at", f"{at.lat_deg},{at.lon_deg}"], stdout=subprocess.DEVNULL

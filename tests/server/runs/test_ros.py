@@ -8,8 +8,8 @@ import signal
 from collections import Counter
 
 import pytest
-from tests.bridges.ros1 import conftest as ros1
-from tests.bridges.ros2 import conftest as ros2
+from tests.muster_robots.ros1 import conftest as ros1
+from tests.muster_robots.ros2 import conftest as ros2
 from tests.server.runs.store import ADA, planned, settings_of
 
 from muster.mission.model import Mission, Robot, Task

@@ -1,6 +1,0 @@
-"""Drones on PX4 or ArduPilot as robots, over MAVLink (extra `mavlink`). See docs/mavlink.md."""
-
-from muster.bridges.mavlink.faults import Fault, Kind
-from muster.bridges.mavlink.fleet import MavlinkFleet
-
-__all__ = ["Fault", "Kind", "MavlinkFleet"]

@@ -1,0 +1,1 @@
+"""The verbs that move real robots, and recordings of ROS."""

@@ -1,0 +1,137 @@
+"""`muster fly`: a plan carried out by drones over MAVLink; without --arm it shows the orders and sends none."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from contextlib import ExitStack, closing
+from typing import TYPE_CHECKING
+
+import click
+
+from muster.cli.exit_codes import Ending, exit_code_if
+from muster.cli.options import MissionFile, mission_argument
+from muster.mission.interrupts import TO_END, ctrl_c_halts, signals_interrupt
+from muster.mission.model import Mission
+from muster.mission.plan import Plan, json_text
+from muster_robots.cli.real_robots import (
+    LastLines,
+    RealRunOptions,
+    carried_out,
+    planned,
+    read_given_plan,
+    real_options,
+    reported,
+    require_outputs,
+    show_final_states,
+    start_in_time,
+)
+from muster_robots.fleet_settings import MavlinkSettings
+
+if TYPE_CHECKING:
+    from muster_robots.mavlink import MavlinkFleet
+    from muster_robots.mavlink.autopilots import AtEnd
+    from muster_robots.mavlink.dry_run import Line
+
+
+@click.command()
+@mission_argument
+@real_options("mavlink", MavlinkSettings)
+def command(mission: MissionFile, options: RealRunOptions) -> int:
+    """Carry out a plan of a MISSION with drones on PX4 or ArduPilot, over MAVLink.
+
+    Without --arm nothing flies: telemetry is received, and the orders are shown. Ctrl-C lets drones
+    hover. The exit code is 4 if a drone is armed at the end. Read docs/mavlink.md before the first flight.
+    """
+    from muster.running.claim_locks import robots_claimed
+    from muster.running.robot_claims import claims_of_request
+    from muster_robots.mavlink import MavlinkFleet
+
+    require_outputs(options, mission.files)
+    loaded = mission.load(verbose=options.verbose)
+    given, settings = read_given_plan(options, loaded), options.request.settings
+    with ExitStack() as stack:
+        stack.enter_context(robots_claimed(claims_of_request(options.request)))
+        made = MavlinkFleet(loaded, settings.endpoints, settings, height_m=settings.height_m)
+        fleet = stack.enter_context(closing(made))
+        stack.enter_context(signals_interrupt())
+        last_lines = stack.enter_context(LastLines(fleet.final_states))
+        start = start_in_time(loaded, fleet, options)
+        plan = given or planned(options, loaded, start)
+        if not options.quiet:
+            _warn(loaded, plan, settings.height_m)
+        fleet.connect(settings.wait_s)
+        if not settings.arm:
+            return _show(loaded, plan, fleet, options.form)
+        last_lines.begun = True
+        return _fly(loaded, plan, fleet, settings.at_end, options)
+
+
+def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
+    """Warn where drones, which do not avoid each other, would meet."""
+    from muster import verify
+    from muster.execution.itinerary import heights_of_work, itineraries
+    from muster.execution.separation import meetings
+
+    for task, own in heights_of_work(mission).items():
+        if height is not None and own != height:
+            told = f"{task}: flown at {height:g} m (--height), not at {own:g} m (height_m); expected places with z"
+            click.echo(f"warning: {told}", err=True)
+    ways = itineraries(mission, verify(mission, plan))
+    for meeting in meetings([way if height is None else way.at_least(height) for way in ways]):
+        click.echo(f"warning: {meeting}", err=True)
+
+
+def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> int:
+    """Print the orders of each drone, in order, and which drones are armed; returns the exit code."""
+    from muster.execution import way_of
+    from muster_robots.mavlink.dry_run import lines_of
+
+    rows = lines_of(mission, plan, fleet, way_of(mission))
+    if form == "json":
+        click.echo(json_text({"would_send": [row.as_dict() for row in rows]}), nl=False)
+    else:
+        _print_orders(rows)
+    armed = [state for state in fleet.final_states() if state.moving]
+    show_final_states(armed, asks=True)
+    return exit_code_if((Ending.STILL_MOVING, armed))
+
+
+def _print_orders(rows: Sequence[Line]) -> None:
+    from muster.cli.tables import print_table
+
+    table = [
+        (
+            row.robot,
+            row.task,
+            _degrees(row.lat_deg),
+            _degrees(row.lon_deg),
+            f"{row.above_home_m:.1f}",
+            f"{row.hold_s:g}",
+        )
+        for row in rows
+    ]
+    heads = ("robot", "task", "latitude", "longitude", "above home m", "hold s")
+    print_table(heads, table, right=heads[2:])
+    click.echo("nothing was sent but heartbeats and requests for telemetry; --arm flies it", err=True)
+
+
+def _degrees(value: float | None) -> str:
+    return "-" if value is None else f"{value:.7f}"
+
+
+def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: AtEnd, options: RealRunOptions) -> int:
+    with ctrl_c_halts(TO_END) as halt:
+        report = carried_out(mission, plan, fleet, options, halt, at_end=lambda: _end(fleet, at_end, halt))
+    for fault in fleet.faults:
+        click.echo(str(fault), err=True)
+    return reported(mission, report, options, halt, "drones were told to hover", fleet.final_states())
+
+
+def _end(fleet: MavlinkFleet, at_end: AtEnd, halt: threading.Event) -> None:
+    """Give the order of --at-end to all drones; without one they hover."""
+    if at_end != "hold" and not halt.is_set():
+        fleet.end(at_end)
+        fleet.await_landing(halt.is_set)
+        if halt.is_set():  # Ctrl-C meanwhile
+            fleet.stop()

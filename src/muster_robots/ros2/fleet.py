@@ -1,0 +1,221 @@
+"""Robots on ROS 2 as a fleet: those of a mission, and those that are discovered during it.
+
+Each is given goals, one after the other: as poses on `<robot>/goal_pose`, or by Nav2's action
+`<robot>/navigate_to_pose`. It has arrived when its pose (`port`), or Nav2, says so. All happens in the
+thread that calls `advance`.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Literal
+
+from muster.mission.clock import Clock, SystemClock
+from muster.mission.errors import NetworkError
+from muster.mission.model import Event, Mission, Robot
+from muster_robots.discovery import topics_in
+from muster_robots.ros2.goals import Goals, Nav2Goals, PoseGoals
+from muster_robots.ros2.joining import Ros2Newcomers
+from muster_robots.ros2.map_frame import Ros2MapFrame
+from muster_robots.ros2.message_types import PoseStamped
+from muster_robots.ros2.middleware import Middleware
+from muster_robots.ros2.names import ros_names
+from muster_robots.ros2.open_middleware import open_middleware
+from muster_robots.ros2.port import Arrival, Ros2Port
+
+if TYPE_CHECKING:
+    from muster_robots.ros2.target_localization import Ros2TargetLocalization
+    from muster_robots.target_search import SearchSettings
+
+Give = Literal["goals", "nav2"]
+_POLL_S = 0.02
+_LAST_WORDS_S = 0.2
+"""That what was said last takes to arrive."""
+_STOPS_WITHIN_S = 2.0
+_log = logging.getLogger(__name__)
+
+
+class Ros2Fleet:
+    """The robots of a mission in a domain of ROS 2; see `execution.fleet.Fleet`.
+
+    Parameters
+    ----------
+    mission
+        robot `r_0` is at `/r_0/pose` or `/r_0/odom`.
+    middleware
+        by which they are reached, closed with the fleet; None: as `open_middleware()` does.
+    give
+        `goals`: poses on a topic; `nav2`: Nav2's action.
+    namespace
+        in which the robots' own are; "" for the root.
+    arrival
+        when a way point is reached.
+    targets
+        how tags that robots' cameras see are found; None: cameras are not heard.
+    joins
+        whether robots that the mission does not name may join.
+
+    Raises
+    ------
+    MissingExtraError, NetworkError, ParameterError
+        as of `open_middleware` and `Middleware.navigator`; if two robots have the same name in ROS.
+    """
+
+    def __init__(
+        self,
+        mission: Mission,
+        *,
+        middleware: Middleware | None = None,
+        give: Give = "goals",
+        namespace: str = "",
+        arrival: Arrival | None = None,
+        targets: SearchSettings | None = None,
+        joins: bool = True,
+        clock: Clock | None = None,
+    ) -> None:
+        self._clock: Clock = clock or SystemClock()
+        self.simulated_time = clock is not None
+        self._begin = self._clock.now()
+        self._namespace, self._topics = namespace, topics_in(namespace)
+        self._give, self._arrival = give, arrival or Arrival()
+        self._flat = mission.dimensions == 2
+        self._middleware = open_middleware() if middleware is None else middleware
+        self._frames = Ros2MapFrame(self._middleware)
+        self._ports: dict[str, Ros2Port] = {}
+        try:
+            names = ros_names(robot.id for robot in mission.robots)
+            for robot in mission.robots:
+                self._ports[robot.id] = self._reached(robot, names[robot.id])
+            self._targets = None if targets is None else self._searched(mission, names, targets)
+        except BaseException:
+            self._middleware.close()
+            raise
+        self._newcomers = self._looks(names) if joins else None
+
+    @property
+    def ports(self) -> Mapping[str, Ros2Port]:
+        """See `Fleet`."""
+        return self._ports
+
+    @property
+    def time_s(self) -> float:
+        """See `Fleet`."""
+        return self._clock.now() - self._begin
+
+    def advance(self, until_s: float) -> Sequence[Event]:
+        """See `Fleet`: returns before, where a way point is passed or a robot joins."""
+        while True:
+            self._middleware.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
+            self._frames.hear(self.time_s)
+            passed = [port.hear() for port in self._ports.values()]
+            events = [*self._joined(), *self._found()]
+            if events or any(passed) or self.time_s >= until_s:
+                return events
+
+    def robots_not_ready(self) -> dict[str, str]:
+        """Robots of the mission that cannot be sent anywhere yet, and what is missing, by what has come until now."""
+        self._hear_for(0.0)
+        return {name: port.missing for name, port in self._ports.items() if port.missing}
+
+    def stop(self) -> None:
+        """See `Fleet`: goals become where robots are, or are cancelled. One that fails does not keep it from others.
+
+        Raises
+        ------
+        NetworkError
+            if a robot could not be told; all others were.
+        """
+        failed: dict[str, Exception] = {}
+        _try(failed, "", partial(self._middleware.wait, 0.0))
+        for name, port in self._ports.items():
+            _try(failed, name, port.cancel)
+        until, wait_s = self.time_s + _STOPS_WITHIN_S, _LAST_WORDS_S
+        while True:
+            _try(failed, "", partial(self._middleware.wait, wait_s))
+            for name, port in self._ports.items():
+                _try(failed, name, port.hear)
+            if self.time_s >= until or all(port.at_rest for port in self._ports.values()):
+                break
+            wait_s = _POLL_S
+        self._say_who_was_not_told(failed)
+
+    def _say_who_was_not_told(self, failed: Mapping[str, Exception]) -> None:
+        lines = [f"ROS 2: {failed['']}"] if "" in failed else []
+        for name, port in self._ports.items():
+            if port.is_to_stay and name in failed:
+                lines.append(f"robot {name} was not told to stay: {failed[name]}")
+            elif port.is_to_stay:
+                _log.warning("robot %s was not heard, and not told to stay: it may go on to its last goal", name)
+            elif not port.at_rest:
+                _log.warning(
+                    "robot %s was told to stay, and does not say within %g s that it does", name, _STOPS_WITHIN_S
+                )
+        if lines:
+            raise NetworkError("; ".join(lines)) from next(iter(failed.values()))
+
+    @property
+    def not_told(self) -> list[str]:
+        """Robots that did not get the command to stay where they are."""
+        return [name for name, port in self._ports.items() if port.is_to_stay]
+
+    def close(self) -> None:
+        """See `Fleet`."""
+        self._middleware.close()
+
+    def _hear_for(self, seconds: float) -> None:
+        self._middleware.wait(seconds)
+        self._frames.hear(self.time_s)
+        for port in self._ports.values():
+            port.hear()
+
+    def _joined(self) -> list[Event]:
+        found = [] if self._newcomers is None else self._newcomers.look(self.time_s)
+        for port in found:
+            self._ports[port.robot] = port
+        return [Event(at_s=self.time_s, robot_joins=port.body) for port in found]
+
+    def _found(self) -> list[Event]:
+        """Tasks that robots' cameras have found, or found to lie elsewhere."""
+        found = [] if self._targets is None else self._targets.look()
+        return [replace(event, at_s=self.time_s) for event in found]
+
+    def _searched(self, mission: Mission, names: Mapping[str, str], settings: SearchSettings) -> Ros2TargetLocalization:
+        from muster_robots.ros2.target_localization import Ros2TargetLocalization
+
+        topics = {robot: self._topics(name) for robot, name in names.items()}
+        return Ros2TargetLocalization(mission, self._middleware, topics, settings)
+
+    def _reached(self, robot: Robot, name: str) -> Ros2Port:
+        topics = self._topics(name)
+        return Ros2Port(
+            robot,
+            self._middleware,
+            topics,
+            self._goals(topics),
+            self._arrival,
+            flat=self._flat,
+            clock=lambda: self.time_s,
+            frames=self._frames,
+        )
+
+    def _goals(self, topics: str) -> Goals:
+        if self._give == "nav2":
+            return Nav2Goals(self._middleware.navigator(f"{topics}/navigate_to_pose"))
+        return PoseGoals(self._middleware.writer(f"{topics}/goal_pose", PoseStamped))
+
+    def _looks(self, names: Mapping[str, str]) -> Ros2Newcomers:
+        def reach(robot: Robot) -> Ros2Port:
+            return self._reached(robot, robot.id)
+
+        return Ros2Newcomers(self._middleware, self._namespace, names.values(), reach, flat=self._flat)
+
+
+def _try(failed: dict[str, Exception], whose: str, act: Callable[[], object]) -> None:
+    """Act, and note an error of any kind: other robots are still to get the command."""
+    try:
+        act()
+    except Exception as error:
+        failed[whose] = error
