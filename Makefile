@@ -72,16 +72,16 @@ campaign-auction: $(VENV)/developed
 	$(BIN)/python -m tests.muster_team.campaign $(CAMPAIGN_FLAGS)
 
 campaign-server: $(VENV)/developed
-	$(BIN)/python -m tests.server.runs.campaign $(CAMPAIGN_FLAGS)
+	$(BIN)/python -m tests.muster_control.runs.campaign $(CAMPAIGN_FLAGS)
 
 campaign-faults: $(VENV)/developed
-	$(BIN)/python -m tests.server.runs.double_faults $(CAMPAIGN_FLAGS)
+	$(BIN)/python -m tests.muster_control.runs.double_faults $(CAMPAIGN_FLAGS)
 
 campaign-coverage: $(VENV)/developed
 	MUSTER_AREAS=$(or $(CAMPAIGN_FLAGS),200) $(BIN)/python -m pytest tests/motion/areas/test_coverage_path.py
 
 campaign-api: $(VENV)/developed
-	MUSTER_SCHEMA_EXAMPLES=$(or $(CAMPAIGN_FLAGS),60) $(BIN)/python -m pytest tests/server/api/test_schema.py
+	MUSTER_SCHEMA_EXAMPLES=$(or $(CAMPAIGN_FLAGS),60) $(BIN)/python -m pytest tests/muster_control/api/test_schema.py
 
 network-figures: $(VENV)/developed
 	$(BIN)/python -m tests.muster_team.real_figures $(NETWORK_FLAGS)

@@ -4,7 +4,7 @@ import json
 import shutil
 
 import pytest
-from tests.server.serving import after, served
+from tests.muster_control.serving import after, served
 
 from muster import load, solve
 from muster.cli.exit_codes import Ending

@@ -17,8 +17,8 @@ from muster.mission.plan import PLAN_SCHEMA
 from muster.mission.plan_reader import plan_from
 from muster.planning.options import BOUNDS, OPTIONS
 from muster.planning.request import Request
-from muster.server.api.plans import PlanToMake
-from muster.server.work import Pool
+from muster_control.api.plans import PlanToMake
+from muster_control.work import Pool
 
 GOOD = {"r_0": ["2"], "r_1": ["3"]}
 

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from muster.cli.main import run
-from muster.cli.serve import command
+from muster_control.cli.serve import command
 
 _FOLDER = Path(__file__).parents[2] / "deploy"
 _INSTRUCTIONS = {

@@ -7,10 +7,10 @@ from pathlib import Path
 from urllib.request import Request, urlopen
 
 import pytest
-from tests.server.serving import served
+from tests.muster_control.serving import served
 
 from muster.cli.main import run
-from muster.server.api import api
+from muster_control.api import api
 
 TEXT = (Path(__file__).parents[2] / "docs" / "mission-control-api.md").read_text(encoding="utf-8")
 DESCRIBED = "http://127.0.0.1:8117"

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from jsonschema import Draft202012Validator
 
-from muster.server.work import Pool
+from muster_control.work import Pool
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plugin"
 MISSION = EXAMPLE / "mission.yaml"

@@ -82,7 +82,7 @@ def test_what_is_found_before_its_robot_has_joined_is_refused_and_the_mission_go
 
 
 def test_runs_are_the_same_by_seed():
-    """For those in the physics world see tests/server/runs/test_again_in_worlds.py."""
+    """For those in the physics world see tests/muster_control/runs/test_again_in_worlds.py."""
     noise = Noise(position_m=0.03, heading_rad=math.radians(1), attitude_rad=math.radians(1))
     one, same, other = (flown(mission(), noise=noise, seed=seed) for seed in (1, 1, 2))
     assert one == same

@@ -22,9 +22,9 @@ from muster.running.observed_run import ObservedRun
 from muster.running.run_outputs import RUN_OUTPUTS, BegunOutput
 from muster.running.simulate import simulated
 from muster.running.worlds import WORLDS, has_ability, takes_setting, world_named
-from muster.server.runs.run_settings import new_request
 from muster.simulation import KinematicWorld, SimulatedWorld
 from muster.simulation.declaration import ABILITIES, BODIES, EXACT, SETTINGS, declares
+from muster_control.runs.run_settings import new_request
 
 
 @pytest.fixture

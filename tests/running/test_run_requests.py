@@ -6,9 +6,9 @@ from dataclasses import replace
 from importlib.util import find_spec
 
 import pytest
+from tests.muster_control.runs.stage import performed
 from tests.running.test_live import WorldAsFleet
 from tests.running.test_live import mission as a_mission_for_fleets
-from tests.server.runs.stage import performed
 
 import muster
 from muster.cli.main import run
@@ -22,7 +22,7 @@ from muster.planning.options import PlanningOptions
 from muster.running.fleet_registry import FLEETS, declares
 from muster.running.observed_run import ObservedRun
 from muster.running.run_request import BESIDE_SETTINGS, RunRequest
-from muster.server.runs.run_settings import new_request
+from muster_control.runs.run_settings import new_request
 from muster_robots.fleet_settings import Ros1Settings
 
 MISSION = Mission(

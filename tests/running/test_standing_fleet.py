@@ -11,9 +11,9 @@ import pytest
 import muster
 from muster.cli.main import run
 from muster.cli.report_tables import print_report
-from muster.client.handles import report_from
 from muster.execution import Standing
 from muster.running.simulation import Simulation
+from muster_control.client.handles import report_from
 from muster_studies.benches.standing import fleet, most_per_hour, on_duty, orders
 
 

@@ -17,7 +17,9 @@ MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 MAP = {
     "tests/a/test_one.py::test_near": Executed(0.5, frozenset({"src/muster/a.py"})),
     "tests/a/test_one.py::test_far": Executed(2.0, frozenset({"src/muster/a.py", "src/muster/b.py"})),
-    "tests/cli/test_serve.py::test_page": Executed(1.0, frozenset({"src/muster/a.py", "src/muster/b.py"})),
+    "tests/muster_control/cli/test_serve.py::test_page": Executed(
+        1.0, frozenset({"src/muster/a.py", "src/muster/b.py"})
+    ),
 }
 
 
@@ -134,13 +136,13 @@ class TestTouched:
         [
             ("src/muster/core/search.cpp", "tests/core/test_local_search.py"),
             ("src/muster/report/page/player.js", "tests/report/page/test_page_in_a_browser.py"),
-            ("src/muster/server/pages/map/map.js", "tests/server/browser/test_story.py"),
+            ("src/muster_control/pages/map/map.js", "tests/muster_control/browser/test_story.py"),
             ("src/muster/library/missions/31T-6R50.yaml", "tests/library/test_missions.py"),
-            ("src/muster/server/store/migrations/script.py.mako", "tests/server/store/test_backup.py"),
+            ("src/muster_control/store/migrations/script.py.mako", "tests/muster_control/store/test_backup.py"),
             ("docs/index.md", "tests/docs/test_docs.py"),
             ("tests/core/test_core.py", "tests/core/test_core.py"),
             ("tests/verification/brute_paths.py", "tests/verification/test_map_paths.py"),
-            ("tests/server/store/conftest.py", "tests/server/store/test_backup.py"),
+            ("tests/muster_control/store/conftest.py", "tests/muster_control/store/test_backup.py"),
         ],
     )
     def test_other_files_touch_the_tests_of_their_folder_or_of_those_that_import_them(self, file, test):
@@ -162,8 +164,8 @@ class TestQuick:
         assert (selection.with_services, selection.beyond_budget) == (1, 1)
 
     def test_a_test_file_that_has_changed_runs_though_it_needs_a_service(self):
-        found = touched.touched(["tests/cli/test_serve.py"], MAP)
-        assert quick.select(found, MAP, budget_s=9.0).tests == ["tests/cli/test_serve.py::test_page"]
+        found = touched.touched(["tests/muster_control/cli/test_serve.py"], MAP)
+        assert quick.select(found, MAP, budget_s=9.0).tests == ["tests/muster_control/cli/test_serve.py::test_page"]
 
     def test_a_test_file_that_the_map_does_not_know_runs_whole(self):
         found = touched.Touched({"tests/a/test_new.py"})

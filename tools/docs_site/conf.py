@@ -68,5 +68,5 @@ html_show_sourcelink = False
 html_copy_source = False
 html_show_sphinx = False
 html_show_search_summary = False  # read from disk, a page may not fetch the others
-html_favicon = "../../src/muster/server/pages/assets/icon.svg"
+html_favicon = "../../src/muster_control/pages/assets/icon.svg"
 html_theme_options = {"navigation_with_keys": True}

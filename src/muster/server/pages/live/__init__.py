@@ -1,5 +1,0 @@
-"""The view *Live*: the runs under way, and one run with its controls."""
-
-from muster.server.pages.live import views
-
-__all__ = ["views"]

@@ -1,6 +1,0 @@
-"""The map as an element of pages: drawn on canvases by its own scripts (`map.js`, `modules/`)."""
-
-from muster.server.pages.map.element import MissionMap
-from muster.server.pages.map.scene import scene_of
-
-__all__ = ["MissionMap", "scene_of"]

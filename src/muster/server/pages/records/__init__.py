@@ -1,5 +1,0 @@
-"""The view *Records*: runs that are over, and one record with its replay, comparison and commands."""
-
-from muster.server.pages.records import views
-
-__all__ = ["views"]
