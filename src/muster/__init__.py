@@ -13,8 +13,6 @@ TYPE_CHECKING = False  # `typing` takes longer to import than all that stands he
 if TYPE_CHECKING:
     from typing import Any
 
-    from muster.comparison.compare import compare
-    from muster.comparison.comparison import Comparison
     from muster.execution import Report
     from muster.generation.generate import generate
     from muster.generation.generator import Generator
@@ -66,6 +64,8 @@ if TYPE_CHECKING:
     from muster.running.simulation import Simulation
     from muster.verification import Verdict
     from muster_files.importing import read_site
+    from muster_studies.comparison.compare import compare
+    from muster_studies.comparison.comparison import Comparison
     from muster_team.runs.negotiation import Negotiation
 
 __all__ = [
@@ -126,8 +126,8 @@ __all__ = [
 ]
 
 _NAMES_OF = {
-    "muster.comparison.compare": "compare",
-    "muster.comparison.comparison": "Comparison",
+    "muster_studies.comparison.compare": "compare",
+    "muster_studies.comparison.comparison": "Comparison",
     "muster.execution": "Report",
     "muster.generation.generate": "generate",
     "muster.generation.generator": "Generator",

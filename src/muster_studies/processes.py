@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from muster.comparison.workers import in_processes, require_done
+from muster_studies.comparison.workers import in_processes, require_done
 from muster_studies.runs import Case, Outcome, Sample, perform
 
 Job = tuple[Case, int]

@@ -8,9 +8,9 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import core
-from muster.allocation import ipga, order_crossover
 from muster.allocation.problem import Problem
 from muster.allocation.strings import diversity, fitness, random_strings, ranking, read, roulette, string_of
+from muster_studies.alternatives import ipga, order_crossover
 
 
 def test_a_string_is_read_as_a_ring():

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from muster import core
-from muster.allocation.ant_colony import built
 from muster.allocation.auction_terms import Terms
 from muster.allocation.auctioneer import Auctioneer
 from muster.allocation.problem import Problem
@@ -18,6 +17,7 @@ from muster.mission.model import Mission, Robot, Task
 from muster.planning.budget import Budget, Pace
 from muster.planning.request import Request
 from muster.planning.solving import answer
+from muster_studies.alternatives.ant_colony import built
 
 CONSTRUCTIVE = ("greedy", "auction", "contract-net", "alliance", "combinatorial-auction", "bertsekas-auction")
 

@@ -21,7 +21,7 @@ FOLDERS = [
     (r"src/muster_control/store/", ["tests/muster_control/store/"]),
     (r"src/muster/library/", ["tests/library/", "tests/conformance/test_allocators.py"]),
     (r"src/muster/mission/", ["tests/mission/"]),
-    (r"src/muster_studies/", ["tests/studies/"]),
+    (r"src/muster_studies/", ["tests/muster_studies/"]),
     (r"src/muster/", ["tests/test_python_api.py"]),
     (r"examples/", ["tests/examples/"]),
     (r"deploy/", ["tests/deploy/"]),

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.allocation.bundle_clearing import BundleBid, clear, greedy
+from muster_studies.alternatives.bundle_clearing import BundleBid, clear, greedy
 
 
 def random_bids(seed):

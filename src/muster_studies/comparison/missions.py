@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator
 from glob import glob
 from pathlib import Path
 
-from muster.comparison.specs import Spec, listed, spec_of
 from muster.generation.generate import generate
 from muster.generation.registry import GENERATORS
 from muster.library import mission_names
@@ -17,6 +16,7 @@ from muster.mission.near_matches import did_you_mean
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.planning.loading import load
+from muster_studies.comparison.specs import Spec, listed, spec_of
 
 MissionSpec = str | Path | Mission
 """A mission, a file, a pattern of files, a folder of mission files, a shipped name, or a family of random missions

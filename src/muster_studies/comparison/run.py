@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
     from muster.allocation.problem import Problem
     from muster.allocation.stop import Stop
-    from muster.comparison.settings import Settings
     from muster.mission.plan import Plan
+    from muster_studies.comparison.settings import Settings
 
 DONE, NOT_APPLICABLE, FAILED, INVALID = STATUSES = "done", "not-applicable", "failed", "invalid"
 

@@ -18,9 +18,9 @@ from muster.cli.outputs import require_drawable, require_writable
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
-    from muster.comparison.compare import Pending
-    from muster.comparison.comparison import Comparison
-    from muster.comparison.run import Run
+    from muster_studies.comparison.compare import Pending
+    from muster_studies.comparison.comparison import Comparison
+    from muster_studies.comparison.run import Run
 
 _FILE = click.Path(path_type=Path)
 _MOST_SECONDS = 1e6
@@ -89,9 +89,9 @@ def command(
 
     Each run has one thread. Ctrl-C keeps what there is; with -o the same command goes on from there.
     """
-    from muster.comparison.compare import begun
-    from muster.comparison.settings import Settings
-    from muster.comparison.specs import listed
+    from muster_studies.comparison.compare import begun
+    from muster_studies.comparison.settings import Settings
+    from muster_studies.comparison.specs import listed
 
     if quiet:
         logging.getLogger("muster").setLevel(logging.ERROR)
@@ -130,7 +130,7 @@ def _require_files(output: Path | None, report: Path | None, plot: Path | None) 
     require_writable(None, (output, report, plot), (), ())
     require_drawable(plot)
     if report is not None:
-        from muster.comparison.page import require_page
+        from muster_studies.comparison.page import require_page
 
         require_page(report, "--report")
         require_drawable(report.with_suffix(".svg"))
@@ -190,7 +190,7 @@ def _show(comparison: Comparison, form: str, report: Path | None, plot: Path | N
 
 def _print_tables(comparison: Comparison) -> None:
     from muster.cli.tables import print_table
-    from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
+    from muster_studies.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
 
     title = f"{comparison.counts}; {comparison.settings.text} each"
     print_table(STANDING_COLUMNS, map(standing_cells, comparison.standings), title=title, right=STANDING_COLUMNS[1:])

@@ -21,13 +21,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Generic, TypeVar
 
-from muster.comparison.by_value import packed
 from muster.mission.errors import MusterError
+from muster_studies.comparison.by_value import packed
 
 Job = TypeVar("Job")
 Found = TypeVar("Found")
 
-_MODULE = "muster.comparison.worker"
+_MODULE = "muster_studies.comparison.worker"
 _ENDING_S = 5.0
 """A process that has closed its pipe ends by itself in less."""
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")

@@ -12,9 +12,9 @@ from typing import Any
 from muster.allocation.allocator import Allocator, make_parameters
 from muster.allocation.function_allocator import AllocatingFunction
 from muster.allocation.registry import allocator_of
-from muster.comparison.specs import spec_of
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.value_types import shown
+from muster_studies.comparison.specs import spec_of
 
 AllocatorSpec = str | Allocator | AllocatingFunction
 """A name with parameters, `genetic:population_size=40`; MODULE:NAME; an allocator; a function that makes routes."""

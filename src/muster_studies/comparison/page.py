@@ -10,13 +10,13 @@ from html import escape
 from importlib.metadata import version
 from pathlib import Path
 
-from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
-from muster.comparison.notes import cut_short_note
-from muster.comparison.ranking import Best, bests, by_mission, close, typical
-from muster.comparison.run import Run
-from muster.comparison.statistics import Pair, Standing
 from muster.mission.errors import ParameterError
 from muster.mission.packaged_files import packaged_text
+from muster_studies.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
+from muster_studies.comparison.notes import cut_short_note
+from muster_studies.comparison.ranking import Best, bests, by_mission, close, typical
+from muster_studies.comparison.run import Run
+from muster_studies.comparison.statistics import Pair, Standing
 
 _MOST_ROWS = 500
 
@@ -64,7 +64,7 @@ def page(contents: Contents) -> str:
     head = '<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
     return (
         f'<!doctype html>\n<html lang="en"><head>{head}<title>Comparison of allocators</title>'
-        f"<style>{packaged_text('muster.comparison', 'page.css')}</style></head>\n<body>\n{body}\n</body></html>\n"
+        f"<style>{packaged_text('muster_studies.comparison', 'page.css')}</style></head>\n<body>\n{body}\n</body></html>\n"
     )
 
 
@@ -82,7 +82,7 @@ def _sections(contents: Contents) -> Iterator[str]:
     yield f'<h2>Figures</h2><div class="pictures">{"".join(shown)}</div>'
     yield "<h2>Missions</h2>" + _missions(contents.runs, contents.allocators)
     yield _not_done(contents.runs)
-    yield "<h2>How to read it</h2>" + packaged_text("muster.comparison", "how_to_read.html")
+    yield "<h2>How to read it</h2>" + packaged_text("muster_studies.comparison", "how_to_read.html")
     yield "<h2>How it was made</h2>" + (f"<pre>{escape(contents.command)}</pre>" if contents.command else "")
     yield f'<p class="facts">Muster {version("muster-robotics")}, {escape(_machine())}</p>'
 

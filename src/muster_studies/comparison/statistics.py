@@ -15,7 +15,8 @@ from statistics import fmean, median
 import numpy as np
 import numpy.typing as npt
 
-from muster.comparison.ranking import (
+from muster.mission.extras import needs_extra
+from muster_studies.comparison.ranking import (
     Rank,
     are_equal,
     bests,
@@ -27,8 +28,7 @@ from muster.comparison.ranking import (
     ratio,
     typical,
 )
-from muster.comparison.run import FAILED, INVALID, NOT_APPLICABLE, Run
-from muster.mission.extras import needs_extra
+from muster_studies.comparison.run import FAILED, INVALID, NOT_APPLICABLE, Run
 
 _CONFIDENCE = 0.95
 _RESAMPLES = 9999

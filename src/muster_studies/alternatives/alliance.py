@@ -17,10 +17,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster.allocation.allocator import Allocator, Outcome, Routes
-from muster.allocation.motivation import Team
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.ranges import require_within
+from muster_studies.alternatives.motivation import Team
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,10 +5,10 @@ from itertools import product
 
 import pytest
 
-from muster.comparison.cells import pair_cells
-from muster.comparison.ranking import best_of, gap, order, ratio, typical
-from muster.comparison.run import FAILED, NOT_APPLICABLE, Run
-from muster.comparison.statistics import (
+from muster_studies.comparison.cells import pair_cells
+from muster_studies.comparison.ranking import best_of, gap, order, ratio, typical
+from muster_studies.comparison.run import FAILED, NOT_APPLICABLE, Run
+from muster_studies.comparison.statistics import (
     holm,
     mean_with_interval,
     pairs_of,

@@ -9,7 +9,7 @@ import threading
 from multiprocessing.connection import Connection
 from typing import Any
 
-from muster.comparison.workers import Lost, Raised
+from muster_studies.comparison.workers import Lost, Raised
 
 
 def main(link_fd: int, lifeline_fd: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from muster.comparison.statistics import Pair, Standing
+from muster_studies.comparison.statistics import Pair, Standing
 
 STANDING_COLUMNS = (
     "allocator",

@@ -9,14 +9,14 @@ from math import isfinite, isinf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from muster.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
-from muster.comparison.notes import cut_short_note, notes_without_plan
-from muster.comparison.run import Run
-from muster.comparison.settings import Settings
-from muster.comparison.statistics import Pair, Profile, Standing, pairs_of, profiles_of, standings_of
 from muster.mission.counting import counted
 from muster.mission.data_frames import frame_of_records
 from muster.mission.html_tables import html_line, html_table
+from muster_studies.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
+from muster_studies.comparison.notes import cut_short_note, notes_without_plan
+from muster_studies.comparison.run import Run
+from muster_studies.comparison.settings import Settings
+from muster_studies.comparison.statistics import Pair, Profile, Standing, pairs_of, profiles_of, standings_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -126,8 +126,8 @@ class Comparison:
 
         Infinite gaps, of runs beside a best objective of 0, are left out.
         """
-        from muster.comparison.ranking import bests, gap
         from muster.report.profiles import draw_gaps
+        from muster_studies.comparison.ranking import bests, gap
 
         best = bests(self.runs)
         gaps = {
@@ -163,9 +163,9 @@ class Comparison:
         OSError
             if it cannot be written.
         """
-        from muster.comparison.page import Contents, page, require_page
         from muster.mission.text_files import write_text
         from muster.report.files import svg_text
+        from muster_studies.comparison.page import Contents, page, require_page
 
         require_page(path)
         drawn = (

@@ -21,12 +21,12 @@ from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.auction_terms import BidTerms
 from muster.allocation.auctioneer import Auctioneer, OnRound
 from muster.allocation.book_keeper import book_of
-from muster.allocation.bundle_clearing import BundleBid, clear
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.winners import Floats, Sale
 from muster.mission.errors import ParameterError
 from muster.mission.ranges import require_counts
+from muster_studies.alternatives.bundle_clearing import BundleBid, clear
 
 
 @dataclass(frozen=True, kw_only=True)

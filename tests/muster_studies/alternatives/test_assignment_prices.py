@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.allocation.assignment_prices import assign
-from muster.allocation.bertsekas_auction import assignment
+from muster_studies.alternatives.assignment_prices import assign
+from muster_studies.alternatives.bertsekas_auction import assignment
 
 
 @given(seed=st.integers(0, 10**6), persons=st.integers(1, 8), more=st.integers(0, 8), whole=st.booleans())

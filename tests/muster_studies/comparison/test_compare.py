@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import muster
-from muster.comparison.compare import begun
-from muster.comparison.missions import missions_of
-from muster.comparison.results_file import ResultsFile
-from muster.comparison.settings import Settings
 from muster.mission.errors import InputError
+from muster_studies.comparison.compare import begun
+from muster_studies.comparison.missions import missions_of
+from muster_studies.comparison.results_file import ResultsFile
+from muster_studies.comparison.settings import Settings
 
 
 def in_order(problem):
@@ -367,7 +367,7 @@ def test_processor_time_and_another_objective():
 
 
 def test_the_search_of_a_comparison_has_one_thread():
-    from muster.comparison.contestants import contestants_of
+    from muster_studies.comparison.contestants import contestants_of
 
     for text, threads in (("search", 1), ("search:threads=2", 2)):
         (one,) = contestants_of(text)

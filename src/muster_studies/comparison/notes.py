@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from muster.comparison.run import Run
 from muster.mission.counting import counted
+from muster_studies.comparison.run import Run
 
 
 def cut_short_note(runs: Sequence[Run]) -> str:

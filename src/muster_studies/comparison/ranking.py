@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from muster.comparison.run import NOT_APPLICABLE, Run
+from muster_studies.comparison.run import NOT_APPLICABLE, Run
 
 _TOLERANCE = 1e-9
 """Relative: values that differ by less are equal."""

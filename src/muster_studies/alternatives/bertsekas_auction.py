@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.allocation.allocator import Allocator, Outcome, Routes
-from muster.allocation.assignment_prices import assign
 from muster.allocation.auction_terms import BidTerms
 from muster.allocation.auctioneer import Auctioneer, OnRound
 from muster.allocation.book_keeper import book_of
@@ -22,6 +21,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.winners import Floats, Sale
 from muster.mission.ranges import require_within
+from muster_studies.alternatives.assignment_prices import assign
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,18 +8,18 @@ from operator import index
 from pathlib import Path
 from typing import Any
 
-from muster.comparison.comparison import Comparison
-from muster.comparison.contestants import AllocatorSpec, contestants_of
-from muster.comparison.missions import MissionSpec, missions_of
-from muster.comparison.performer import Performer, Trial, trials_of
-from muster.comparison.results_file import ResultsFile, require_results_place
-from muster.comparison.run import Run
-from muster.comparison.settings import Settings
-from muster.comparison.statistics import require_scipy
-from muster.comparison.workers import Lost, in_processes
 from muster.mission.errors import ParameterError
 from muster.mission.platforms import usable_processors
 from muster.mission.value_types import shown
+from muster_studies.comparison.comparison import Comparison
+from muster_studies.comparison.contestants import AllocatorSpec, contestants_of
+from muster_studies.comparison.missions import MissionSpec, missions_of
+from muster_studies.comparison.performer import Performer, Trial, trials_of
+from muster_studies.comparison.results_file import ResultsFile, require_results_place
+from muster_studies.comparison.run import Run
+from muster_studies.comparison.settings import Settings
+from muster_studies.comparison.statistics import require_scipy
+from muster_studies.comparison.workers import Lost, in_processes
 
 DEFAULT_SEEDS = 10
 _LARGEST_SEED = 2**64 - 1

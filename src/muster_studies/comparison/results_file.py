@@ -13,9 +13,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
-from muster.comparison.performer import Trial
-from muster.comparison.run import DONE, STATUSES, Run
 from muster.mission.errors import Finding, InputError, ParameterError
+from muster_studies.comparison.performer import Trial
+from muster_studies.comparison.run import DONE, STATUSES, Run
 
 COLUMNS = tuple(f.name for f in fields(Run))
 _ASKED = ("objective", "parameters", "time_limit_s", "iteration_limit", "clock", "digest")

@@ -1,4 +1,4 @@
-"""`muster bench`: which benches there are; what they measure is in `tests/studies`."""
+"""`muster bench`: which benches there are; what they measure is in `tests/muster_studies`."""
 
 import json
 import re

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from muster.allocation.allocator import Allocator
-from muster.comparison.contestants import Contestant
-from muster.comparison.run import FAILED, NOT_APPLICABLE, Run, attempt, figures, stop_of
-from muster.comparison.settings import Settings
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.yaml_writer import yaml_text
+from muster_studies.comparison.contestants import Contestant
+from muster_studies.comparison.run import FAILED, NOT_APPLICABLE, Run, attempt, figures, stop_of
+from muster_studies.comparison.settings import Settings
 
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem
