@@ -9,6 +9,8 @@ assert muster.verify(mission, plan).valid
 
 from __future__ import annotations
 
+from muster.moved import keep_old_names
+
 TYPE_CHECKING = False  # `typing` takes longer to import than all that stands here
 if TYPE_CHECKING:
     from typing import Any
@@ -158,6 +160,8 @@ _NAMES_OF = {
 }
 """By module the names that are loaded from it at their first use."""
 _MODULE_OF = {name: module for module, names in _NAMES_OF.items() for name in names.split()}
+
+keep_old_names()
 
 
 def __dir__() -> list[str]:

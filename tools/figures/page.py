@@ -12,7 +12,8 @@ _HEAD = """# Figures
 Every figure of the three documents that has data is drawn by a study: `muster study NAME --figures NUMBER --plot DIR`
 draws one (`figure-NUMBER.png`), `--figures all` all of a study; `make figures` draws all of all studies, with `--quick`
 (few seeds), and makes this page. The documents are those of [references.md](references.md); the pictures are of
-Muster's own runs. A test compares the numbers with those that the documents print (`tests/muster_studies/test_figures.py`).
+Muster's own runs. A test compares the numbers with those that the documents print
+(`tests/muster_studies/test_figures.py`).
 """
 
 

@@ -64,7 +64,7 @@ def page(contents: Contents) -> str:
     head = '<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
     return (
         f'<!doctype html>\n<html lang="en"><head>{head}<title>Comparison of allocators</title>'
-        f"<style>{packaged_text('muster_studies.comparison', 'page.css')}</style></head>\n<body>\n{body}\n</body></html>\n"
+        f"<style>{packaged_text(__package__, 'page.css')}</style></head>\n<body>\n{body}\n</body></html>\n"
     )
 
 

@@ -1,4 +1,4 @@
-"""`python -m tests.muster_control.runs.campaign [MOST_KILLS] [--seed N] [--db URL]`: mission control killed at random moments.
+"""`python -m tests.muster_control.runs.campaign [MOST_KILLS] [--seed N] [--db URL]`: mission control is killed.
 
 A real `muster serve` carries missions out, of which a user asks for things over its API, watches the stream, and has
 more planned. Its process, a run's, or a planning worker's ends by kill -9 some times a run; when the run is over, its

@@ -1,4 +1,4 @@
-"""`python -m tests.muster_control.runs.log_growth [ORDERS...]`: how many bytes of log an order of a standing fleet makes.
+"""`python -m tests.muster_control.runs.log_growth [ORDERS...]`: the bytes of log that an order makes.
 
 A simulated fleet serves so many orders, as fast as it goes. Told are the entries and the bytes of the log, in all
 and by order, those of plans alone, and the size of the last checkpoint.

@@ -1,4 +1,4 @@
-"""`python -m tests.muster_control.runs.recovery_time [ORDERS]`: how long a server takes to go on with a fleet that has served.
+"""`python -m tests.muster_control.runs.recovery_time [ORDERS]`: how long a recovery takes.
 
 A database gets the log of a standing fleet, as a server that is killed leaves it: with all entries since the first
 order, the last checkpoint, and where robots stood. Then `muster serve` is started with it. Told are the seconds until
