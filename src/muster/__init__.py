@@ -9,10 +9,11 @@ assert muster.verify(mission, plan).valid
 
 from __future__ import annotations
 
-from muster.moved import keep_old_names
+import sys
 
 TYPE_CHECKING = False  # `typing` takes longer to import than all that stands here
 if TYPE_CHECKING:
+    from importlib.machinery import ModuleSpec
     from typing import Any
 
     from muster.execution import Report
@@ -161,7 +162,36 @@ _NAMES_OF = {
 """By module the names that are loaded from it at their first use."""
 _MODULE_OF = {name: module for module, names in _NAMES_OF.items() for name in names.split()}
 
-keep_old_names()
+_MOVED = {
+    "muster.bridges": "muster_robots",
+    "muster.client": "muster_control.client",
+    "muster.comparison": "muster_studies.comparison",
+    "muster.exchange": "muster_files",
+    "muster.negotiation": "muster_team",
+    "muster.report.film": "muster_physics.film",
+    "muster.server": "muster_control",
+    "muster.simulation.physics": "muster_physics",
+}
+"""The new names of packages that have moved, with all that is in them. The old names can still be imported."""
+
+
+class _OldNames:
+    """Finds modules by the names that they had before they moved.
+
+    It comes before other finders: these would find what is in a package that has moved a second time.
+    """
+
+    @staticmethod
+    def find_spec(name: str, *_: object) -> ModuleSpec | None:
+        old = name.startswith("muster.") and next((o for o in _MOVED if f"{name}.".startswith(f"{o}.")), None)
+        if not old:
+            return None
+        from muster.mission.moved import moved
+
+        return moved(name, _MOVED[old] + name.removeprefix(old))
+
+
+sys.meta_path.insert(0, _OldNames)
 
 
 def __dir__() -> list[str]:
