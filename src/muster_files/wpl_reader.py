@@ -16,11 +16,11 @@ from pathlib import Path
 
 from muster.mission.csv_files import number
 from muster.mission.import_ledger import Fate, LedgerBook, passed_over, read_as
-from muster.mission.number_rows import Row, text_rows
 from muster.mission.text_files import LARGEST_FILE, read_text
 from muster.planning.mission_readers import Noted
 from muster_files import qgc_format as qgc
 from muster_files.flight_missions import FlownFile, mission_of
+from muster_files.number_rows import Row, text_rows
 from muster_files.qgc_commands import TAKEOFFS, name_of, param_of
 from muster_files.qgc_fences import Fences
 from muster_files.qgc_fields import Degrees, PlanFields

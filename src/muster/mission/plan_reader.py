@@ -13,17 +13,24 @@ from muster.mission.errors import Finding, MissionError, ParameterError, PlanErr
 from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule
 from muster.mission.model import Mission
 from muster.mission.plan import PLAN_SCHEMA, STOP_TIMES, Plan, Reason, Route, RouteStop, Unassigned
+from muster.mission.plugins import Registry, function_expected
 from muster.mission.rules import OBJECTIVES
-from muster.mission.sol_files import is_sol, read_sol
 from muster.mission.swapped import MISSION_AS_PLAN, is_mission
 from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
+
+PlanReader = Callable[[Path, str, Mission], Plan | None]
+"""Reads the text of a file of another program as a plan for a mission; returns None for a text of another kind."""
+PLAN_READERS: Registry[PlanReader] = Registry(
+    "plan reader", "muster.plan_readers", function_expected("a function of a path, its text and a mission")
+)
 
 
 def read_plan(path: str | Path, mission: Mission | None = None) -> Plan:
     """Read a plan file. One from elsewhere needs only `schema` and `routes`.
 
-    With the mission that it is for, it may be a solution of vehicle routing (`.sol`): `Route #1: 5 3 2`.
+    With the mission that it is for, it may be a solution of vehicle routing (`.sol`), `Route #1: 5 3 2`, or another
+    file that an installed package reads (entry points `muster.plan_readers`).
 
     Raises
     ------
@@ -35,8 +42,8 @@ def read_plan(path: str | Path, mission: Mission | None = None) -> Plan:
         text = read_text(file)
     except MissionError as error:
         raise PlanError(error.findings) from None
-    if mission is not None and (file.suffix.lower() == ".sol" or is_sol(text)):
-        return read_sol(file, mission)
+    if mission is not None and (plan := _of_other_program(file, text, mission)) is not None:
+        return plan
     if is_mission(text):
         raise PlanError([Finding(str(file), None, "schema", '"muster/1"', MISSION_AS_PLAN)])
     try:
@@ -51,6 +58,11 @@ def read_plan(path: str | Path, mission: Mission | None = None) -> Plan:
         half = f"\\u{ord(error.object[error.start]):04x} alone in a text"
         raise PlanError([Finding(str(file), None, "", half, "whole characters")]) from None
     return plan_from(data, str(file))
+
+
+def _of_other_program(file: Path, text: str, mission: Mission) -> Plan | None:
+    plans = (read(file, text, mission) for read in PLAN_READERS.usable().values())
+    return next(filter(None, plans), None)
 
 
 def plan_from(data: object, file: str) -> Plan:

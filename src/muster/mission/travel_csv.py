@@ -1,20 +1,28 @@
 """Travel tables: CSV with place ids in the first line and column; the cell is the distance from row to column.
 
-A file of TSPLIB or VRPLIB is a travel table too, of the weights of its edges.
+Installed packages read other files as travel tables (entry points `muster.travel_tables`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path as FilePath
 
 from muster.mission.csv_files import number, read_table
 from muster.mission.errors import Finding, MissionError
-from muster.mission.keyword_files import is_keyword_file, read_keyword_file
+from muster.mission.plugins import Registry, function_expected
 from muster.mission.site import TravelTable
 from muster.mission.source import Source
 from muster.mission.value_types import Fault, shown
+
+TableReader = Callable[[FilePath, Sequence[str], Collection[str]], TravelTable | None]
+"""Reads a file of another program for these robots and other places; returns None for a file of another kind."""
+TRAVEL_TABLES: Registry[TableReader] = Registry(
+    "reader of travel tables",
+    "muster.travel_tables",
+    function_expected("a function of a path, robots and other places"),
+)
 
 
 def read_travel_tables(
@@ -27,34 +35,20 @@ def read_travel_tables(
     """The travel table of each robot type; `files` are found from the folder of the mission's file.
 
     A cell is metres, or `inf` where there is no way. `robots` and `others`, tasks and stations, are the places of the
-    mission, which a file of TSPLIB or VRPLIB does not tell apart. What is wrong is appended to `faults`.
+    mission, which a file of another program may not tell apart. What is wrong is appended to `faults`.
     """
     tables: dict[str, TravelTable] = {}
     for kind, name in files.items():
         path = FilePath(source.file).parent / name
         try:
-            if is_keyword_file(path):
-                tables[kind] = _table_of_instance(path, robots, others)
-            else:
-                tables[kind] = read_travel_table(path)
+            other = (read(path, robots, others) for read in TRAVEL_TABLES.usable().values())
+            tables[kind] = next(filter(None, other), None) or read_travel_table(path)
         except MissionError as error:
             faults.extend(
                 Fault(("travel", kind), f"{finding.place}: {finding.value}", finding.expected)
                 for finding in error.findings
             )
     return tables
-
-
-def _table_of_instance(path: FilePath, robots: Sequence[str], others: Collection[str]) -> TravelTable:
-    """The table of an instance file, in which robots start at the one node that is neither task nor station."""
-    from muster.mission.weighted_nodes import weighted_nodes  # NumPy is not loaded for other missions
-
-    nodes = weighted_nodes(read_keyword_file(path), exact=False)
-    depots = [node.id for node in nodes.nodes if node.id not in others]
-    if len(depots) != 1 or nodes.weights is None:
-        value = f"{len(depots)} nodes that are no tasks of the mission"
-        raise MissionError([Finding(str(path), None, "", value, "one, where the robots start")])
-    return nodes.travel_table(robots, depots[0])
 
 
 def read_travel_table(path: FilePath) -> TravelTable:

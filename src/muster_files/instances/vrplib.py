@@ -11,7 +11,10 @@ from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
-from muster.mission.customer_missions import (
+from muster.mission.errors import Finding, MissionError
+from muster.mission.model import Mission
+from muster.mission.value_types import shown
+from muster_files.instances.customer_missions import (
     DEMAND,
     DUE,
     READY,
@@ -23,15 +26,19 @@ from muster.mission.customer_missions import (
     instance_mission,
     robot_ids,
 )
-from muster.mission.errors import Finding, MissionError
-from muster.mission.keyword_files import KeywordFile, read_keyword_file
-from muster.mission.line_fates import LineFates
-from muster.mission.model import Mission
-from muster.mission.number_rows import Row, is_whole, node_number, read_row
-from muster.mission.tsplib import tabled
-from muster.mission.value_types import shown
-from muster.mission.vrplib_fleet import FLEET_SECTIONS, NEEDED, OwnVehicle, limits_of_all, own_vehicles, robots_for
-from muster.mission.weighted_nodes import NODE_SECTIONS, WeightedNodes, weighted_nodes
+from muster_files.instances.keyword_files import KeywordFile, read_keyword_file
+from muster_files.instances.line_fates import LineFates
+from muster_files.instances.tsplib import tabled
+from muster_files.instances.vrplib_fleet import (
+    FLEET_SECTIONS,
+    NEEDED,
+    OwnVehicle,
+    limits_of_all,
+    own_vehicles,
+    robots_for,
+)
+from muster_files.instances.weighted_nodes import NODE_SECTIONS, WeightedNodes, weighted_nodes
+from muster_files.number_rows import Row, is_whole, node_number, read_row
 
 TYPES = ("CVRP", "VRP", "DCVRP", "DVRP", "VRPTW", "CVRPTW", "PDPTW", "MDVRP", "MDCVRP", "MDVRPTW", *NEEDED)
 _DEMAND, _DEPOT = "DEMAND_SECTION", "DEPOT_SECTION"

@@ -13,12 +13,12 @@ from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
-from muster.mission.customer_missions import Customer, Instance, fleet, instance_mission, robot_ids
 from muster.mission.errors import Finding, MissionError
-from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.number_rows import Row, is_whole, node_number, read_row, row_numbers, text_rows
 from muster.mission.text_files import read_text
+from muster_files.instances.customer_missions import Customer, Instance, fleet, instance_mission, robot_ids
+from muster_files.instances.line_fates import LineFates
+from muster_files.number_rows import Row, is_whole, node_number, read_row, row_numbers, text_rows
 
 _HEAD = ("type", "number of vehicles", "number of customers", "number of depots or kinds of vehicles")
 _LIMITS = ("longest duration", "load")

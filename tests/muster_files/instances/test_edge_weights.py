@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import muster
-from muster.mission.edge_weights import COORDINATES, LAYOUTS, matrix_of, numbers_in, weights_of
 from muster.mission.errors import MissionError
+from muster_files.instances.edge_weights import COORDINATES, LAYOUTS, matrix_of, numbers_in, weights_of
 
 NEAR, FAR = (0.0, 0.0, 0.0), (1.0, 2.5, 1.5)  # 2.69... apart in the plane, 3.08... in space
 

@@ -12,9 +12,9 @@ from tests.mission.strategies import examples
 import muster
 from muster.cli.main import run
 from muster.mission.errors import MissionError, NotSupportedError, ParameterError
-from muster.mission.instance_files import instance_form
 from muster.mission.model import Battery, Rules, Task
-from muster.mission.solomon import read_solomon
+from muster_files.instances.instance_files import instance_form
+from muster_files.instances.solomon import read_solomon
 
 SOLOMON = """TINY
 

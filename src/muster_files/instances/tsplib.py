@@ -12,14 +12,14 @@ from typing import Any
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
-from muster.mission.keyword_files import KeywordFile, read_keyword_file
-from muster.mission.line_fates import LineFates
 from muster.mission.model import SCHEMA, Mission
-from muster.mission.number_rows import node_number
 from muster.mission.site import TravelTable
 from muster.mission.source import Place, Source
 from muster.mission.value_types import Path, shown
-from muster.mission.weighted_nodes import NODE_SECTIONS, WeightedNodes, weighted_nodes
+from muster_files.instances.keyword_files import KeywordFile, read_keyword_file
+from muster_files.instances.line_fates import LineFates
+from muster_files.instances.weighted_nodes import NODE_SECTIONS, WeightedNodes, weighted_nodes
+from muster_files.number_rows import node_number
 
 MOST_SALESMEN = 100_000
 TABLED_TYPE = "vehicle"

@@ -11,10 +11,9 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from muster.mission.errors import Finding, MissionError, ParameterError, PlanError
+from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
-from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 
 _ROUTE = re.compile(r"^\s*Route\s*#?\s*\d+\s*:(.*)$", re.IGNORECASE)
@@ -38,25 +37,20 @@ def sol_text(mission: Mission, routes: Iterable[Sequence[str]], cost: float) -> 
     return "\n".join([*lines, f"Cost {_figure(cost)}"]) + "\n"
 
 
-def is_sol(text: str) -> bool:
-    """Whether a text has lines of routes."""
-    return any(map(_ROUTE.match, text.splitlines()))
+def read_sol(path: Path, text: str, mission: Mission) -> Plan | None:
+    """Return the plan in the text of a file: its routes alone. The cost is not read: published ones are rounded.
 
-
-def read_sol(path: Path, mission: Mission) -> Plan:
-    """The plan in a file: its routes alone. The cost is not read: published ones are rounded.
+    Returns None where neither the file's name nor a line says that it is such a solution.
 
     Raises
     ------
     PlanError
-        if it cannot be read, has no routes, or more than the mission has robots.
+        if it has no routes, or more than the mission has robots.
     """
-    try:
-        text = read_text(path)
-    except MissionError as error:
-        raise PlanError(error.findings) from None
     ids = {number: name for name, number in _numbers(mission).items()}
     found = [(line, match[1].split()) for line, match in enumerate(map(_ROUTE.match, text.splitlines()), 1) if match]
+    if not found and path.suffix.lower() != ".sol":
+        return None
     if not found:
         raise PlanError([Finding(str(path), None, "Route", "missing", "lines such as Route #1: 5 3 2")])
     busy = [(line, words) for line, words in found if words]

@@ -12,13 +12,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any
 
-from muster.mission.customer_missions import Customer, Instance, fleet, instance_mission
 from muster.mission.errors import Finding, MissionError
-from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.number_rows import Row, read_row, row_numbers, text_rows
 from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
+from muster_files.instances.customer_missions import Customer, Instance, fleet, instance_mission
+from muster_files.instances.line_fates import LineFates
+from muster_files.number_rows import Row, read_row, row_numbers, text_rows
 
 _COLUMNS = ("x", "y", "demand", "ready time", "due date", "service time")
 _DEPOT, _STATION, _CUSTOMER = "d", "f", "c"

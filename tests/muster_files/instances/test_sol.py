@@ -14,7 +14,7 @@ from muster.cli.main import run
 from muster.mission.model import Mission, Robot, Rules, Station, Task
 from muster.mission.plan import Plan, Route
 from muster.mission.plan_reader import read_plan
-from muster.mission.sol_files import read_sol, sol_text
+from muster_files.instances.sol_files import read_sol, sol_text
 
 CLOSED = Rules(return_to_start=True, objective="total")
 HOME = (0.0, 0.0)
@@ -107,13 +107,12 @@ def test_verify_says_what_is_wrong_with_the_routes(read):
 
 @examples(60)
 @given(st.permutations([str(k) for k in range(2, 12)]), st.sets(st.integers(1, 9), max_size=2))
-def test_what_is_written_is_read_back(tmp_path_factory, order, cuts):
+def test_what_is_written_is_read_back(order, cuts):
     ends = [0, *sorted(cuts), 10]
     routes = [tuple(order[a:b]) for a, b in pairwise(ends)]
     given = mission([str(k) for k in range(2, 12)])
-    path = tmp_path_factory.mktemp("sol") / "x.sol"
-    path.write_text(sol_text(given, routes, 1.5), encoding="utf-8")
-    assert [route.tasks for route in read_sol(path, given).routes if route.tasks] == routes
+    plan = read_sol(Path("x.sol"), sol_text(given, routes, 1.5), given)
+    assert [route.tasks for route in plan.routes if route.tasks] == routes
 
 
 def test_every_verb_that_takes_a_plan_takes_a_solution(tmp_path, monkeypatch, capsys):

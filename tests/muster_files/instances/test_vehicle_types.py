@@ -9,7 +9,7 @@ import muster
 from muster.mission.errors import MissionError
 from muster.planning.loading import load_noted
 
-CASES = Path(__file__).parents[1] / "data" / "cases" / "import"
+CASES = Path(__file__).parents[2] / "data" / "cases" / "import"
 NODES = """NAME : own
 COMMENT : first
 COMMENT : second

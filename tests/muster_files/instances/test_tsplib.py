@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from tests.mission.strategies import examples, salesmen
-from tests.mission.tsplib_writer import write_tsplib
+from tests.muster_files.instances.tsplib_writer import write_tsplib
 
 import muster
 from muster.mission.errors import MissionError
@@ -15,7 +15,7 @@ from muster.mission.model import (
     Rules,
     Task,
 )
-from muster.mission.tsplib import read_tsplib
+from muster_files.instances.tsplib import read_tsplib
 
 R = Robot(id="r_0", position=(0, 0))
 

@@ -6,15 +6,15 @@ import re
 from collections.abc import Callable, Sequence
 from pathlib import Path as FilePath
 
-from muster.mission.cordeau import looks_like_cordeau, read_cordeau
-from muster.mission.electric_vrptw import looks_like_electric_vrptw, read_electric_vrptw
-from muster.mission.li_lim import looks_like_li_lim, read_li_lim
-from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.number_rows import Row, text_rows
-from muster.mission.solomon import looks_like_solomon, read_solomon
 from muster.mission.text_files import first_lines
-from muster.mission.vrplib import TYPES, read_vrplib
+from muster_files.instances.cordeau import looks_like_cordeau, read_cordeau
+from muster_files.instances.electric_vrptw import looks_like_electric_vrptw, read_electric_vrptw
+from muster_files.instances.li_lim import looks_like_li_lim, read_li_lim
+from muster_files.instances.line_fates import LineFates
+from muster_files.instances.solomon import looks_like_solomon, read_solomon
+from muster_files.instances.vrplib import TYPES, read_vrplib
+from muster_files.number_rows import Row, text_rows
 
 VehicleReader = Callable[[FilePath, int | None, LineFates | None], Mission]
 """Reads an instance file with so many robots, or with as many as the file says; tells what becomes of its lines."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path as FilePath
 
-from muster.mission.customer_missions import Customer, Instance, fleet, instance_mission
 from muster.mission.errors import Finding, MissionError
-from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.number_rows import Row, is_whole, node_number, read_row, text_rows
 from muster.mission.text_files import read_text
+from muster_files.instances.customer_missions import Customer, Instance, fleet, instance_mission
+from muster_files.instances.line_fates import LineFates
+from muster_files.number_rows import Row, is_whole, node_number, read_row, text_rows
 
 _COLUMNS = ("customer", "x", "y", "demand", "ready time", "due date", "service time")
 _TITLES = ("VEHICLE", "CUSTOMER")

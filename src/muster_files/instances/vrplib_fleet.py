@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.keyword_files import KeywordFile
-from muster.mission.number_rows import Row, node_number, row_numbers
 from muster.mission.value_types import shown
+from muster_files.instances.keyword_files import KeywordFile
+from muster_files.number_rows import Row, node_number, row_numbers
 
 _DEPOTS, _CAPACITIES, _ALLOWED = "VEHICLES_DEPOT_SECTION", "CAPACITY_SECTION", "VEHICLES_ALLOWED_CLIENTS_SECTION"
 _DISTANCES, _DURATIONS = "VEHICLES_MAX_DISTANCE_SECTION", "VEHICLES_MAX_DURATION_SECTION"

@@ -8,12 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.edge_weights import COORDINATES, EXPLICIT, LAYOUTS, Floats, matrix_of, numbers_in, weights_of
 from muster.mission.errors import Finding, MissionError
-from muster.mission.keyword_files import KeywordFile
-from muster.mission.number_rows import is_whole, node_number, read_row, row_numbers
 from muster.mission.site import Point, TravelTable
 from muster.mission.value_types import shown
+from muster_files.instances.edge_weights import (
+    COORDINATES,
+    EXPLICIT,
+    LAYOUTS,
+    Floats,
+    matrix_of,
+    numbers_in,
+    weights_of,
+)
+from muster_files.instances.keyword_files import KeywordFile
+from muster_files.number_rows import is_whole, node_number, read_row, row_numbers
 
 NODE_SECTIONS = ("NODE_COORD_SECTION", "EDGE_WEIGHT_SECTION", "DISPLAY_DATA_SECTION")
 _MOST_TABLED = 5_000
