@@ -7,11 +7,11 @@ import os
 import re
 from bisect import bisect
 from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import islice
 from pathlib import Path
 
-from muster.mission.synonyms import meant_by
+from muster.mission.packaged_files import packaged_data
 
 _MOST_FILES = 1000  # of a folder, that are looked at
 _MANY_NAMES = 100
@@ -42,7 +42,19 @@ def _synonym(word: str, names: Mapping[str, str]) -> str | None:
     """The known word that a word of the field means."""
     plain = word.replace(" ", "_")
     forms = (plain, plain.replace("_", "-"), plain.replace("-", "_"))
-    return next((names[meant] for form in forms for meant in meant_by(form) if meant in names), None)
+    return next((names[meant] for form in forms for meant in _meant_by(form) if meant in names), None)
+
+
+def _meant_by(word: str) -> list[str]:
+    """Return the words here that a word of the field, in lower case, may mean; of these the known one is named."""
+    return [name for name, others in _synonyms().items() if word in others.split(", ")]
+
+
+@cache
+def _synonyms() -> Mapping[str, str]:
+    """Return by word the words of the field for it, which no spelling tells."""
+    called: Mapping[str, str] = packaged_data("muster.mission", "synonyms.yaml")
+    return called
 
 
 def near_file(path: Path) -> str:

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
 from typing import Any, Self
 
-from muster.mission.action_keys import ACTION_KEYS
-from muster.mission.area_keys import WITH_AREA, coverage_faults
+from muster.mission.action_keys import ACTION_KEYS, WITH_AREA, coverage_faults
 from muster.mission.clock_times import DEADLINE, DUE, WINDOW
 from muster.mission.cooperation import Lag, Prerequisite, PrerequisiteOrId, TeamPart
 from muster.mission.errors import MissionError

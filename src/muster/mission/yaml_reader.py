@@ -14,13 +14,12 @@ from typing import Any
 import yaml
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.foreign_files import foreign_form
 from muster.mission.from_data import mission_from
 from muster.mission.garbage import collector_paused
 from muster.mission.json_reader import JsonPlaces, json_data
+from muster.mission.mistaken_files import PLAN_AS_MISSION, foreign_form, is_plan
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.source import Place, Source
-from muster.mission.swapped import PLAN_AS_MISSION, is_plan
 from muster.mission.text_files import read_text
 from muster.mission.value_types import Fault, Path, shown
 

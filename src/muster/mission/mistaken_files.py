@@ -1,9 +1,14 @@
-"""Files of other programs that are YAML or JSON and no missions: known by their keys, so that a refusal names them."""
+"""What a file is instead of a mission or plan, so that a refusal names it: the other of both, or another program's."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
+PLAN_AS_MISSION = "a mission (schema: muster/1); this is a plan: the MISSION comes first, then the PLAN"
+MISSION_AS_PLAN = "a plan (schema: muster-plan/1); this is a mission: the MISSION comes first, then the PLAN"
+_SAYS_MISSION = re.compile(r"""^[\s{"']*schema["']?\s*:\s*["']?muster/1\b""", re.MULTILINE)
+_BEGINNING = 4096  # characters in which a mission says that it is one
 _MISSION = "a mission: schema, robots, tasks"
 _LANES = f"{_MISSION}; the lanes of a mission are `lanes: {{nodes, edges}}`"
 _BY_KEYS: tuple[tuple[frozenset[str], str, str], ...] = (
@@ -17,6 +22,17 @@ _BY_KEYS: tuple[tuple[frozenset[str], str, str], ...] = (
     ),
     (frozenset(("fileType", "mission")), "a plan of QGroundControl", "this file with the suffix .plan"),
 )
+
+
+def is_plan(data: Mapping[str, object]) -> bool:
+    """Return whether plain data is a plan: it says so, or has routes and nothing of a mission."""
+    said = str(data.get("schema", ""))
+    return said.startswith("muster-plan") or ("routes" in data and not said and not {"robots", "tasks"} & data.keys())
+
+
+def is_mission(text: str) -> bool:
+    """Return whether a text is a mission in YAML or JSON: its schema says so, and it has no routes."""
+    return _SAYS_MISSION.search(text[:_BEGINNING]) is not None and '"routes"' not in text
 
 
 def foreign_form(data: Mapping[str, object]) -> tuple[str, str] | None:
