@@ -8,12 +8,11 @@ from muster.mission.areas import area_faults
 from muster.mission.deliveries import goods_faults
 from muster.mission.doors import doors_of
 from muster.mission.mission_data import MissionData
-from muster.mission.mission_parts import all_robots, all_work, robots_that_join, rules_of_tags, unknown_id
+from muster.mission.mission_parts import all_robots, all_work, positions, robots_that_join, rules_of_tags, unknown_id
 from muster.mission.near_matches import did_you_mean
 from muster.mission.site import Point
 from muster.mission.task_order import order_faults
 from muster.mission.task_relations import relation_faults
-from muster.mission.tasks import Task
 from muster.mission.value_types import Fault, Path, shown
 
 _FLAT_M = 0.01
@@ -86,47 +85,6 @@ def _suitability(mission: MissionData) -> Iterator[Fault]:
                 yield Fault((*path, "type"), "missing", expected)
             elif name not in known:
                 yield Fault((*path, "type"), shown(name), expected + did_you_mean(name, known))
-
-
-def positions(mission: MissionData) -> Iterator[tuple[Path, Point]]:
-    """Every position that a mission names, also in its events."""
-    for k, robot in enumerate(mission.robots):
-        yield ("robots", k, "position"), robot.position
-        if robot.end_position is not None:
-            yield ("robots", k, "end_position"), robot.end_position
-    for k, task in enumerate(mission.tasks):
-        yield from _places(("tasks", k), task)
-    for k, station in enumerate(mission.stations):
-        yield ("stations", k, "position"), station.position
-    for k, event in enumerate(mission.events):
-        if event.robot_joins is not None:
-            yield ("events", k, "robot_joins", "position"), event.robot_joins.position
-        if event.new_task is not None:
-            yield from _places(("events", k, "new_task"), event.new_task)
-        if event.move_task is not None:
-            yield ("events", k, "move_task", "position"), event.move_task.position
-    yield from _marks(mission)
-    for k, found in rules_of_tags(mission):
-        if found.becomes.action is not None:
-            for key, point in found.becomes.action.places.items():
-                yield ("found", k, "becomes", "action", key), point
-
-
-def _marks(mission: MissionData) -> Iterator[tuple[Path, Point]]:
-    for k, tag in enumerate(mission.tags):
-        yield ("tags", k, "position"), tag.position
-    for k, landmark in enumerate(mission.landmarks):
-        yield ("landmarks", k, "position"), landmark.position
-
-
-def _places(at: Path, task: Task) -> Iterator[tuple[Path, Point]]:
-    yield (*at, "position"), task.position
-    if task.entry is not None:
-        yield (*at, "entry"), task.entry
-    if task.exit is not None:
-        yield (*at, "exit"), task.exit
-    if task.action is not None:
-        yield from (((*at, "action", key), point) for key, point in task.action.places.items())
 
 
 def _dimensions(mission: MissionData) -> Iterator[Fault]:
