@@ -186,7 +186,7 @@ class _OldNames:
         old = name.startswith("muster.") and next((o for o in _MOVED if f"{name}.".startswith(f"{o}.")), None)
         if not old:
             return None
-        from muster.mission.moved import moved
+        from muster.mission.system.moved import moved
 
         return moved(name, _MOVED[old] + name.removeprefix(old))
 

@@ -60,7 +60,7 @@ class _Verbs(click.Group):
 
 def verbs() -> Mapping[str, EntryPoint]:
     """The verbs of this distribution in the order of `--help`, then those of others; none of these replaces one."""
-    from muster.mission.plugins import declared, is_shipped
+    from muster.mission.system.plugins import declared, is_shipped
 
     found = declared(VERB_GROUP)
     shipped = {verb.name: verb for verb in found if is_shipped(verb)}
@@ -97,7 +97,7 @@ def _summary(found: EntryPoint) -> str:
 
 def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if asked and not ctx.resilient_parsing:
-        from muster.mission.installation import version_line
+        from muster.mission.system.installation import version_line
 
         click.echo(version_line())
         ctx.exit()

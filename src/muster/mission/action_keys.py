@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry
+from muster.mission.system.plugins import Registry
 from muster.mission.value_types import Fault, JsonSchema, Key, shown
 
 ACTION_GROUP = "muster.actions"

@@ -14,8 +14,8 @@ from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule
 from muster.mission.mistaken_files import MISSION_AS_PLAN, is_mission
 from muster.mission.model import Mission
 from muster.mission.plan import PLAN_SCHEMA, STOP_TIMES, Plan, Reason, Route, RouteStop, Unassigned
-from muster.mission.plugins import Registry, function_expected
 from muster.mission.rules import OBJECTIVES
+from muster.mission.system.plugins import Registry, function_expected
 from muster.mission.text_files import read_text
 from muster.mission.value_types import shown
 

@@ -10,7 +10,7 @@ from dataclasses import asdict, fields
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 
 if TYPE_CHECKING:
     from pandas import DataFrame

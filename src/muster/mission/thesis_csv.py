@@ -16,9 +16,9 @@ from typing import Any, cast
 from muster.mission.csv_files import number, read_columns, read_table
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
-from muster.mission.garbage import collector_paused
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.source import Place, Source
+from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import Path, shown
 
 TASK_COLUMNS = ("index", "x", "y", "type", "actuation_cost", "prerequisites")

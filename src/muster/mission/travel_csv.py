@@ -11,9 +11,9 @@ from pathlib import Path as FilePath
 
 from muster.mission.csv_files import number, read_table
 from muster.mission.errors import Finding, MissionError
-from muster.mission.plugins import Registry, function_expected
 from muster.mission.site import TravelTable
 from muster.mission.source import Source
+from muster.mission.system.plugins import Registry, function_expected
 from muster.mission.value_types import Fault, shown
 
 TableReader = Callable[[FilePath, Sequence[str], Collection[str]], TravelTable | None]

@@ -15,11 +15,11 @@ import yaml
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
-from muster.mission.garbage import collector_paused
 from muster.mission.json_reader import JsonPlaces, json_data
 from muster.mission.mistaken_files import PLAN_AS_MISSION, foreign_form, is_plan
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.source import Place, Source
+from muster.mission.system.garbage import collector_paused
 from muster.mission.text_files import read_text
 from muster.mission.value_types import Fault, Path, shown
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
-from muster.mission.plugins import Registry
+from muster.mission.system.plugins import Registry
 
 FLAGS = ("robots", "suitability", "salesmen", "depot", "columns")
 """The parameters of `load` that go with some kinds of files."""

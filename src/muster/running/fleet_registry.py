@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError, PluginError
 from muster.mission.keywords import require_known
-from muster.mission.plugins import Registry, function_expected
 from muster.mission.records import Record, Settings, key_of, specified
+from muster.mission.system.plugins import Registry, function_expected
 from muster.mission.value_types import Fault, shown
 
 if TYPE_CHECKING:

@@ -17,9 +17,9 @@ import numpy as np
 
 from muster import core
 from muster.mission.arrays import Bools, Indices
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
 from muster.mission.ranges import require_counts
+from muster.mission.system.clock import Clock, SystemClock
 
 _AT_ONCE = 100
 """Expansions between two looks at the clock."""

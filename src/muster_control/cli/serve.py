@@ -15,7 +15,7 @@ from muster.cli.exits import DONE
 from muster.cli.options import quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError, PluginError
 from muster.mission.near_matches import did_you_mean
-from muster.mission.platforms import require_posix
+from muster.mission.system.platforms import require_posix
 
 if TYPE_CHECKING:
     from fastapi import FastAPI

@@ -10,10 +10,10 @@ from typing import Any
 from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError
 from muster.mission.from_data import mission_from
-from muster.mission.garbage import collector_paused
 from muster.mission.import_ledger import Ledger
 from muster.mission.model import Mission
 from muster.mission.source import Source
+from muster.mission.system.garbage import collector_paused
 from muster.mission.thesis_csv import suitability_table
 from muster.mission.yaml_writer import file_data
 from muster_files.sites.builder import Builder, SiteOptions

@@ -5,7 +5,7 @@ from importlib.metadata import version
 
 import pytest
 
-from muster.mission import installation
+from muster.mission.system import installation
 
 
 class Package:

@@ -7,9 +7,9 @@ import sys
 import pytest
 
 from muster.allocation.registry import ALLOCATORS
-from muster.mission import plugins
 from muster.mission.errors import ParameterError, PluginError
-from muster.mission.plugins import Registry
+from muster.mission.system import plugins
+from muster.mission.system.plugins import Registry
 
 
 def package(folder, name, entries, code=""):
