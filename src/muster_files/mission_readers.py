@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from muster.mission.text_files import first_lines
+from muster.mission.texts.text_files import first_lines
 from muster.planning.mission_readers import MissionReader, Noted, converted_suffixes
 from muster_files.qgc_format import WAY_POINTS_HEAD
 from muster_files.sites.readers import is_site, unknown_file

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from muster.mission.packaged_files import packaged_data
+from muster.mission.texts.packaged_files import packaged_data
 from muster_files import qgc_format as qgc
 
 NAMES: Mapping[int, str] = packaged_data("muster_files", "mav_commands.yaml")

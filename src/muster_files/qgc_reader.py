@@ -14,7 +14,7 @@ from typing import Any
 from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, passed_over
 from muster.mission.plan import tie_order
-from muster.mission.text_files import LARGEST_FILE, read_text
+from muster.mission.texts.text_files import LARGEST_FILE, read_text
 from muster.planning.mission_readers import Noted
 from muster_files import qgc_format as qgc
 from muster_files.flight_missions import FlownFile, mission_of

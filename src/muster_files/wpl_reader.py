@@ -16,7 +16,7 @@ from pathlib import Path
 
 from muster.mission.csv_files import number
 from muster.mission.import_ledger import Fate, LedgerBook, passed_over, read_as
-from muster.mission.text_files import LARGEST_FILE, read_text
+from muster.mission.texts.text_files import LARGEST_FILE, read_text
 from muster.planning.mission_readers import Noted
 from muster_files import qgc_format as qgc
 from muster_files.flight_missions import FlownFile, mission_of

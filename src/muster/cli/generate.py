@@ -201,7 +201,7 @@ def _written(missions: Sequence[Mission], output: Path) -> Iterator[Path]:
     ParameterError
         before any file is written, if one is there that is another.
     """
-    from muster.mission.text_files import write_text
+    from muster.mission.texts.text_files import write_text
     from muster.mission.yaml_writer import yaml_text
 
     texts = {_file(mission, output, len(missions)): yaml_text(mission) for mission in missions}

@@ -51,7 +51,7 @@ class _Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        from muster.mission.near_matches import did_you_mean
+        from muster.mission.texts.near_matches import did_you_mean
 
         if args and args[0] not in verbs() and not args[0].startswith("-"):
             raise click.UsageError(f"no verb '{args[0]}'{did_you_mean(args[0], verbs())}", ctx)

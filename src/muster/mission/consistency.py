@@ -9,10 +9,10 @@ from muster.mission.deliveries import goods_faults
 from muster.mission.doors import doors_of
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_robots, all_work, positions, robots_that_join, rules_of_tags, unknown_id
-from muster.mission.near_matches import did_you_mean
 from muster.mission.site import Point
 from muster.mission.task_order import order_faults
 from muster.mission.task_relations import relation_faults
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Fault, Path, shown
 
 _FLAT_M = 0.01

@@ -9,8 +9,8 @@ from pathlib import Path as FilePath
 from typing import NamedTuple
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.near_matches import did_you_mean
-from muster.mission.text_files import read_text
+from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import shown
 
 

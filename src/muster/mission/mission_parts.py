@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from muster.mission.mission_data import MissionData
-from muster.mission.near_matches import did_you_mean
 from muster.mission.robots import Robot
 from muster.mission.site import Point
 from muster.mission.tasks import Found, Task, Work
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Fault, Path, shown
 
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Literal
 from muster.mission.area_parts import with_parts
 from muster.mission.consistency import inconsistencies
 from muster.mission.cooperation import Lag, TeamPart
-from muster.mission.counting import counted
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
 from muster.mission.lanes import Lane, Lanes
@@ -25,7 +24,8 @@ from muster.mission.site import Landmark, Map, Origin, Point, Tag, TravelTable, 
 from muster.mission.stations import Battery, Station
 from muster.mission.tables import frame_of_records, html_line, html_table
 from muster.mission.tasks import Action, Found, Task, Work
-from muster.mission.text_files import write_text
+from muster.mission.texts.counting import counted
+from muster.mission.texts.text_files import write_text
 from muster.mission.yaml_writer import flow_text, plain, with_files_from, yaml_text
 
 if TYPE_CHECKING:

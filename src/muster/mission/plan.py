@@ -13,7 +13,7 @@ from muster.mission.errors import CutShortError
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.stations import station_sign
 from muster.mission.tables import data_frame, html_line, html_table
-from muster.mission.text_files import write_text
+from muster.mission.texts.text_files import write_text
 
 if TYPE_CHECKING:
     from pandas import DataFrame

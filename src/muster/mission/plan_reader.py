@@ -16,7 +16,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import PLAN_SCHEMA, STOP_TIMES, Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.rules import OBJECTIVES
 from muster.mission.system.plugins import Registry, function_expected
-from muster.mission.text_files import read_text
+from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import shown
 
 PlanReader = Callable[[Path, str, Mission], Plan | None]

@@ -20,7 +20,7 @@ from muster.mission.mistaken_files import PLAN_AS_MISSION, foreign_form, is_plan
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.source import Place, Source
 from muster.mission.system.garbage import collector_paused
-from muster.mission.text_files import read_text
+from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import Fault, Path, shown
 
 _FORBIDDEN = re.compile(r"[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

@@ -10,7 +10,7 @@ from muster.library import mission_names, mission_path
 from muster.mission.errors import Finding, MissionError, ParameterError
 from muster.mission.mistaken_files import PLAN_AS_MISSION
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean, near_file
+from muster.mission.texts.near_matches import did_you_mean, near_file
 from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.planning.mission_readers import Noted, converted_suffixes, reader_of, refusal_of
 

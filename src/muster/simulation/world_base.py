@@ -19,7 +19,7 @@ from muster import core
 from muster.mission.errors import ParameterError
 from muster.mission.mission_parts import positions
 from muster.mission.model import Mission, Robot
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.motion.avoidance_names import AUTO, method_for
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats

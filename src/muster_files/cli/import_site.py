@@ -67,7 +67,7 @@ def command(
     output. What of the files is not read stands in a table at the end.
     """
     from muster.mission.plan import json_text
-    from muster.mission.text_files import write_text
+    from muster.mission.texts.text_files import write_text
     from muster.mission.yaml_writer import with_files_from, yaml_text
     from muster_files.cli.ledger_table import ledger_lines
     from muster_files.importing import read_site

@@ -14,7 +14,7 @@ from typing import Any
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.model import Mission
-from muster.mission.text_files import read_text
+from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import shown
 from muster_files.instances.customer_missions import Customer, Instance, fleet, instance_mission
 from muster_files.instances.line_fates import LineFates

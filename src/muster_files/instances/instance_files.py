@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path as FilePath
 
 from muster.mission.model import Mission
-from muster.mission.text_files import first_lines
+from muster.mission.texts.text_files import first_lines
 from muster_files.instances.cordeau import looks_like_cordeau, read_cordeau
 from muster_files.instances.electric_vrptw import looks_like_electric_vrptw, read_electric_vrptw
 from muster_files.instances.li_lim import looks_like_li_lim, read_li_lim

@@ -9,7 +9,7 @@ from pathlib import Path as FilePath
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import passed_over
-from muster.mission.text_files import read_text
+from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import shown
 from muster_files.instances.line_fates import LineFates
 from muster_files.number_rows import REMARKS, Row, row_numbers, without_remark

@@ -10,7 +10,7 @@ from pathlib import Path as FilePath
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.model import Mission
-from muster.mission.text_files import read_text
+from muster.mission.texts.text_files import read_text
 from muster_files.instances.customer_missions import Customer, Instance, fleet, instance_mission
 from muster_files.instances.line_fates import LineFates
 from muster_files.number_rows import Row, is_whole, node_number, read_row, row_numbers, text_rows

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path as FilePath
 
 from muster.mission.import_ledger import UNKNOWN, Fate, Ledger, LedgerBook, read_as
-from muster.mission.text_files import read_text
+from muster.mission.texts.text_files import read_text
 from muster_files.number_rows import Row
 
 _READ = read_as("itself")

@@ -14,8 +14,8 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import MusterError, ParameterError, PluginError
-from muster.mission.near_matches import did_you_mean
 from muster.mission.system.installation import DISTRIBUTION
+from muster.mission.texts.near_matches import did_you_mean
 
 T = TypeVar("T")
 

@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from itertools import islice
 from pathlib import Path
 
-from muster.mission.packaged_files import packaged_data
+from muster.mission.texts.packaged_files import packaged_data
 
 _MOST_FILES = 1000  # of a folder, that are looked at
 _MANY_NAMES = 100
@@ -53,7 +53,7 @@ def _meant_by(word: str) -> list[str]:
 @cache
 def _synonyms() -> Mapping[str, str]:
     """Return by word the words of the field for it, which no spelling tells."""
-    called: Mapping[str, str] = packaged_data("muster.mission", "synonyms.yaml")
+    called: Mapping[str, str] = packaged_data("muster.mission.texts", "synonyms.yaml")
     return called
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.near_matches import near_file
+from muster.mission.texts.near_matches import near_file
 
 LARGEST_FILE = 32 * 2**20
 """Bytes of a file of another program, and of all files that are uploaded with one mission."""

@@ -4,7 +4,7 @@ import difflib
 
 import pytest
 
-from muster.mission.near_matches import did_you_mean, near_file
+from muster.mission.texts.near_matches import did_you_mean, near_file
 
 IDS = [f"task_{k}" for k in range(20_000)]
 
