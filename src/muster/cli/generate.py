@@ -128,7 +128,7 @@ def _default(f: Field[Any]) -> Any:
 
 
 def _help(f: Field[Any]) -> str:
-    from muster.mission.field_help import unit_of
+    from muster.mission.values.field_help import unit_of
 
     text, unit = f.metadata.get("doc", ""), unit_of(f)
     default = "" if _default(f) is None else f"  [default: {_shown(_default(f))}]"
@@ -159,7 +159,7 @@ def _given(default: object) -> str:
 
 
 def _as_data(generator: Generator) -> dict[str, Any]:
-    from muster.mission.field_help import unit_of
+    from muster.mission.values.field_help import unit_of
 
     parameters = [
         {"name": f.name, "unit": unit_of(f) or None, "default": _default(f), "meaning": f.metadata.get("doc", "")}

@@ -13,10 +13,10 @@ from muster.mission.errors import MissingExtraError
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_work, rules_of_tags
 from muster.mission.polygons import polygon_fault
-from muster.mission.raw_records import robots_in, tasks_in
 from muster.mission.site import Point
 from muster.mission.tasks import Action, Task, Work
 from muster.mission.value_types import INVALID, Fault, Path, shown
+from muster.mission.values.raw_records import robots_in, tasks_in
 
 Ring = tuple[Point, ...]
 

@@ -10,10 +10,10 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from muster.mission.raw_records import Raw, listed
 from muster.mission.records import Record
 from muster.mission.site import Circle
 from muster.mission.value_types import INVALID, Fault, shown
+from muster.mission.values.raw_records import Raw, listed
 
 SIDES = 32
 _DECIMALS = 6

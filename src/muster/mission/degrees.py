@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from muster.mission.place_types import Corners, LatLon, Place
-from muster.mission.raw_records import listed, of_events, robots_in, tasks_in
 from muster.mission.records import Record
 from muster.mission.site import Origin
 from muster.mission.tasks import Action
 from muster.mission.value_types import INVALID, Fault, Path, is_list, shown
+from muster.mission.values.raw_records import listed, of_events, robots_in, tasks_in
 
 _OTHER_PLACES = ("end_position", "entry", "exit", "pickup")
 _FARTHEST_KM = 1000.0

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from datetime import datetime, time, timedelta
 from typing import Any, ClassVar
 
-from muster.mission.raw_records import robots_in, tasks_in
-from muster.mission.time_types import Windows, is_pair, moment_in, pair_or_pairs
 from muster.mission.value_types import INVALID, Fault, JsonSchema, Path, refuse, shown
+from muster.mission.values.raw_records import robots_in, tasks_in
+from muster.mission.values.time_types import Windows, is_pair, moment_in, pair_or_pairs
 
 _CLOCK = re.compile(r"([01]?\d|2[0-3]):[0-5]\d(:[0-5]\d(\.\d+)?)?|24:00(:00)?")
 _TEXT: JsonSchema = {"type": "string", "pattern": f"^({_CLOCK.pattern})$|^\\d{{4}}"}

@@ -15,8 +15,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from muster.mission.raw_records import listed, robots_in, tasks_in
 from muster.mission.value_types import INVALID, Fault, Number, Path, shown
+from muster.mission.values.raw_records import listed, robots_in, tasks_in
 
 ENDURANCE = ("endurance_s", Number(above=0), "how long the robot can be under way, in place of battery, seconds")
 RANGE = ("range_m", Number(above=0), "how far the robot can go, in place of battery, metres")

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import muster
-from muster.mission import ranges
+from muster.mission.values import ranges
 
 
 @pytest.mark.parametrize(
