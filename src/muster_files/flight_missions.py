@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.from_data import mission_from
 from muster.mission.geodesy import wgs84_to_enu
 from muster.mission.import_ledger import Ledger, LedgerBook, joined
 from muster.mission.model import SCHEMA
+from muster.mission.reading.from_data import mission_from
 from muster.mission.source import Source
 from muster.planning.mission_readers import Noted
 from muster_files.qgc_fences import Corner, Fences, map_of

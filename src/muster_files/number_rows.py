@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path as FilePath
 from typing import NamedTuple
 
-from muster.mission.csv_files import number
 from muster.mission.errors import Finding, MissionError
+from muster.mission.reading.csv_files import number
 from muster.mission.value_types import shown
 
 

@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from muster.mission.circles import SIDES, enclosing
 from muster.mission.geodesy import enu_to_wgs84
+from muster.mission.reading.circles import SIDES, enclosing
 from muster_files.qgc_fields import Degrees, PlanFields
 from muster_files.qgc_flight import require_near
 from muster_files.sites.areas import around

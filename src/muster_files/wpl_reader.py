@@ -14,8 +14,8 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from muster.mission.csv_files import number
 from muster.mission.import_ledger import Fate, LedgerBook, passed_over, read_as
+from muster.mission.reading.csv_files import number
 from muster.mission.texts.text_files import LARGEST_FILE, read_text
 from muster.planning.mission_readers import Noted
 from muster_files import qgc_format as qgc

@@ -12,7 +12,7 @@ import pytest
 
 from muster.library import mission_names, mission_path, mission_summary
 from muster.mission.model import Mission, Task
-from muster.mission.yaml_reader import parse_yaml, read_yaml
+from muster.mission.reading.yaml_reader import parse_yaml, read_yaml
 from muster.mission.yaml_writer import yaml_text
 from muster_files.instances.tsplib import read_tsplib
 

@@ -4,7 +4,7 @@ import pytest
 
 from muster.mission.errors import MissionError
 from muster.mission.model import Action, Camera, Event, Mission, Robot, Task
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 
 FIELD = "area: [[0, 0], [40, 0], [40, 30], [0, 30]], width_m: 2"

@@ -14,9 +14,9 @@ from muster.cli.other_recordings import OTHER_RECORDINGS
 from muster.cli.run_output_options import not_at_server, run_output_options
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.plan import Plan, Route
-from muster.mission.plan_reader import PLAN_READERS
+from muster.mission.reading.plan_reader import PLAN_READERS
+from muster.mission.reading.travel_csv import TRAVEL_TABLES
 from muster.mission.site import TravelTable
-from muster.mission.travel_csv import TRAVEL_TABLES
 from muster.planning import export_formats
 from muster.planning.export_formats import FORMATS, Files
 from muster.planning.mission_readers import MISSION_READERS, MissionReader, Noted, converted_suffixes

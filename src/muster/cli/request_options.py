@@ -17,7 +17,7 @@ import click
 
 from muster.cli.options import Verb
 from muster.mission.errors import ParameterError
-from muster.mission.order_files import OrderFile
+from muster.mission.reading.order_files import OrderFile
 from muster.mission.records import Checked, Record, Settings, key_of, specified
 from muster.mission.value_types import FLAGS, Choice, Flag, Kind, Many, Share, Table
 from muster.mission.values.field_help import unit_of

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.mission.texts.text_files import write_bytes
 from muster.mission.values.keywords import require_known
 from muster.planning.export_formats import (

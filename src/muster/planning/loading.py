@@ -8,8 +8,8 @@ from typing import Any
 
 from muster.library import mission_names, mission_path
 from muster.mission.errors import Finding, MissionError, ParameterError
-from muster.mission.mistaken_files import PLAN_AS_MISSION
 from muster.mission.model import Mission
+from muster.mission.reading.mistaken_files import PLAN_AS_MISSION
 from muster.mission.texts.near_matches import did_you_mean, near_file
 from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.planning.mission_readers import Noted, converted_suffixes, reader_of, refusal_of
@@ -80,13 +80,13 @@ def load_noted(
 
 
 def _is_task_list(path: Path, robots: str | Path | None) -> bool:
-    from muster.mission.thesis_csv import is_task_list
+    from muster.mission.reading.thesis_csv import is_task_list
 
     return is_task_list(path, None if robots is None else Path(robots))
 
 
 def _task_list(path: Path, named: str | Path, **given: Any) -> Noted:
-    from muster.mission.thesis_csv import read_csv
+    from muster.mission.reading.thesis_csv import read_csv
 
     _check_flags(named, ("robots", "suitability"), given, needed="robots", kind=".csv")
     suitability = given["suitability"]
@@ -95,7 +95,7 @@ def _task_list(path: Path, named: str | Path, **given: Any) -> Noted:
 
 def _own(path: Path, named: str | Path, **given: Any) -> Noted:
     """Return the mission of a file in Muster's own form, YAML or JSON."""
-    from muster.mission.yaml_reader import read_yaml
+    from muster.mission.reading.yaml_reader import read_yaml
 
     _check_flags(named, (), given)
     suffix = path.suffix.lower()

@@ -11,8 +11,8 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission
+from muster.mission.reading.from_data import mission_from
 from muster.mission.site import TravelTable
 from muster.mission.source import Place, Source
 from muster.mission.value_types import Path, shown

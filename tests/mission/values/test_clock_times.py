@@ -6,8 +6,8 @@ import pytest
 
 from muster.mission.errors import MissionError
 from muster.mission.model import Lag, Task, TeamPart
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.values.time_types import clock_text
-from muster.mission.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 
 FILE = Path("mission.yaml")

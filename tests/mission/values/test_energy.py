@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from tests.mission.strategies import examples
 
 from muster import MissionError, solve, verify
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 
 MISSION = """\

@@ -13,7 +13,7 @@ import muster
 from muster.cli.main import run
 from muster.mission.model import Mission, Robot, Rules, Station, Task
 from muster.mission.plan import Plan, Route
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster_files.instances.sol_files import read_sol, sol_text
 
 CLOSED = Rules(return_to_start=True, objective="total")

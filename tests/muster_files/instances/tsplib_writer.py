@@ -1,7 +1,7 @@
 """Writes closed missions of several salesmen as TSPLIB, to be read back."""
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.from_data import mission_from
+from muster.mission.reading.from_data import mission_from
 
 
 def write_tsplib(mission, path):

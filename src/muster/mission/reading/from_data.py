@@ -10,15 +10,15 @@ from collections.abc import Mapping
 
 from muster.mission.area_parts import with_parts
 from muster.mission.areas import put_in_positions
-from muster.mission.circles import circles_to_polygons
 from muster.mission.consistency import inconsistencies
-from muster.mission.degrees import degrees_to_metres, in_degrees
 from muster.mission.errors import MissionError
 from muster.mission.model import Mission
+from muster.mission.reading.circles import circles_to_polygons
+from muster.mission.reading.degrees import degrees_to_metres, in_degrees
+from muster.mission.reading.travel_csv import read_travel_tables
 from muster.mission.records import Record, findings
 from muster.mission.site import TravelTable
 from muster.mission.source import Source
-from muster.mission.travel_csv import read_travel_tables
 from muster.mission.value_types import Fault, Path
 from muster.mission.values.clock_times import clock_times_to_seconds
 from muster.mission.values.energy import energy_to_batteries

@@ -14,10 +14,10 @@ from typing import Any
 import yaml
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.from_data import mission_from
-from muster.mission.json_reader import JsonPlaces, json_data
-from muster.mission.mistaken_files import PLAN_AS_MISSION, foreign_form, is_plan
 from muster.mission.model import SCHEMA, Mission
+from muster.mission.reading.from_data import mission_from
+from muster.mission.reading.json_reader import JsonPlaces, json_data
+from muster.mission.reading.mistaken_files import PLAN_AS_MISSION, foreign_form, is_plan
 from muster.mission.source import Place, Source
 from muster.mission.system.garbage import collector_paused
 from muster.mission.texts.text_files import read_text

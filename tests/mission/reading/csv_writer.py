@@ -4,8 +4,8 @@ import csv
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.model import Mission, Robot, Task
-from muster.mission.thesis_csv import ROBOT_COLUMNS, TASK_COLUMNS, TIME_COLUMNS
-from muster.mission.thesis_csv import _prerequisites as prerequisites
+from muster.mission.reading.thesis_csv import ROBOT_COLUMNS, TASK_COLUMNS, TIME_COLUMNS
+from muster.mission.reading.thesis_csv import _prerequisites as prerequisites
 
 
 def write_csv(mission, tasks, robots, suitability=None):

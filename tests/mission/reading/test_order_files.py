@@ -4,7 +4,7 @@ import pytest
 
 from muster.mission.errors import MissionError
 from muster.mission.model import Event, Task
-from muster.mission.order_files import OrderFile
+from muster.mission.reading.order_files import OrderFile
 
 HEAD = "at_s,id,x,y"
 

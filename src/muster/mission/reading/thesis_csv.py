@@ -13,10 +13,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any, cast
 
-from muster.mission.csv_files import number, read_columns, read_table
 from muster.mission.errors import Finding, MissionError
-from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission
+from muster.mission.reading.csv_files import number, read_columns, read_table
+from muster.mission.reading.from_data import mission_from
 from muster.mission.source import Place, Source
 from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import Path, shown

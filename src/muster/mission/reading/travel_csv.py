@@ -9,8 +9,8 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path as FilePath
 
-from muster.mission.csv_files import number, read_table
 from muster.mission.errors import Finding, MissionError
+from muster.mission.reading.csv_files import number, read_table
 from muster.mission.site import TravelTable
 from muster.mission.source import Source
 from muster.mission.system.plugins import Registry, function_expected

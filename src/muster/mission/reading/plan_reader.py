@@ -11,9 +11,9 @@ from typing import Any
 from muster.mission.auction_book import Award, Book
 from muster.mission.errors import Finding, MissionError, ParameterError, PlanError
 from muster.mission.ignorable_rules import IGNORABLE, ignorable_rule
-from muster.mission.mistaken_files import MISSION_AS_PLAN, is_mission
 from muster.mission.model import Mission
 from muster.mission.plan import PLAN_SCHEMA, STOP_TIMES, Plan, Reason, Route, RouteStop, Unassigned
+from muster.mission.reading.mistaken_files import MISSION_AS_PLAN, is_mission
 from muster.mission.rules import OBJECTIVES
 from muster.mission.system.plugins import Registry, function_expected
 from muster.mission.texts.text_files import read_text

@@ -11,7 +11,7 @@ from muster.mission.errors import MissionError
 from muster.mission.model import (
     Robot,
 )
-from muster.mission.yaml_reader import parse_yaml, read_yaml
+from muster.mission.reading.yaml_reader import parse_yaml, read_yaml
 from muster.mission.yaml_writer import yaml_text
 
 

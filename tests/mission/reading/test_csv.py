@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import given
-from tests.mission.csv_writer import write_csv
+from tests.mission.reading.csv_writer import write_csv
 from tests.mission.strategies import examples, plain_missions
 
 from muster.mission.errors import MissionError
@@ -17,7 +17,7 @@ from muster.mission.model import (
     Rules,
     Task,
 )
-from muster.mission.thesis_csv import read_csv, read_csv_for
+from muster.mission.reading.thesis_csv import read_csv, read_csv_for
 
 
 def csv_files(folder):

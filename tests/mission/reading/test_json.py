@@ -10,12 +10,12 @@ import yaml
 from tests.mission.test_broken import FOLDER
 
 from muster.library import mission_names, mission_path
-from muster.mission import yaml_reader
 from muster.mission.errors import MissionError
-from muster.mission.json_reader import json_data
 from muster.mission.model import Mission
+from muster.mission.reading import yaml_reader
+from muster.mission.reading.json_reader import json_data
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.records import Record
-from muster.mission.yaml_reader import parse_yaml
 
 LAYOUTS = {"lines": {"indent": 1}, "one line": {}, "dense": {"separators": (",", ":")}, "sorted": {"sort_keys": True}}
 

@@ -13,7 +13,7 @@ from muster.mission.errors import PlanError
 from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.model import OBJECTIVES
 from muster.mission.plan import REASONS, Plan, Reason, Route, RouteStop, Unassigned
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 10**6)

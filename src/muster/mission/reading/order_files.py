@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
-from muster.mission.csv_files import number
 from muster.mission.errors import Finding, MissionError
 from muster.mission.events import Event
+from muster.mission.reading.csv_files import number
 from muster.mission.records import Record, path_text
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Fault, shown
