@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from muster.mission.areas import area_faults
+from muster.mission.areas.task_areas import area_faults
 from muster.mission.deliveries import goods_faults
 from muster.mission.doors import doors_of
 from muster.mission.mission_data import MissionData

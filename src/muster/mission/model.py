@@ -10,7 +10,7 @@ from dataclasses import is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from muster.mission.area_parts import with_parts
+from muster.mission.areas.parts import with_parts
 from muster.mission.consistency import inconsistencies
 from muster.mission.cooperation import Lag, TeamPart
 from muster.mission.errors import MissionError, ParameterError

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from muster.mission.area_parts import with_parts
-from muster.mission.areas import put_in_positions
+from muster.mission.areas.parts import with_parts
+from muster.mission.areas.task_areas import put_in_positions
 from muster.mission.consistency import inconsistencies
 from muster.mission.errors import MissionError
 from muster.mission.model import Mission

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from muster.mission.areas import is_split, part_ids
+from muster.mission.areas.task_areas import is_split, part_ids
 from muster.mission.events import Event
 from muster.mission.mission_data import MissionData
 from muster.mission.source import IN_PYTHON

@@ -9,10 +9,10 @@ from importlib.util import find_spec
 from itertools import pairwise
 from typing import Any
 
+from muster.mission.areas.polygons import polygon_fault
 from muster.mission.errors import MissingExtraError
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_work, rules_of_tags
-from muster.mission.polygons import polygon_fault
 from muster.mission.site import Point
 from muster.mission.tasks import Action, Task, Work
 from muster.mission.value_types import INVALID, Fault, Path, shown
