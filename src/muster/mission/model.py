@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from muster.mission.areas.parts import with_parts
-from muster.mission.consistency import inconsistencies
+from muster.mission.consistency.all_rules import inconsistencies
 from muster.mission.cooperation import Lag, TeamPart
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 from muster.mission.areas.parts import with_parts
 from muster.mission.areas.task_areas import put_in_positions
-from muster.mission.consistency import inconsistencies
+from muster.mission.consistency.all_rules import inconsistencies
 from muster.mission.errors import MissionError
 from muster.mission.model import Mission
 from muster.mission.reading.circles import circles_to_polygons

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from muster.mission.areas.task_areas import area_faults
-from muster.mission.deliveries import goods_faults
+from muster.mission.consistency.deliveries import goods_faults
+from muster.mission.consistency.task_order import order_faults
 from muster.mission.doors import doors_of
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_robots, all_work, positions, robots_that_join, rules_of_tags, unknown_id
 from muster.mission.site import Point
-from muster.mission.task_order import order_faults
 from muster.mission.task_relations import relation_faults
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Fault, Path, shown
