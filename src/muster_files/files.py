@@ -27,7 +27,7 @@ from muster_files.gpx import gpx_text
 from muster_files.instances.sol_files import sol_text
 from muster_files.kml import kml_text
 from muster_files.open_ways import require_open_itineraries
-from muster_files.qgc_writer import PlanFiles
+from muster_files.qgc.writer import PlanFiles
 from muster_files.spreadsheet import csv_text
 from muster_files.thinning import thinned
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from muster.mission.texts.text_files import first_lines
 from muster.planning.mission_readers import MissionReader, Noted, converted_suffixes
-from muster_files.qgc_format import WAY_POINTS_HEAD
+from muster_files.qgc.plan_format import WAY_POINTS_HEAD
 from muster_files.sites.readers import is_site, unknown_file
 
 _WAY_POINTS = (".waypoints", ".wpl")
@@ -76,7 +76,7 @@ def _are_plans(path: Path) -> bool:
 
 
 def _read_plans(path: Path) -> Noted:
-    from muster_files.qgc_reader import read_flight_plans
+    from muster_files.qgc.reader import read_flight_plans
 
     return read_flight_plans(path)
 
@@ -89,7 +89,7 @@ def _are_way_points(path: Path) -> bool:
 
 
 def _read_way_points(path: Path) -> Noted:
-    from muster_files.wpl_reader import read_wpl
+    from muster_files.qgc.wpl_reader import read_wpl
 
     return read_wpl(path)
 

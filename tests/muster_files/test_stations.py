@@ -16,7 +16,7 @@ from muster_files.geographic_features import features_of
 from muster_files.geojson import geojson_text
 from muster_files.gpx import gpx_text
 from muster_files.kml import kml_text
-from muster_files.qgc_format import NAV_WAYPOINT
+from muster_files.qgc.plan_format import NAV_WAYPOINT
 
 GPX, KML = "{http://www.topografix.com/GPX/1/1}", "{http://www.opengis.net/kml/2.2}"
 BAY = """\

@@ -494,7 +494,7 @@ heavy = ("numpy", "scipy", "shapely", "matplotlib", "muster.allocation.", "muste
          "muster_files.", "muster.report", "muster.mission.reading.yaml_reader")
 light = {"muster_control.contract", "muster.allocation.parameter_types",
          "muster_files.sites", "muster_files.sites.readers", "muster_files.mission_readers",
-         "muster_files.qgc_format"}
+         "muster_files.qgc", "muster_files.qgc.plan_format"}
 print([name for name in sys.modules if name.startswith(heavy) and name not in light])
 """
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -18,8 +18,8 @@ from muster.motion.actions import Impossible
 from muster.motion.actions.area_coverage import lanes_of, path_over, swath_of
 from muster.motion.actions.footprint import Footprint, footprint_of
 from muster.motion.areas.lanes import swaths
-from muster_files import qgc_format as qgc
 from muster_files.earth import Earth, anticlockwise
+from muster_files.qgc import plan_format as qgc
 
 Item = dict[str, Any]
 

@@ -16,10 +16,10 @@ from muster.mission.model import SCHEMA
 from muster.mission.reading.from_data import mission_from
 from muster.mission.source import Source
 from muster.planning.mission_readers import Noted
-from muster_files.qgc_fences import Corner, Fences, map_of
-from muster_files.qgc_fields import Degrees, PlanFields
-from muster_files.qgc_flight import Flight, require_near
-from muster_files.qgc_survey_reader import Survey
+from muster_files.qgc.fences import Corner, Fences, map_of
+from muster_files.qgc.fields import Degrees, PlanFields
+from muster_files.qgc.flight import Flight, require_near
+from muster_files.qgc.survey_reader import Survey
 from muster_files.sites.features import Document
 
 _SAME_PLACE_M = 0.01

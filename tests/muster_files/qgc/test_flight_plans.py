@@ -10,15 +10,15 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.mission.strategies import examples
-from tests.muster_files.test_survey_reading import SURVEY
+from tests.muster_files.qgc.test_survey_reading import SURVEY
 from tests.raw_counts import raw_count
 
 import muster
 from muster.mission.errors import MissionError
 from muster.planning.loading import load_noted
-from muster_files.qgc_commands import NAMES, PASSED_OVER, READ
+from muster_files.qgc.commands import NAMES, PASSED_OVER, READ
 
-CASES = Path(__file__).parents[1] / "data" / "cases" / "import"
+CASES = Path(__file__).parents[2] / "data" / "cases" / "import"
 HOME = [59.91, 10.75, 20]
 FIRST, SECOND, THIRD = [59.911, 10.751, 20], [59.912, 10.752, 20], [59.913, 10.753, 20]
 

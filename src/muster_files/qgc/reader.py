@@ -16,14 +16,14 @@ from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, passed_over
 from muster.mission.plan import tie_order
 from muster.mission.texts.text_files import LARGEST_FILE, read_text
 from muster.planning.mission_readers import Noted
-from muster_files import qgc_format as qgc
-from muster_files.flight_missions import FlownFile, mission_of
-from muster_files.qgc_commands import name_of, param_of
-from muster_files.qgc_fences import read_fences
-from muster_files.qgc_fields import Degrees, PlanFields
-from muster_files.qgc_flight import Command, Flight, flight_of, require_near
-from muster_files.qgc_survey_reader import Survey, read_survey
-from muster_files.qgc_vehicles import EXPECTED, VEHICLES, Vehicle, told_vehicle
+from muster_files.qgc import plan_format as qgc
+from muster_files.qgc.commands import name_of, param_of
+from muster_files.qgc.fences import read_fences
+from muster_files.qgc.fields import Degrees, PlanFields
+from muster_files.qgc.flight import Command, Flight, flight_of, require_near
+from muster_files.qgc.flight_missions import FlownFile, mission_of
+from muster_files.qgc.survey_reader import Survey, read_survey
+from muster_files.qgc.vehicles import EXPECTED, VEHICLES, Vehicle, told_vehicle
 from muster_files.sites.file_sizes import require_moderate_json
 from muster_files.tracked_json import Tracked, enter_json, parse_tracked
 

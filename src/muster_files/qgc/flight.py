@@ -12,9 +12,9 @@ from typing import Any
 
 from muster.mission.errors import MissionError
 from muster.mission.import_ledger import Fate, passed_over, read_as
-from muster_files import qgc_format as qgc
-from muster_files.qgc_commands import LANDINGS, PASSED_OVER, READ, STOPS, TAKEOFFS, name_of, param_of, told
-from muster_files.qgc_fields import Degrees, PlanFields, is_number
+from muster_files.qgc import plan_format as qgc
+from muster_files.qgc.commands import LANDINGS, PASSED_OVER, READ, STOPS, TAKEOFFS, name_of, param_of, told
+from muster_files.qgc.fields import Degrees, PlanFields, is_number
 from muster_files.sites.frame import FARTHEST_M, Frame
 
 _RELATIVE = (qgc.FRAME_GLOBAL_RELATIVE_ALT, qgc.FRAME_GLOBAL_RELATIVE_ALT_INT)

@@ -12,8 +12,8 @@ from typing import Any
 
 from muster.mission.geodesy import enu_to_wgs84
 from muster.mission.reading.circles import SIDES, enclosing
-from muster_files.qgc_fields import Degrees, PlanFields
-from muster_files.qgc_flight import require_near
+from muster_files.qgc.fields import Degrees, PlanFields
+from muster_files.qgc.flight import require_near
 from muster_files.sites.areas import around
 
 Corner = tuple[float, float]

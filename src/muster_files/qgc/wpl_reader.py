@@ -18,13 +18,13 @@ from muster.mission.import_ledger import Fate, LedgerBook, passed_over, read_as
 from muster.mission.reading.csv_files import number
 from muster.mission.texts.text_files import LARGEST_FILE, read_text
 from muster.planning.mission_readers import Noted
-from muster_files import qgc_format as qgc
-from muster_files.flight_missions import FlownFile, mission_of
 from muster_files.number_rows import Row, text_rows
-from muster_files.qgc_commands import TAKEOFFS, name_of, param_of
-from muster_files.qgc_fences import Fences
-from muster_files.qgc_fields import Degrees, PlanFields
-from muster_files.qgc_flight import Command, Flight, flight_of
+from muster_files.qgc import plan_format as qgc
+from muster_files.qgc.commands import TAKEOFFS, name_of, param_of
+from muster_files.qgc.fences import Fences
+from muster_files.qgc.fields import Degrees, PlanFields
+from muster_files.qgc.flight import Command, Flight, flight_of
+from muster_files.qgc.flight_missions import FlownFile, mission_of
 from muster_files.sites.file_sizes import require_few
 
 _VERSIONS = ("110", "120")

@@ -12,7 +12,7 @@ from muster import load
 from muster.mission.errors import MissionError
 from muster.mission.geodesy import wgs84_to_enu
 from muster_files.earth import Earth
-from muster_files.qgc_writer import PlanFiles
+from muster_files.qgc.writer import PlanFiles
 
 ORIGIN = (LAT, LON, ALT)
 WRITTEN_M = 2e-4

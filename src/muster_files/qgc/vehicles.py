@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from muster_files import qgc_format as qgc
+from muster_files.qgc import plan_format as qgc
 
 _HOVER, _CRUISE = ("hoverSpeed",), ("cruiseSpeed",)
 

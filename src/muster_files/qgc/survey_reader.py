@@ -13,8 +13,8 @@ from typing import Any
 from muster.mission.import_ledger import passed_over
 from muster.mission.place_types import Corners
 from muster.mission.robots import MOST_PIXELS
-from muster_files import qgc_format as qgc
-from muster_files.qgc_fields import PlanFields, is_number
+from muster_files.qgc import plan_format as qgc
+from muster_files.qgc.fields import PlanFields, is_number
 from muster_files.tracked_json import Tracked
 
 _LENS_KEYS = ("SensorWidth", "SensorHeight", "FocalLength", "ImageWidth", "ImageHeight")

@@ -15,10 +15,10 @@ from typing import Any
 
 from muster.execution.itinerary import Itinerary, Passage
 from muster.mission.model import Mission, Point, Robot, Task
-from muster_files import qgc_format as qgc
 from muster_files.earth import Earth, Spot, anticlockwise
 from muster_files.fence import Fence
-from muster_files.qgc_survey import survey_item
+from muster_files.qgc import plan_format as qgc
+from muster_files.qgc.survey_writer import survey_item
 
 Item = dict[str, Any]
 
@@ -34,7 +34,7 @@ class PlanFiles:
     team
         the itineraries of all robots; their starts are rally points of drones.
     firmware
-        a key of `qgc_format.FIRMWARE`. PX4 turns to the heading of a way point, ArduPilot by an item of its own.
+        a key of `plan_format.FIRMWARE`. PX4 turns to the heading of a way point, ArduPilot by an item of its own.
     """
 
     mission: Mission

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from muster.mission.texts.packaged_files import packaged_data
-from muster_files import qgc_format as qgc
+from muster_files.qgc import plan_format as qgc
 
-NAMES: Mapping[int, str] = packaged_data("muster_files", "mav_commands.yaml")
+NAMES: Mapping[int, str] = packaged_data("muster_files.qgc", "mav_commands.yaml")
 """By number the names of the commands, without `MAV_CMD_`."""
 
 TAKEOFFS = (qgc.NAV_TAKEOFF, qgc.NAV_VTOL_TAKEOFF)
