@@ -12,7 +12,7 @@ from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.consensus_bundle import Parameters as BundleParameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster_team.memory_network import LinkConditions, MemoryNetwork
 from muster_team.participation import bundler_of, negotiator_of, plan_of, plan_of_bundles, plan_of_view, rules_of
 from muster_team.robot_view import view_of
