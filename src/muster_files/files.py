@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from muster.execution.itinerary import Itinerary, Passage, itineraries
+from muster.execution.reports.itinerary import Itinerary, Passage, itineraries
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan

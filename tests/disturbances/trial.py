@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import muster
 from muster.execution.executor import Executor
-from muster.execution.reallocation import Reallocation
-from muster.execution.task_motion import place
-from muster.execution.travel import travel_of, way_of
+from muster.execution.replanning.reallocation import Reallocation
+from muster.execution.replanning.travel import travel_of, way_of
+from muster.execution.robots.task_motion import place
 from muster.motion import actions
 from muster.motion.robot_paths import RobotPaths
 from tests import trials

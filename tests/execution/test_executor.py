@@ -8,10 +8,10 @@ from tests.execution.world import World, carry_out
 import muster
 from muster import Mission, Robot, Rules, Task
 from muster.execution.executor import Executor
-from muster.execution.monitor import Limits
-from muster.execution.report import report_of
-from muster.execution.robot_state import Activity
-from muster.execution.travel import OverMap, way_of
+from muster.execution.replanning.travel import OverMap, way_of
+from muster.execution.reports.report import report_of
+from muster.execution.robots.monitor import Limits
+from muster.execution.robots.robot_state import Activity
 from muster.library import mission_names
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, MovedTask

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.mission.strategies import examples
 
 import muster
-from muster.execution.itinerary import Itinerary, Passage, itineraries
+from muster.execution.reports.itinerary import Itinerary, Passage, itineraries
 from muster.mission.model import Robot
 from muster.motion.map_world import body_of
 from muster.motion.robot_paths import RobotPaths

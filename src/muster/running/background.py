@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 
 from muster.execution import Revision
-from muster.execution.remaining_problem import RemainingMission, frozen
+from muster.execution.replanning.remaining_problem import RemainingMission, frozen
 
 Routes = Mapping[str, Sequence[str]]
 SEARCH_S = 1.0

@@ -9,10 +9,10 @@ from muster.allocation.allocator import make_parameters
 from muster.allocation.registry import allocator_of
 from muster.allocation.search import SEARCH
 from muster.execution import Reallocation, Revision, Standing, travel_of
-from muster.execution.insertion import Insertion
-from muster.execution.reallocation import REPLANNING
-from muster.execution.remaining_problem import RemainingMission
-from muster.execution.travel import Travel
+from muster.execution.replanning.insertion import Insertion
+from muster.execution.replanning.reallocation import REPLANNING
+from muster.execution.replanning.remaining_problem import RemainingMission
+from muster.execution.replanning.travel import Travel
 from muster.mission.model import Mission
 from muster.planning.options import PlanningOptions
 from muster.running.background import BackgroundSearch

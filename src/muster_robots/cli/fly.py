@@ -70,8 +70,8 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
 def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
     """Warn where drones, which do not avoid each other, would meet."""
     from muster import verify
-    from muster.execution.itinerary import heights_of_work, itineraries
-    from muster.execution.separation import meetings
+    from muster.execution.reports.itinerary import heights_of_work, itineraries
+    from muster.execution.reports.separation import meetings
 
     for task, own in heights_of_work(mission).items():
         if height is not None and own != height:
