@@ -37,7 +37,7 @@ class TargetOptions:
         InputError, ParameterError
             if a file or a number is wrong.
         """
-        from muster.perception.calibration import read_intrinsics
+        from muster.perception.cameras.calibration import read_intrinsics
         from muster_robots.target_search import SearchSettings
 
         return SearchSettings(

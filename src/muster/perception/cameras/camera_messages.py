@@ -12,7 +12,7 @@ import numpy as np
 
 from muster.mission.errors import ParameterError
 from muster.perception.camera import Intrinsics
-from muster.perception.images import Image
+from muster.perception.cameras.images import Image
 
 _CHANNELS = {
     "mono8": (0,),
