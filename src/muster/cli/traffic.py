@@ -18,7 +18,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import json_text
 
 if TYPE_CHECKING:
-    from muster.traffic.forecast import Forecast
+    from muster.traffic.journeys.forecast import Forecast
     from muster.traffic.mission_roadmap import MissionRoadmap
     from muster.traffic.passages import Passage
 
@@ -80,7 +80,7 @@ def command(
 
 def _forecast(mission: Mission, file: File, made: MissionRoadmap, *, quiet: bool, verbose: bool) -> Forecast:
     from muster.mission.plan import RouteStop
-    from muster.traffic.forecast import forecast
+    from muster.traffic.journeys.forecast import forecast
     from muster.verification import verify
 
     plan = load_plan(file, mission, quiet=quiet, verbose=verbose)
@@ -98,7 +98,7 @@ def _print_forecast(forecast: Forecast) -> None:
     """Print when robots have ended their routes, and how much of that they wait for others."""
     from muster.cli.plan_tables import print_traffic_times
     from muster.cli.tables import print_table
-    from muster.traffic.forecast import finite
+    from muster.traffic.journeys.forecast import finite
 
     rows = [
         (one.robot, number(one.alone_s), number(one.with_traffic_s), number(finite(one.delay_s)))

@@ -14,7 +14,7 @@ from muster.report.floor import draw_map, map_corners
 from muster.report.styles import PALETTE, TEXT
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.passages import Passage
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,10 +11,10 @@ from muster.mission.model import Mission, Robot
 from muster.mission.plan import RouteStop
 from muster.motion.actions import TaskMotion
 from muster.motion.actions import plan as motion_of
-from muster.traffic.joint_journeys import JointJourneys, Journey
+from muster.traffic.journeys.joint_journeys import JointJourneys, Journey
+from muster.traffic.journeys.roadmap_plan import RoadmapPlan
+from muster.traffic.journeys.travellers import Stop, Traveller
 from muster.traffic.names import drives
-from muster.traffic.roadmap_plan import RoadmapPlan
-from muster.traffic.travellers import Stop, Traveller
 
 _WAYS_EACH, _LEAST_WAYS = 4, 40
 """Ways of each robot that are sought, and of all: they tell how long a plan takes as well as the more of a run do."""

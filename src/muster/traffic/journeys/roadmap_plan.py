@@ -10,12 +10,12 @@ import numpy as np
 
 from muster import core
 from muster.motion.grid import Floats
-from muster.traffic.doors import NO_DOORS, RoadmapDoors
-from muster.traffic.joint_journeys import JointJourneys
-from muster.traffic.roadmap import Bools, Roadmap
-from muster.traffic.roadmap_network import Network, with_places
+from muster.traffic.journeys.joint_journeys import JointJourneys
+from muster.traffic.journeys.roadmap_network import Network, with_places
+from muster.traffic.journeys.travellers import Move, Point, Traveller
+from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
+from muster.traffic.roadmaps.roadmap import Bools, Roadmap
 from muster.traffic.single_moves import Parameters
-from muster.traffic.travellers import Move, Point, Traveller
 
 _THERE_M = 1e-3
 _FIRST_WAYS, _WAYS = 640, 160

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 from muster.mission.model import Robot
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.outlook import Outlook
-from muster.traffic.managed_port import ManagedPort
-from muster.traffic.travellers import Point
+from muster.motion.port import planar
+from muster.traffic.journeys.travellers import Point
+from muster.traffic.reservation.managed_port import ManagedPort
 
 
 @dataclass
@@ -82,8 +83,3 @@ class Part:
     def near(self) -> Point:
         said = self.port.heard
         return planar(said.position) if said is not None else self.stood
-
-
-def planar(place: Sequence[float]) -> Point:
-    """A place without its height."""
-    return (place[0], place[1])

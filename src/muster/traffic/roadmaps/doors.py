@@ -13,7 +13,7 @@ from muster.mission.lanes import Lanes
 from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.motion.map_world import Body, World
-from muster.traffic.lane_sections import ON_LANE_M
+from muster.traffic.roadmaps.lane_sections import ON_LANE_M
 
 if TYPE_CHECKING:
     import shapely

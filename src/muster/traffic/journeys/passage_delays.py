@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.traffic.forecast import Forecast
-from muster.traffic.joint_journeys import Journey, TimedMove
+from muster.traffic.journeys.forecast import Forecast
+from muster.traffic.journeys.joint_journeys import Journey, TimedMove
 from muster.traffic.passages import passages
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 
 class PassageDelays:

@@ -14,10 +14,10 @@ from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.distance_field import distance_field
 from muster.motion.maps.raster import grid_of
-from muster.traffic.exact_ways import Network, joined_exactly
-from muster.traffic.lane_middles import to_middle
-from muster.traffic.lane_points import Room, lane_points
-from muster.traffic.roadmap_edges import Regions, Sight, detours, pruned, visible_pairs, ways_to_lanes
+from muster.traffic.roadmaps.exact_ways import Network, joined_exactly
+from muster.traffic.roadmaps.lane_middles import to_middle
+from muster.traffic.roadmaps.lane_points import Room, lane_points
+from muster.traffic.roadmaps.roadmap_edges import Regions, Sight, detours, pruned, visible_pairs, ways_to_lanes
 
 _CELLS = 12
 """Cells between two robots that do not touch, where the map leaves the choice."""

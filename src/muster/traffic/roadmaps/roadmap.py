@@ -18,11 +18,11 @@ from muster.mission.lanes import Lanes
 from muster.mission.ranges import require_finite_positive
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
-from muster.traffic.edge_conflicts import conflicts
-from muster.traffic.exact_ways import Network
-from muster.traffic.given_lanes import lane_network, speeds_along
-from muster.traffic.lane_network import network
-from muster.traffic.lane_sections import Section
+from muster.traffic.roadmaps.edge_conflicts import conflicts
+from muster.traffic.roadmaps.exact_ways import Network
+from muster.traffic.roadmaps.given_lanes import lane_network, speeds_along
+from muster.traffic.roadmaps.lane_network import network
+from muster.traffic.roadmaps.lane_sections import Section
 
 Bools = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -118,7 +118,7 @@ class Roadmap:
     @cached_property
     def passable(self) -> Bools:
         """(n,): whether others get past a robot that rests at a point: no passage for one leads through it."""
-        from muster.traffic.holding_places import passable
+        from muster.traffic.roadmaps.holding_places import passable
 
         return passable(self.points, self.edges, self.reach_start, self.reach_point, self.reach)
 

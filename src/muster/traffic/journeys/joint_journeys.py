@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from muster.traffic.travellers import Traveller
+from muster.traffic.journeys.travellers import Traveller
 
 if TYPE_CHECKING:
     from muster import core
-    from muster.traffic.roadmap_network import Network
+    from muster.traffic.journeys.roadmap_network import Network
 
 
 class TimedMove(NamedTuple):

@@ -11,11 +11,11 @@ import numpy as np
 from muster import core
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
-from muster.traffic.edge_conflicts import conflicts
-from muster.traffic.lane_sections import ON_LANE_M
-from muster.traffic.roadmap import Indices, Roadmap
+from muster.traffic.journeys.travellers import Move, Point, Traveller
+from muster.traffic.roadmaps.edge_conflicts import conflicts
+from muster.traffic.roadmaps.lane_sections import ON_LANE_M
+from muster.traffic.roadmaps.roadmap import Indices, Roadmap
 from muster.traffic.single_moves import MovePlanner
-from muster.traffic.travellers import Move, Point, Traveller
 
 _SAME_M = 1e-6
 _ENTRIES = 6

@@ -14,8 +14,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from muster.mission.arrays import Bools, Indices
-from muster.traffic.joint_positions import JointPositions, most_moves
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.blockages.joint_positions import JointPositions, most_moves
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 T = TypeVar("T")
 

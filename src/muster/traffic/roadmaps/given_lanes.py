@@ -15,9 +15,9 @@ from muster.mission.arrays import Floats
 from muster.mission.lanes import Lane, Lanes
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.paths import PathFinder
-from muster.traffic.exact_ways import Network, with_place
-from muster.traffic.lane_sections import ON_LANE_M, Section, sections
-from muster.traffic.part import planar
+from muster.motion.port import planar
+from muster.traffic.roadmaps.exact_ways import Network, with_place
+from muster.traffic.roadmaps.lane_sections import ON_LANE_M, Section, sections
 
 _WHOLE = 1e-9
 """Of a lane's length: as many robots fit as do, whatever float64 says."""

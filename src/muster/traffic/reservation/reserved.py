@@ -17,12 +17,12 @@ import numpy as np
 from muster import core
 from muster.mission.model import Robot
 from muster.motion.outlook import Outlook
-from muster.motion.port import Place, RobotPort, Waypoint
-from muster.traffic.managed_port import ManagedPort
+from muster.motion.port import Place, RobotPort, Waypoint, planar
+from muster.traffic.journeys.travellers import Move, Planner, Point, Stop, Traveller
 from muster.traffic.names import drives
-from muster.traffic.part import Part, planar
-from muster.traffic.roadmap import MARGIN_M
-from muster.traffic.travellers import Move, Planner, Point, Stop, Traveller
+from muster.traffic.reservation.managed_port import ManagedPort
+from muster.traffic.reservation.part import Part
+from muster.traffic.roadmaps.roadmap import MARGIN_M
 
 AHEAD_M = 2.0
 """For how many metres a robot may have begun moves, which a new plan does not change."""
