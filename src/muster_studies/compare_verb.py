@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
-from muster.cli.options import Finite, format_option, objective_option, quiet_option
+from muster.cli.options.common import Finite, format_option, objective_option, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
 from muster.mission.errors import ParameterError
 
@@ -189,7 +189,7 @@ def _show(comparison: Comparison, form: str, report: Path | None, plot: Path | N
 
 
 def _print_tables(comparison: Comparison) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
     from muster_studies.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
 
     title = f"{comparison.counts}; {comparison.settings.text} each"

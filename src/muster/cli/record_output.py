@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from muster.cli.options import Verb
+from muster.cli.options.common import Verb
 
 if TYPE_CHECKING:
     from muster.report.record import Recording

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.exit_codes import Ending, exit_code_if
-from muster.cli.options import MissionFile, mission_argument
+from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.interrupts import TO_END, ctrl_c_halts, signals_interrupt
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
@@ -98,7 +98,7 @@ def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> int:
 
 
 def _print_orders(rows: Sequence[Line]) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     table = [
         (

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, Verb
-from muster.cli.tables import number, print_table
+from muster.cli.options.common import Finite, Verb
+from muster.cli.tables.table import number, print_table
 from muster.mission.counting import counted
 from muster.mission.errors import ParameterError
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.cli.options import Finite, Verb
+from muster.cli.options.common import Finite, Verb
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.options import Finite
+from muster.cli.options.common import Finite
 from muster.mission.errors import MusterError, ParameterError
 
 if TYPE_CHECKING:

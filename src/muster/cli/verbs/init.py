@@ -9,7 +9,7 @@ from string import Template
 
 import click
 
-from muster.cli.options import quiet_option
+from muster.cli.options.common import quiet_option
 from muster.mission.errors import ParameterError
 from muster.mission.packaged_files import packaged_text
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.options import format_option, quiet_option
+from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def _shown(value: object) -> str:
 
 
 def _list(form: str) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
     from muster.generation.registry import GENERATORS
 
     families = GENERATORS.usable().values()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 from click.shell_completion import BashComplete, add_completion_class, get_completion_class
 
-from muster.cli.options import quiet_option
+from muster.cli.options.common import quiet_option
 from muster.mission.packaged_files import packaged_text
 
 _SHELLS = ("bash", "zsh", "fish")

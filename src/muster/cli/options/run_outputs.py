@@ -8,7 +8,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Any, cast
 
-from muster.cli.options import Verb
+from muster.cli.options.common import Verb
 from muster.mission.model import Mission
 from muster.running.run_outputs import RUN_OUTPUTS, BegunOutput, RunOutput
 

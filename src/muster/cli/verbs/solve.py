@@ -11,7 +11,7 @@ import click
 from muster.cli.backend import Backend, server_option
 from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.exits import INTERRUPTED
-from muster.cli.options import (
+from muster.cli.options.common import (
     MissionFile,
     accept_partial_option,
     format_option,
@@ -19,8 +19,8 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
+from muster.cli.options.planning import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.outputs import require_csv, require_drawable, require_writable
-from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.results import show_plan, write_book
 from muster.cli.whole_work import whole_work
 from muster.mission.errors import ParameterError

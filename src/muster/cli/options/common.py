@@ -91,10 +91,14 @@ def optional_mission_argument(verb: Verb) -> Verb:
     return _with_mission(verb, required=False)
 
 
-def _complete_mission(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    from muster.cli.mission_names import missions
+def _complete_mission(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Return the names of shipped missions, and files, as a shell completes them."""
+    from click.shell_completion import CompletionItem
 
-    return missions(context, parameter, incomplete)
+    from muster.library import missions
+
+    named = [m for m in missions() if m.name.startswith(incomplete)] if "/" not in incomplete else []
+    return [CompletionItem(incomplete, type="file"), *(CompletionItem(m.name, help=m.description) for m in named)]
 
 
 def _with_mission(verb: Verb, *, required: bool) -> Verb:

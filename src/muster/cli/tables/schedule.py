@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from muster.cli.tables import number, print_table, sequence
+from muster.cli.tables.table import number, print_table, sequence
 from muster.mission.goods import shown_amounts
 from muster.mission.model import Mission, Task
 from muster.mission.time_types import clock_text

@@ -11,10 +11,9 @@ import click
 from click.core import ParameterSource
 
 from muster.cli.backend import Backend, server_option
-from muster.cli.coordination_options import coordination_options, coordination_parameters
 from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.live_output import foxglove_option, print_event_line, shown_live
-from muster.cli.options import (
+from muster.cli.options.common import (
     MissionFile,
     format_option,
     load_plan,
@@ -22,12 +21,13 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
+from muster.cli.options.coordination import coordination_options, coordination_parameters
+from muster.cli.options.planning import ctrl_c_interrupts, planning_options, request_of
+from muster.cli.options.request import request_options
+from muster.cli.options.run_outputs import AskedOutputs, not_at_server, run_output_options
 from muster.cli.outputs import require_drawable, require_writable
-from muster.cli.planning_options import ctrl_c_interrupts, planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
-from muster.cli.report_tables import print_report
-from muster.cli.request_options import request_options
-from muster.cli.run_output_options import AskedOutputs, not_at_server, run_output_options
+from muster.cli.tables.report import print_report
 from muster.cli.whole_work import whole_work
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission

@@ -8,7 +8,7 @@ from importlib.metadata import version
 
 import click
 
-from muster.cli.options import quiet_option
+from muster.cli.options.common import quiet_option
 from muster.mission.installation import DISTRIBUTION
 from muster.mission.plugins import declared, is_shipped
 

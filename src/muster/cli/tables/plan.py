@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from muster.cli.tables import number, print_table, sequence
+from muster.cli.tables.table import number, print_table, sequence
 from muster.mission.counting import counted
 from muster.mission.plan import Plan, gap
 from muster.verification import Verdict

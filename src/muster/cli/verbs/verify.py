@@ -8,7 +8,7 @@ import click
 
 from muster.cli.backend import Backend, server_option
 from muster.cli.exits import DONE, REJECTED
-from muster.cli.options import (
+from muster.cli.options.common import (
     MissionFile,
     format_option,
     ignore_option,
@@ -43,7 +43,7 @@ def command(
     Exits with 1 if the plan is not admissible or a figure in it is wrong. All rules hold but those to --ignore,
     whatever the plan says of itself.
     """
-    from muster.cli.plan_tables import print_verdict
+    from muster.cli.tables.plan import print_verdict
 
     loaded = mission.load(verbose=verbose)
     given = load_plan(plan, loaded, ignore, quiet=quiet, verbose=verbose)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import Verb, format_option, quiet_option
+from muster.cli.options.common import Verb, format_option, quiet_option
 from muster.cli.other_recordings import OTHER_RECORDINGS
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.record_output import draw_record, drawing_options
-from muster.cli.report_tables import print_report
-from muster.cli.tables import number, print_table
+from muster.cli.tables.report import print_report
+from muster.cli.tables.table import number, print_table
 from muster.mission.counting import counted
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import MissionFile, format_option, mission_argument, quiet_option
+from muster.cli.options.common import MissionFile, format_option, mission_argument, quiet_option
 from muster.cli.outputs import require_csv, require_drawable, require_writable
-from muster.cli.smooth_path import bends_of, corners_of, require_turning_radius, smooth_path, write_trajectory
+from muster.cli.verbs.smooth_path import bends_of, corners_of, require_turning_radius, smooth_path, write_trajectory
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.near_matches import did_you_mean
@@ -115,7 +115,7 @@ def command(
     require_turning_radius(turning_radius)
     loaded = mission.load(verbose=verbose)
     if together:
-        from muster.cli.path_together import run
+        from muster.cli.verbs.path_together import run
 
         return run(loaded, together, cell, window, seed, form)
     ends = _point(loaded, "--from", start), _point(loaded, "--to", goal)
@@ -277,7 +277,7 @@ def _reason(found: NoPath) -> str:
 def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, driven: dict[str, Any]) -> None:
     import numpy as np
 
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
     from muster.mission.counting import counted
 
     if isinstance(found, NoPath):

@@ -77,7 +77,7 @@ def _answer(found: Any) -> dict[str, Any]:
 
 
 def _print(mission: Mission, found: Any) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     rows = [
         (robot, f"{length:.2f}", f"{arrives:.2f}")

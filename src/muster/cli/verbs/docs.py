@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.options import format_option, quiet_option
+from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import MusterError, ParameterError
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def _entry_of(page: str, entries: Sequence[Entry]) -> Entry:
 
 
 def _print_list(entries: Sequence[Entry], form: str) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     if form == "json":
         _print_json([_as_dict(entry) for entry in entries])
@@ -92,7 +92,7 @@ def _print_list(entries: Sequence[Entry], form: str) -> None:
 
 
 def _print_found(words: str, form: str) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
     from muster.library.documents import find_in_documents
 
     found = list(find_in_documents(words))

@@ -10,7 +10,7 @@ import click
 from muster.cli.backend import Backend, server_option
 from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.exits import BAD_INPUT
-from muster.cli.options import (
+from muster.cli.options.common import (
     MissionFile,
     format_option,
     ignore_option,
@@ -18,7 +18,7 @@ from muster.cli.options import (
     quiet_option,
     require_complete_option,
 )
-from muster.cli.tables import sequence
+from muster.cli.tables.table import sequence
 from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError, NotSupportedError
 from muster.mission.ignorable_rules import ignored_rules
@@ -124,7 +124,7 @@ def _for_ever(mission: Mission, lost: Sequence[Unassigned]) -> list[Unassigned]:
 
 
 def _print_checked(mission: Mission, found: Possible, errors: int) -> None:
-    from muster.cli.impossible_table import print_impossible
+    from muster.cli.tables.impossible import print_impossible
     from muster.planning.explaining.phrases import shortfall_lines
 
     lost = found.impossible
@@ -144,7 +144,7 @@ def _print_checked(mission: Mission, found: Possible, errors: int) -> None:
 
 def _print_blocked(blocked: tuple[BlockedWay, ...]) -> None:
     """Print what traffic cannot get done."""
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     if blocked:
         rows = [(way.task or "-", ", ".join(way.robots), way.detail) for way in blocked]

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, MissionFile, format_option, load_plan, mission_argument, quiet_option
+from muster.cli.options.common import Finite, MissionFile, format_option, load_plan, mission_argument, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
-from muster.cli.tables import number, sequence
+from muster.cli.tables.table import number, sequence
 from muster.mission.counting import counted
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
@@ -96,8 +96,8 @@ def _forecast(mission: Mission, file: File, made: MissionRoadmap, *, quiet: bool
 
 def _print_forecast(forecast: Forecast) -> None:
     """Print when robots have ended their routes, and how much of that they wait for others."""
-    from muster.cli.plan_tables import print_traffic_times
-    from muster.cli.tables import print_table
+    from muster.cli.tables.plan import print_traffic_times
+    from muster.cli.tables.table import print_table
     from muster.traffic.journeys.forecast import finite
 
     rows = [
@@ -137,7 +137,7 @@ def _figures(made: MissionRoadmap, found: tuple[Passage, ...]) -> dict[str, Any]
 
 
 def _print(mission: Mission, made: MissionRoadmap, found: tuple[Passage, ...]) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     figures = _figures(made, found)
     rows = [

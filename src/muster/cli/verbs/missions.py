@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from muster.cli.backend import Backend, server_option
-from muster.cli.options import format_option, quiet_option
+from muster.cli.options.common import format_option, quiet_option
 
 
 @click.command()
@@ -23,6 +23,6 @@ def command(backend: Backend, form: str, quiet: bool, verbose: bool) -> None:
 
         click.echo(json.dumps(data, indent=1))
     else:
-        from muster.cli.tables import print_table
+        from muster.cli.tables.table import print_table
 
         print_table(tuple(rows[0]), [tuple(row.values()) for row in rows], right=("robots", "tasks", "version"))

@@ -15,7 +15,7 @@ from typing import Any, cast
 
 import click
 
-from muster.cli.options import Verb
+from muster.cli.options.common import Verb
 from muster.mission.errors import ParameterError
 from muster.mission.field_help import unit_of
 from muster.mission.order_files import OrderFile

@@ -8,8 +8,8 @@ from typing import Any, cast
 
 import click
 
-from muster.cli.options import Verb
-from muster.cli.request_options import option_name, request_options
+from muster.cli.options.common import Verb
+from muster.cli.options.request import option_name, request_options
 from muster.mission.errors import ParameterError
 from muster.mission.records import specified
 from muster.running.coordination import COORDINATIONS, Coordination

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.backend import Backend, server_option
-from muster.cli.options import MissionFile, format_option, ignore_option, mission_argument, quiet_option, say_of_plan
+from muster.cli.options.common import (
+    MissionFile,
+    format_option,
+    ignore_option,
+    mission_argument,
+    quiet_option,
+    say_of_plan,
+)
 from muster.mission.plan import json_text
 from muster.mission.plan_reader import read_plan
 
@@ -53,7 +60,7 @@ def command(
 
 def _print(form: str, found: Explanation) -> None:
     """The data for programs, or the lines and tables for people."""
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     if form == "json":
         click.echo(json_text(found.data), nl=False)

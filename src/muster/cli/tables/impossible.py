@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from muster.cli.tables import print_table, sequence
+from muster.cli.tables.table import print_table, sequence
 from muster.mission.counting import counted
 from muster.mission.plan import Unassigned
 

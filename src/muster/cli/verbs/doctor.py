@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE, REJECTED
-from muster.cli.options import format_option, quiet_option
+from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import MusterError
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _print(
     found: tuple[Found, ...],
     processors: Processors,
 ) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
     from muster.mission.installation import version_line
 
     limit = "" if processors.group_limit is None else f", {processors.group_limit:g} allowed by the control group"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.cli.options import Verb, ignore_option, objective_option, settings_of
+from muster.cli.options.common import Verb, ignore_option, objective_option, settings_of
 from muster.mission.errors import ParameterError
 from muster.mission.interrupts import on_ctrl_c
 from muster.mission.model import Mission
@@ -135,7 +135,7 @@ def _list(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if not asked or ctx.resilient_parsing:
         return
     from muster.allocation.registry import ALLOCATORS
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     rows = [
         (a.name, a.summary, ", ".join(f"{f.name}={_default(f.default)}" for f in fields(a.parameters)) or "-")

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from muster.cli.tables import number, print_table
+from muster.cli.tables.table import number, print_table
 from muster.mission.counting import counted
 from muster.mission.model import Mission, Tag
 
