@@ -183,7 +183,7 @@ def _show(comparison: Comparison, form: str, report: Path | None, plot: Path | N
     if report is not None:
         comparison.save_report(report, command=f"muster {shlex.join(sys.argv[1:])}")
     if plot is not None:
-        from muster.report.files import save_figure
+        from muster.report.figures.files import save_figure
 
         save_figure(comparison.plot_profile(), plot)
 

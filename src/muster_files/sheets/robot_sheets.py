@@ -11,7 +11,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
 from muster.planning.export_formats import HEIGHTS, ExportOptions, Files, declares
-from muster.report.fonts import Names
+from muster.report.figures.fonts import Names
 from muster.report.route_lines import RobotLines, robot_lines
 from muster.verification import Verdict
 from muster_files.file_names import file_names
@@ -149,8 +149,8 @@ class _Printer:
         return shown_amounts(line.visit.load_after) if self.sheets.mission.has_goods else ""
 
     def _map(self, sheet: Sheet) -> Figure:
-        from muster.report.canvas import new_axes
-        from muster.report.robot_map import draw_robot_map
+        from muster.report.figures.canvas import new_axes
+        from muster_files.sheets.robot_map import draw_robot_map
 
         ax = new_axes(_MAP_MM[0] / 25.4, _MAP_MM[1] / 25.4)
         with self.names.fonts():

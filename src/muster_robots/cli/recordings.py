@@ -87,7 +87,7 @@ def show(file: Path, plot: Path | None, form: str, *, quiet: bool) -> int:
     """Print and draw the tracks in a recording of others."""
     tracks = _tracks(file, quiet=quiet)
     if plot is not None:
-        from muster.report.files import save_figure
+        from muster.report.figures.files import save_figure
         from muster_robots.recordings.picture import plot_tracks
 
         save_figure(plot_tracks(file.name, list(tracks.values())), plot)

@@ -321,8 +321,8 @@ def _draw(
     planner: str,
     file: File,
 ) -> None:
-    from muster.report.files import save_figure
-    from muster.report.path_picture import plot_way
+    from muster.report.figures.files import save_figure
+    from muster.report.maps.path_picture import plot_way
 
     start, goal = (tuple(end) for end in ends)
     image = None if world is None else world.image

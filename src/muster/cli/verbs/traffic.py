@@ -63,8 +63,8 @@ def command(
     if not quiet:
         _warn(loaded, made)
     if plot is not None:
-        from muster.report.files import save_figure
-        from muster.report.roadmap_picture import plot_roadmap
+        from muster.report.figures.files import save_figure
+        from muster.report.maps.roadmap_picture import plot_roadmap
 
         save_figure(plot_roadmap(loaded, made, found, image=None if world is None else world.image), plot)
     forecast = None if plan is None else _forecast(loaded, plan, made, quiet=quiet, verbose=verbose)

@@ -7,7 +7,7 @@ import pytest
 
 from muster.mission.errors import ParameterError
 from muster.simulation import Wind
-from muster.simulation.wind import Gusts, WindField, turbulence
+from muster_physics.wind import Gusts, WindField, turbulence
 
 FOOT = 0.3048
 

@@ -9,11 +9,11 @@ import numpy as np
 from muster.mission.model import Mission, Point
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath, Path
-from muster.report.canvas import add_legend, add_title, frame_of_map, is_spatial, limits, map_axes, new_axes
-from muster.report.floor import draw_map, map_corners
-from muster.report.route_ground import draw_stems
+from muster.report.figures.canvas import add_legend, add_title, frame_of_map, is_spatial, limits, map_axes, new_axes
+from muster.report.figures.styles import robot_style
+from muster.report.maps.floor import draw_map, map_corners
+from muster.report.maps.route_ground import draw_stems
 from muster.report.route_lines import places
-from muster.report.styles import robot_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from muster.mission.arrays import Floats
-from muster.report.canvas import new_figure, quiet_frame
-from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
+from muster.report.figures.canvas import new_figure, quiet_frame
+from muster.report.figures.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

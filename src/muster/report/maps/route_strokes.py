@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from muster.report.canvas import write
+from muster.report.figures.canvas import write
+from muster.report.figures.styles import DASHED, Style, robot_style
 from muster.report.route_lines import RobotLines
-from muster.report.styles import DASHED, Style, robot_style
 
 MOST_IDS = 60
 """Tasks up to which each is named."""

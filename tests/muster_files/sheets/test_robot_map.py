@@ -9,9 +9,9 @@ pytest.importorskip("shapely")
 from muster import Action, Mission, Robot, Task, verify
 from muster.mission.plan_reader import plan_of
 from muster.mission.stations import Battery, Station
-from muster.report.canvas import new_axes
-from muster.report.robot_map import draw_robot_map
+from muster.report.figures.canvas import new_axes
 from muster.report.route_lines import robot_lines
+from muster_files.sheets.robot_map import draw_robot_map
 
 ROUTE = ["a", "dock", "b", "dock", "c"]
 

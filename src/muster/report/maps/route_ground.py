@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from muster.mission.model import Mission, Task
+from muster.report.figures.styles import FRAME, MOST_ARROWS, MOST_TRANSPORTS, PREREQUISITE, TRANSPORT
 from muster.report.route_lines import Places
-from muster.report.styles import FRAME, MOST_ARROWS, MOST_TRANSPORTS, PREREQUISITE, TRANSPORT
 
 
 def draw_stems(ax: Any, tops: Places, floor: float) -> None:

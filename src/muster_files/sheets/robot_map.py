@@ -8,14 +8,14 @@ import numpy as np
 
 from muster.mission.model import Mission, Point
 from muster.motion.grid import Grid
-from muster.report.area_marks import draw_areas
-from muster.report.canvas import frame_of_map, limits, settle, to_points, write
-from muster.report.floor import draw_map
-from muster.report.labels import line_obstacles, mark_obstacles, place_labels, text_size
+from muster.report.figures.canvas import frame_of_map, limits, settle, to_points, write
+from muster.report.figures.labels import line_obstacles, mark_obstacles, place_labels, text_size
+from muster.report.figures.styles import TEXT, robot_style
+from muster.report.maps.area_marks import draw_areas
+from muster.report.maps.floor import draw_map
+from muster.report.maps.route_strokes import Detail, detail_for, draw_lines
+from muster.report.maps.station_marks import draw_stations
 from muster.report.route_lines import Places, RobotLines, marks_of, places
-from muster.report.route_strokes import Detail, detail_for, draw_lines
-from muster.report.station_marks import draw_stations
-from muster.report.styles import TEXT, robot_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,8 +8,8 @@ import numpy as np
 
 from muster.mission.model import Map, Point, Zone
 from muster.motion.grid import Grid
-from muster.report.canvas import write
-from muster.report.styles import FAINT, FRAME, QUIET_TEXT, WALL
+from muster.report.figures.canvas import write
+from muster.report.figures.styles import FAINT, FRAME, QUIET_TEXT, WALL
 
 _HATCH = {"ground": "///", "air": "\\\\\\"}
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.report.canvas import add_legend, add_title, alarm_of, note_entries
-from muster.report.fonts import Names
-from muster.report.level_lines import planned_level
-from muster.report.route_ground import drawn_prerequisites
-from muster.report.time_chart import Row, Service, Span, TimeChart, Work, duration, lasting, new_chart_axes
-from muster.report.time_limits import draw_limits
+from muster.report.figures.canvas import add_legend, add_title, alarm_of, note_entries
+from muster.report.figures.fonts import Names
+from muster.report.maps.route_ground import drawn_prerequisites
+from muster.report.time_charts.level_lines import planned_level
+from muster.report.time_charts.time_chart import Row, Service, Span, TimeChart, Work, duration, lasting, new_chart_axes
+from muster.report.time_charts.time_limits import draw_limits
 from muster.verification import RouteFigures, Verdict
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.model import Map
-from muster.report.canvas import new_figure, quiet_frame
-from muster.report.floor import draw_map
+from muster.report.figures.canvas import new_figure, quiet_frame
+from muster.report.figures.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
+from muster.report.maps.floor import draw_map
 from muster.report.route_lines import Places
-from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

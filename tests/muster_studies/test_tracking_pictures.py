@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from muster.mission.model import Map
-from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
+from muster_studies.tracking_pictures import Measure, Tracked, plot_measures, plot_tracking
 
 pytest.importorskip("matplotlib")
 

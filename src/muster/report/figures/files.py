@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import Finding, InputError
-from muster.report.canvas import require_matplotlib
-from muster.report.figure_data import figure_data
+from muster.report.figures.canvas import require_matplotlib
+from muster.report.figures.figure_data import figure_data
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from muster.mission.extras import needs_extra
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats
-from muster.report.fonts import Names
-from muster.report.styles import ALARM, FRAME, GRID, QUIET_TEXT, TEXT
+from muster.report.figures.fonts import Names
+from muster.report.figures.styles import ALARM, FRAME, GRID, QUIET_TEXT, TEXT
 from muster.verification import Verdict
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def new_axes(width_in: float, height_in: float, *, spatial: bool = False) -> Axe
     figure = new_figure(width_in, height_in)
     from matplotlib import rc_context
 
-    from muster.report.picture_axes import PictureAxes, PictureAxes3D
+    from muster.report.figures.picture_axes import PictureAxes, PictureAxes3D
 
     if not spatial:
         return figure.add_subplot(axes_class=PictureAxes)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from muster.mission.arrays import Floats
-from muster.report.canvas import new_axes, quiet_frame
-from muster.report.styles import DASHED, PALETTE, QUIET_TEXT
+from muster.report.figures.canvas import new_axes, quiet_frame
+from muster.report.figures.styles import DASHED, PALETTE, QUIET_TEXT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from muster.mission.model import Mission, Point, Task
-from muster.report.styles import AREA, AREA_EDGE, FAINT, FRAME
+from muster.report.figures.styles import AREA, AREA_EDGE, FAINT, FRAME
 
 _HOLE: dict[str, Any] = {"edgecolor": FRAME, "linewidth": 0.8}
 

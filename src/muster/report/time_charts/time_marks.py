@@ -14,7 +14,7 @@ from typing import Any
 
 from muster.mission.model import Task
 from muster.mission.time_types import clock_text
-from muster.report.time_chart import Row, Work
+from muster.report.time_charts.time_chart import Row, Work
 
 WINDOW, DEADLINE, DUE, LATE, TEAM = "window", "deadline", "due", "late", "team"
 

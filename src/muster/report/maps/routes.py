@@ -11,8 +11,7 @@ import numpy as np
 from muster.mission.model import Mission, Point, Task
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
-from muster.report.area_marks import area_corners, draw_areas
-from muster.report.canvas import (
+from muster.report.figures.canvas import (
     add_legend,
     add_title,
     alarm_of,
@@ -29,20 +28,21 @@ from muster.report.canvas import (
     to_points,
     write,
 )
-from muster.report.floor import draw_map, map_corners, map_outlines, wall_places
-from muster.report.fonts import Names
-from muster.report.labels import dot_obstacles, line_obstacles, mark_obstacles, place_labels, text_size
-from muster.report.route_ground import (
+from muster.report.figures.fonts import Names
+from muster.report.figures.labels import dot_obstacles, line_obstacles, mark_obstacles, place_labels, text_size
+from muster.report.figures.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
+from muster.report.maps.area_marks import area_corners, draw_areas
+from muster.report.maps.floor import draw_map, map_corners, map_outlines, wall_places
+from muster.report.maps.route_ground import (
     draw_prerequisites,
     draw_stems,
     draw_transports,
     drawn_prerequisites,
     drawn_transports,
 )
+from muster.report.maps.route_strokes import Detail, detail_for, draw_lines, draw_tasks, stroke_of
+from muster.report.maps.station_marks import draw_stations, station_names
 from muster.report.route_lines import Places, RobotLines, left_out, marks_of, places, robot_lines
-from muster.report.route_strokes import Detail, detail_for, draw_lines, draw_tasks, stroke_of
-from muster.report.station_marks import draw_stations, station_names
-from muster.report.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
 from muster.verification import Verdict
 
 if TYPE_CHECKING:

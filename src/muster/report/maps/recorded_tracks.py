@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from muster.mission.model import Mission
-from muster.report.canvas import (
+from muster.report.figures.canvas import (
     add_legend,
     add_title,
     frame_of_map,
@@ -18,12 +18,12 @@ from muster.report.canvas import (
     shortened,
     write,
 )
-from muster.report.floor import draw_map, map_corners
-from muster.report.fonts import Names
+from muster.report.figures.fonts import Names
+from muster.report.figures.styles import ALARM, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
+from muster.report.maps.floor import draw_map, map_corners
+from muster.report.maps.station_marks import draw_stations, station_names
 from muster.report.record import Recording
 from muster.report.route_lines import Places, places
-from muster.report.station_marks import draw_stations, station_names
-from muster.report.styles import ALARM, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
 from muster.state.mission_state import DONE, OPEN
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from typing import Any
 
 from muster.mission.model import Mission, Point
 from muster.mission.stations import station_sign
-from muster.report.fonts import Names
+from muster.report.figures.fonts import Names
+from muster.report.figures.styles import SERVICE, SERVICE_EDGE
 from muster.report.route_lines import Places
-from muster.report.styles import SERVICE, SERVICE_EDGE
 
 MOST_STATIONS = 40
 """Stations up to which each is named."""

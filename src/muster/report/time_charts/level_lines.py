@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from muster.mission.model import Battery, Robot, Task
-from muster.report.activity_spans import TRAVEL, WORK, Span
-from muster.report.styles import FAINT, LEVEL
+from muster.report.figures.styles import FAINT, LEVEL
+from muster.report.time_charts.activity_spans import TRAVEL, WORK, Span
 from muster.verification import RouteFigures, Stop
 
 if TYPE_CHECKING:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from muster.report.activity_spans import SERVICE, TRAFFIC, TRAVEL, WAITING, WORK, spans
-from muster.report.canvas import add_legend, add_title, note_entries
-from muster.report.fonts import Names
-from muster.report.level_lines import recorded_level
+from muster.report.figures.canvas import add_legend, add_title, note_entries
+from muster.report.figures.fonts import Names
+from muster.report.maps.recorded_tracks import outcome
+from muster.report.maps.route_ground import drawn_prerequisites
 from muster.report.record import Recording
-from muster.report.recorded_tracks import outcome
-from muster.report.route_ground import drawn_prerequisites
-from muster.report.time_chart import Row, Service, TimeChart, Work, duration, lasting, new_chart_axes
-from muster.report.time_limits import draw_limits
+from muster.report.time_charts.activity_spans import SERVICE, TRAFFIC, TRAVEL, WAITING, WORK, spans
+from muster.report.time_charts.level_lines import recorded_level
+from muster.report.time_charts.time_chart import Row, Service, TimeChart, Work, duration, lasting, new_chart_axes
+from muster.report.time_charts.time_limits import draw_limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,9 +9,9 @@ import numpy as np
 
 from muster.mission.model import Mission
 from muster.motion.grid import Grid
-from muster.report.canvas import add_legend, add_title, frame_of_map, limits, map_axes
-from muster.report.floor import draw_map, map_corners
-from muster.report.styles import PALETTE, TEXT
+from muster.report.figures.canvas import add_legend, add_title, frame_of_map, limits, map_axes
+from muster.report.figures.styles import PALETTE, TEXT
+from muster.report.maps.floor import draw_map, map_corners
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.passages import Passage
 from muster.traffic.roadmaps.roadmap import Roadmap

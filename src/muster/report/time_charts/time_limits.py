@@ -8,9 +8,9 @@ from typing import Any
 
 from muster.mission.model import Task
 from muster.mission.time_types import clock_text
-from muster.report.styles import ALARM, QUIET_TEXT, TEXT
-from muster.report.time_chart import WORK_HEIGHT, Row
-from muster.report.time_marks import DEADLINE, DUE, LATE, TEAM, WINDOW, TimeMark, time_marks
+from muster.report.figures.styles import ALARM, QUIET_TEXT, TEXT
+from muster.report.time_charts.time_chart import WORK_HEIGHT, Row
+from muster.report.time_charts.time_marks import DEADLINE, DUE, LATE, TEAM, WINDOW, TimeMark, time_marks
 
 _SHADE = "#CFE3F3"
 _WINDOW_HEIGHT, _LATE_HEIGHT = 0.84, 0.08

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from muster.mission.stations import station_sign
-from muster.report.canvas import new_axes, quiet_frame, settle, shortened, write
-from muster.report.fonts import Names
-from muster.report.labels import text_size
-from muster.report.level_lines import Level, draw_levels
-from muster.report.styles import (
+from muster.report.figures.canvas import new_axes, quiet_frame, settle, shortened, write
+from muster.report.figures.fonts import Names
+from muster.report.figures.labels import text_size
+from muster.report.figures.styles import (
     DASHED,
     GRID,
     PREREQUISITE,
@@ -26,6 +25,7 @@ from muster.report.styles import (
     Style,
     robot_style,
 )
+from muster.report.time_charts.level_lines import Level, draw_levels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
