@@ -13,7 +13,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.sol_files import sol_text
 from muster.motion.map_world import body_of
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.planning.export_formats import ALTITUDE_MISSING, HEIGHTS, ExportOptions, Files, declares
 from muster.verification import Verdict
 from muster.verification.required import require_geometry

@@ -18,7 +18,7 @@ from muster.mission.model import DelayedTask, Event, MovedTask
 from muster.mission.plan import Plan, Route
 from muster.motion import actions
 from muster.motion.actions import Impossible
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.state.robot_events import RobotFails, RobotSilent, RobotStuck
 
 SHIPPED = [name for name in mission_names() if name not in ("berlin52", "eil51", "eil76")]

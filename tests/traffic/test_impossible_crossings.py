@@ -8,8 +8,7 @@ import shapely
 
 from muster.motion.free_space import PolygonSpace
 from muster.motion.maps.polygons import free_region
-from muster.traffic.blockages.impossible_crossings import Crossings
-from muster.traffic.blockages.joint_positions import JointPositions
+from muster.traffic.blockages.impossible_crossings import Crossings, JointPositions
 from muster.traffic.roadmaps.roadmap import Roadmap
 
 RADIUS = 0.3

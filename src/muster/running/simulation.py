@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from muster.execution import Executor, Recorder, Status, broken_off, report_of, status_of, travel_of, way_of
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.observed_run import ObservedRun

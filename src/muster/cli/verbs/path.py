@@ -171,7 +171,7 @@ def _found(
     import numpy as np
 
     from muster.motion.paths import planner_named
-    from muster.motion.robot_paths import RobotPaths, with_heights
+    from muster.motion.paths.robot_paths import RobotPaths, with_heights
 
     start, goal = ends
     if world is None:

@@ -13,7 +13,7 @@ from muster.mission.model import Robot
 from muster.motion.path import Path
 
 if TYPE_CHECKING:
-    from muster.motion.curve import Curve
+    from muster.motion.curves.curve import Curve
     from muster.motion.limits import Limits
     from muster.motion.map_world import Body, World
 
@@ -58,7 +58,7 @@ def corners_of(answer: Mapping[str, Any]) -> str:
 def smooth_path(world: World | None, body: Body, path: Path, robot: Robot | None, radius: float | None) -> SmoothPath:
     """Round the corners of a path by a turning radius; None: that of the robot at full speed, or 0.1 m."""
     from muster.motion.kinematics.registry import FREE_RADIUS_M, turning_radius_of
-    from muster.motion.robot_paths import RobotPaths
+    from muster.motion.paths.robot_paths import RobotPaths
     from muster.motion.smoothing import smoothed
 
     if radius is None:
@@ -78,9 +78,9 @@ def require_turning_radius(radius: float | None) -> None:
 
 def write_trajectory(file: File, curve: Curve | None, path: Path, robot: Robot | None) -> None:
     """Write the trajectory of a robot along a curve, else a path, as fast as its limits allow: a row each 0.05 s."""
-    from muster.motion.curve import Curve
+    from muster.motion.curves.curve import Curve
     from muster.motion.kinematics.registry import kinematics_named
-    from muster.motion.trajectory_table import trajectory_csv
+    from muster.motion.trajectory import trajectory_csv
     from muster.motion.velocity import timed
     from muster.motion.wheels import TRACK_RADII
 

@@ -16,8 +16,8 @@ from muster.execution.robots.task_motion import Way, place, straight
 from muster.mission.model import Mission, Robot, TravelTable
 from muster.motion.map_world import body_of
 from muster.motion.path import NoPath
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import Place
-from muster.motion.robot_paths import RobotPaths
 
 _OUT_M, _STEP_M, _DIRECTIONS = 3.0, 0.25, 16
 """How far out of a door a place is sought, in which steps and how many directions."""

@@ -13,8 +13,8 @@ from muster.mission.errors import Finding, PlanError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.actions import plan as doing
 from muster.motion.leg_times import LegTimes
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import Place
-from muster.motion.robot_paths import RobotPaths
 from muster.verification import RouteFigures, Stop, Verdict
 
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.mission.arrays import Floats
-from muster.motion.corners import Corner
-from muster.motion.curve import Curve
+from muster.motion.curves.corners import Corner
+from muster.motion.curves.curve import Curve
 from muster.motion.path import Path
 
 _SPARE = 1e-9
