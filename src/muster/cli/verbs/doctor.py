@@ -12,9 +12,9 @@ from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import MusterError
 
 if TYPE_CHECKING:
+    from muster.cli.verbs.extras_health import ExtraHealth
+    from muster.cli.verbs.system_facts import Found, Processors
     from muster.mission.installation import Part
-    from muster.running.doctor import ExtraHealth
-    from muster.running.system_facts import Found, Processors
 
 
 @click.command()
@@ -28,9 +28,9 @@ def command(server: str | None, token_file: Path | None, form: str, quiet: bool,
     Each optional package is imported, in a process of its own. Exits with 1 if one that is installed cannot be, or if
     the server does not answer; what is not installed is no fault.
     """
+    from muster.cli.verbs.extras_health import health, import_faults
+    from muster.cli.verbs.system_facts import processors, programs, python, system
     from muster.mission.installation import core_build, core_parts, extras, installed_version
-    from muster.running.doctor import health, import_faults
-    from muster.running.system_facts import processors, programs, python, system
 
     if verbose:
         click.echo("importing every package that is installed ...", err=True)

@@ -4,8 +4,9 @@ import importlib.util
 
 import pytest
 
+from muster.cli.verbs import extras_health as doctor
+from muster.cli.verbs import system_facts
 from muster.mission.installation import Part, extras
-from muster.running import doctor, system_facts
 
 
 def test_packages_that_fail_or_crash_are_told_each_by_itself(tmp_path, monkeypatch):
