@@ -12,6 +12,7 @@ from muster.mission.plan import Plan
 from muster.motion.grid import Grid
 from muster.planning.export_formats import HEIGHTS, ExportOptions, Files, declares
 from muster.report.figures.fonts import Names
+from muster.report.maps.floor import map_image
 from muster.report.route_lines import RobotLines, robot_lines
 from muster.verification import Verdict
 from muster_files.file_names import file_names
@@ -47,20 +48,13 @@ def sheets_files(mission: Mission, verdict: Verdict, options: ExportOptions, pla
     """
     sheets = sheets_of(mission, verdict, options, plan)
     lines = {one.robot.id: one for one in robot_lines(mission, verdict, 2)}
-    printer = _Printer(sheets, lines, _image(mission), Names(mission))
+    printer = _Printer(sheets, lines, map_image(mission), Names(mission))
     if not options.per_robot:
         return Files({"sheets.pdf": printer.pages(sheets.robots)}, sheets.notes)
     names = file_names((sheet.robot.id for sheet in sheets.busy), ".pdf")
     idle = tuple(f"{sheet.robot.id}: no stops, no file" for sheet in sheets.robots if not sheet.lines)
     made = {name: printer.pages([sheet]) for name, sheet in zip(names, sheets.busy, strict=True)}
     return Files(made, (*idle, *sheets.notes))
-
-
-def _image(mission: Mission) -> Grid | None:
-    """The cells of the mission's map, where it is an image."""
-    from muster.motion.map_world import World
-
-    return None if mission.map is None or mission.map.boundary is not None else World.of(mission).image
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.model import Map, Point, Zone
+from muster.mission.model import Map, Mission, Point, Zone
 from muster.motion.grid import Grid
 from muster.report.figures.canvas import write
 from muster.report.figures.styles import FAINT, FRAME, QUIET_TEXT, WALL
 
 _HATCH = {"ground": "///", "air": "\\\\\\"}
+
+
+def map_image(mission: Mission) -> Grid | None:
+    """Read the cells of the mission's map, where it is an image."""
+    from muster.motion.map_world import World
+
+    return None if mission.map is None or mission.map.boundary is not None else World.of(mission).image
 
 
 def draw_map(ax: Any, chart: Map, image: Grid | None = None, *, spatial: bool) -> list[tuple[Any, str]]:

@@ -32,7 +32,7 @@ from muster.report.figures.fonts import Names
 from muster.report.figures.labels import dot_obstacles, line_obstacles, mark_obstacles, place_labels, text_size
 from muster.report.figures.styles import DASHED, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
 from muster.report.maps.area_marks import area_corners, draw_areas
-from muster.report.maps.floor import draw_map, map_corners, map_outlines, wall_places
+from muster.report.maps.floor import draw_map, map_corners, map_image, map_outlines, wall_places
 from muster.report.maps.route_ground import (
     draw_prerequisites,
     draw_stems,
@@ -80,7 +80,7 @@ def plot_routes(mission: Mission, plan: Plan, verdict: Verdict, *, ax: Axes | No
     MissionError
         if the map is an image that cannot be read.
     """
-    image = _image(mission)
+    image = map_image(mission)
     spatial = mission.dimensions == 3 if ax is None else is_spatial(ax)
     scene = _scene(mission, verdict, spatial, image)
     if ax is None:
@@ -141,13 +141,6 @@ def _scene(mission: Mission, verdict: Verdict, spatial: bool, image: Grid | None
         image=image,
         marks=marks_of(mission, drawn),
     )
-
-
-def _image(mission: Mission) -> Grid | None:
-    """Read the image of the mission's map, where it is one."""
-    from muster.motion.map_world import World
-
-    return None if mission.map is None or mission.map.boundary is not None else World.of(mission).image
 
 
 def _all_points(scene: _Scene) -> list[Point]:
