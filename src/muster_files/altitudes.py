@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 
-from muster.execution.itinerary import Itinerary, heights_of_work, itineraries
-from muster.execution.separation import meetings
+from muster.execution.reports.itinerary import Itinerary, heights_of_work, itineraries
+from muster.execution.reports.separation import meetings
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.texts.near_matches import did_you_mean

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from muster.execution.itinerary import Itinerary
+from muster.execution.reports.itinerary import Itinerary
 from muster.mission.model import Mission, Point, Zone
 from muster.motion.port import Place
 

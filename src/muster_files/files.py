@@ -7,12 +7,12 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from muster.execution.itinerary import Itinerary, Passage, itineraries
+from muster.execution.reports.itinerary import Itinerary, Passage, itineraries
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.map_world import body_of
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.planning.export_formats import ALTITUDE_MISSING, HEIGHTS, ExportOptions, Files, declares
 from muster.verification import Verdict
 from muster.verification.required import require_geometry

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from muster.execution.itinerary import Itinerary
+from muster.execution.reports.itinerary import Itinerary
 from muster.mission.action_keys import ACTION_KEYS
 from muster.mission.areas.task_areas import whole_id
 from muster.mission.model import Mission, Robot, Task

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from muster.execution.itinerary import Itinerary
+from muster.execution.reports.itinerary import Itinerary
 from muster.mission.errors import Finding, PlanError
 from muster.mission.model import Mission
 from muster.verification.closed_areas import ClosedAreas

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from muster.execution.itinerary import Itinerary, Passage
+from muster.execution.reports.itinerary import Itinerary, Passage
 from muster.motion.port import Place
 
 _HAIR_M = 1e-6

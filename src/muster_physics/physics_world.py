@@ -25,7 +25,6 @@ from muster.motion.map_world import body_of
 from muster.motion.noise import CALM, Wind
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.lasers import laser_height_m
-from muster.simulation.wind import WindField
 from muster.simulation.world_base import FLIGHT_M, Event, WorldBase
 from muster_physics.bodies import ACCELERATION_MPS2, BodyKind, RobotBody, robot_body
 from muster_physics.buildings import Heights
@@ -36,6 +35,7 @@ from muster_physics.power_supply import power_supply
 from muster_physics.rays import Rays
 from muster_physics.scenery import Scenery
 from muster_physics.simulated_model import SimulatedModel
+from muster_physics.wind import WindField
 
 if TYPE_CHECKING:
     from muster_physics.rendered_cameras import RenderedCameras

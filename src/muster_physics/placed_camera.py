@@ -7,7 +7,7 @@ import numpy as np
 from muster.mission.model import Mission
 from muster.motion.grid import Floats
 from muster.perception.camera import Intrinsics, View
-from muster.perception.images import Image
+from muster.perception.cameras.images import Image
 from muster_physics.buildings import Heights
 from muster_physics.physics_world import PhysicsWorld
 from muster_physics.posed_scene import PosedScene

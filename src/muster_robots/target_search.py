@@ -21,10 +21,10 @@ from muster.motion.frames import Floats
 from muster.motion.transform_tree import TransformTree
 from muster.perception.camera import Intrinsics, mount_of_mission
 from muster.perception.camera_observer import CameraObserver
+from muster.perception.cameras.images import Image
 from muster.perception.detection import TagDetector
 from muster.perception.estimates import RawEstimates
 from muster.perception.found_tasks import FoundTasks
-from muster.perception.images import Image
 from muster.perception.localisation import Uncertainty
 from muster.perception.point_search import FoundCriteria, FoundPoint, PointSearch
 from muster.perception.scan_obstacles import seen_on_map

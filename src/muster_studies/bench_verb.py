@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from muster.cli.options import format_option, quiet_option
+from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.system.platforms import require_posix
 from muster.mission.texts.near_matches import did_you_mean
@@ -55,7 +55,7 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
     """
     import json
 
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     if ctx.invoked_subcommand is not None:
         return

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
-from muster.cli.options import Finite, format_option, objective_option, quiet_option
+from muster.cli.options.common import Finite, format_option, objective_option, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
 from muster.mission.errors import ParameterError
 
@@ -183,13 +183,13 @@ def _show(comparison: Comparison, form: str, report: Path | None, plot: Path | N
     if report is not None:
         comparison.save_report(report, command=f"muster {shlex.join(sys.argv[1:])}")
     if plot is not None:
-        from muster.report.files import save_figure
+        from muster.report.figures.files import save_figure
 
         save_figure(comparison.plot_profile(), plot)
 
 
 def _print_tables(comparison: Comparison) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
     from muster_studies.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
 
     title = f"{comparison.counts}; {comparison.settings.text} each"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.report import plot_routes
-from muster.report.canvas import named_rows, new_figure
-from muster.report.styles import TEXT
+from muster.report.figures.canvas import named_rows, new_figure
+from muster.report.figures.styles import TEXT
 from muster.verification import Verdict, verify
 
 if TYPE_CHECKING:

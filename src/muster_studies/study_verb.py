@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import format_option, quiet_option
+from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _draw(study: Study, effort: Effort, folder: Path) -> None:
 
 
 def _list(form: str) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
     from muster_studies.registry import STUDIES
     from muster_studies.tables import span
 
@@ -181,7 +181,7 @@ def _print_report(report: Report) -> None:
 
 
 def _print_table(table: Table) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     headers = [_SHORT_HEADERS.get(column, column) for column in table.columns]
     numeric = [header for k, header in enumerate(headers) if any(isinstance(row[k], int | float) for row in table.rows)]
@@ -212,7 +212,7 @@ def _without_repetition(rows: Sequence[Sequence[str]]) -> Iterator[list[str]]:
 def _print_text(line: str) -> None:
     from rich.text import Text
 
-    from muster.cli.tables import console
+    from muster.cli.tables.table import console
 
     console().print(Text(_printable(line)))
 
@@ -227,7 +227,7 @@ def _printable(text: str) -> str:
 
 
 def _text(column: str, cell: Cell, decimals: int) -> str:
-    from muster.cli.tables import sequence
+    from muster.cli.tables.table import sequence
 
     if isinstance(cell, float):
         return "<0.01" if column == "s" and cell < _LEAST_SECONDS else f"{cell:.{decimals}f}"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.perception.optional_parts import require_physics
-from muster.report.canvas import new_figure
-from muster.report.styles import TEXT
+from muster.report.figures.canvas import new_figure
+from muster.report.figures.styles import TEXT
 from muster.running.simulation import Simulation
 
 if TYPE_CHECKING:

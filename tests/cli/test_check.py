@@ -9,7 +9,7 @@ from random import Random
 import pytest
 from tests.cli.yard import FOUND
 
-from muster.cli.check import _touching
+from muster.cli.verbs.check import _touching
 from muster.mission.model import Robot
 from muster.mission.system.clock import ProcessorClock
 

@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from muster.cli.docs import laid_out
 from muster.cli.main import run
+from muster.cli.verbs.docs import laid_out
 
 COLOUR = re.compile(r"\x1b\[(?:\d+;)*(?:[39][0-7]|[34]8|10[0-7])[;m]")
 TABLE = ("generate", "--list")

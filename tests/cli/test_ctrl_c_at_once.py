@@ -38,13 +38,13 @@ def _run(module, interrupt=_AT_ONCE, handler="signal.default_int_handler"):
     return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize("module", ["muster.cli.main", "click", "muster.mission.errors", "muster.cli.missions"])
+@pytest.mark.parametrize("module", ["muster.cli.main", "click", "muster.mission.errors", "muster.cli.verbs.missions"])
 def test_ctrl_c_while_a_module_is_imported_ends_in_one_line(module):
     done = _run(module)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "\ninterrupted\n")
 
 
-@pytest.mark.parametrize("module", ["click", "muster.cli.missions"])
+@pytest.mark.parametrize("module", ["click", "muster.cli.verbs.missions"])
 def test_ctrl_c_within_a_finaliser_ends_in_one_line(module):
     done = _run(module, interrupt="Dying()")
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "\ninterrupted\n")
@@ -52,12 +52,12 @@ def test_ctrl_c_within_a_finaliser_ends_in_one_line(module):
 
 def test_ctrl_c_while_a_class_is_made_ends_in_one_line():
     """Python 3.11 raises RuntimeError then, from the KeyboardInterrupt."""
-    done = _run("muster.cli.missions", interrupt="type('Named', (), {'field': Naming()})")
+    done = _run("muster.cli.verbs.missions", interrupt="type('Named', (), {'field': Naming()})")
     assert (done.returncode, done.stderr.strip()) == (130, "interrupted")
 
 
 def test_ctrl_c_after_the_last_line_of_the_command_ends_in_one_line():
-    done = _run("muster.cli.missions", interrupt=f"import atexit; atexit.register(lambda: {_AT_ONCE})")
+    done = _run("muster.cli.verbs.missions", interrupt=f"import atexit; atexit.register(lambda: {_AT_ONCE})")
     assert (done.returncode, done.stderr) == (130, "\ninterrupted\n")
 
 

@@ -8,7 +8,7 @@ import webbrowser
 import pytest
 from tests.cli.yard import table_rows
 
-from muster.cli import docs
+from muster.cli.verbs import docs
 from muster.library import documents
 
 pytestmark = pytest.mark.usefixtures("folder")

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from muster.running import doctor
+from muster.cli.verbs import extras_health as doctor
 
 
 def test_the_verb_tells_faults_by_its_exit_code(muster, monkeypatch):

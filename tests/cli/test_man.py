@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from muster.cli.main import verbs
-from muster.cli.man import page
+from muster.cli.verbs.man import page
 
 VERBS = tuple(verbs())
 

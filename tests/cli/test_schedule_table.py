@@ -1,7 +1,7 @@
 from tests.carry_charge import battery, charger, judged, mission, robot, task
 
-from muster.cli.plan_tables import print_figures
-from muster.cli.schedule_table import print_schedule
+from muster.cli.tables.plan import print_figures
+from muster.cli.tables.schedule import print_schedule
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
 from muster.verification import verify

@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.cli.tables import print_table
+from muster.cli.tables.table import print_table
 
 FIGURES = ("1234.56", "712.10 to\n739.15")
 SEQUENCE = ", ".join(map(str, range(40)))
@@ -13,7 +13,7 @@ def printed(capsys, monkeypatch):
     """The lines of a table on a terminal of so many columns."""
 
     def lines(width, columns, rows, right):
-        monkeypatch.setattr("muster.cli.tables._WIDTH_WITHOUT_TERMINAL", width)
+        monkeypatch.setattr("muster.cli.tables.table._WIDTH_WITHOUT_TERMINAL", width)
         print_table(columns, rows, right=right)
         return capsys.readouterr().out.splitlines()
 
@@ -53,7 +53,7 @@ def test_a_long_table_is_printed_as_a_short_one(capsys, monkeypatch):
     columns, rows = ("robot", "where", "usage [m]"), [(f"r_{k}", "機械 ü"[: k % 5], f"{k / 7:.2f}") for k in range(30)]
     prints = []
     for most in (100, 5):
-        monkeypatch.setattr("muster.cli.tables._MOST_STYLED", most)
+        monkeypatch.setattr("muster.cli.tables.table._MOST_STYLED", most)
         print_table(columns, rows, title="Ways", right=("usage [m]",))
         prints.append(capsys.readouterr().out)
     assert prints[0] == prints[1]
@@ -62,6 +62,6 @@ def test_a_long_table_is_printed_as_a_short_one(capsys, monkeypatch):
 
 @pytest.mark.parametrize("cell", ["1\n2", SEQUENCE * 2])
 def test_a_long_table_with_cells_of_several_lines_folds(cell, capsys, monkeypatch):
-    monkeypatch.setattr("muster.cli.tables._MOST_STYLED", 5)
+    monkeypatch.setattr("muster.cli.tables.table._MOST_STYLED", 5)
     print_table(("a", "b"), [("r", cell)] * 9)
     assert len(capsys.readouterr().out.splitlines()) > 3 + 9 * 2

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import muster
 from muster.execution.executor import Executor
-from muster.execution.reallocation import Reallocation
-from muster.execution.task_motion import place
-from muster.execution.travel import travel_of, way_of
+from muster.execution.replanning.reallocation import Reallocation
+from muster.execution.replanning.travel import travel_of, way_of
+from muster.execution.robots.task_motion import place
 from muster.motion import actions
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from tests import trials
 from tests.disturbances.bodies import Bodies, bodily_mission
 from tests.disturbances.missions import disturbed_mission

@@ -108,7 +108,7 @@ def test_pictures_are_compared_by_their_data(check, tmp_path, monkeypatch):
     plt = pytest.importorskip("matplotlib.pyplot")
     from tools.docs_check import pictures
 
-    from muster.report.files import save_figure
+    from muster.report.figures.files import save_figure
 
     monkeypatch.setattr(pictures, "ROOT", tmp_path)
 

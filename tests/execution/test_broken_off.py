@@ -5,7 +5,7 @@ from tests.execution.world import World, carry_out
 
 import muster
 from muster.execution import Executor, broken_off, report_of
-from muster.execution.broken_off import IN_PART
+from muster.execution.reports.broken_off import IN_PART
 from muster.mission.model import Mission, Robot, Rules, Task
 
 

@@ -8,7 +8,7 @@ from tests.carry_charge import battery, charger, depot, mission, plan, robot, sw
 from tests.running.test_live import WorldAsFleet
 
 from muster.execution import status_of
-from muster.execution.robot_state import Activity
+from muster.execution.robots.robot_state import Activity
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.mission.plan import RouteStop

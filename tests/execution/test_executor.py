@@ -8,17 +8,17 @@ from tests.execution.world import World, carry_out
 import muster
 from muster import Mission, Robot, Rules, Task
 from muster.execution.executor import Executor
-from muster.execution.monitor import Limits
-from muster.execution.report import report_of
-from muster.execution.robot_state import Activity
-from muster.execution.travel import OverMap, way_of
+from muster.execution.replanning.travel import OverMap, way_of
+from muster.execution.reports.report import report_of
+from muster.execution.robots.monitor import Limits
+from muster.execution.robots.robot_state import Activity
 from muster.library import mission_names
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, MovedTask
 from muster.mission.plan import Plan, Route
 from muster.motion import actions
 from muster.motion.actions import Impossible
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.state.robot_events import RobotFails, RobotSilent, RobotStuck
 
 SHIPPED = [name for name in mission_names() if name not in ("berlin52", "eil51", "eil76")]

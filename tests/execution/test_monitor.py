@@ -4,8 +4,8 @@ import pytest
 from tests.execution.world import Point
 
 from muster import Robot
-from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck
-from muster.execution.robot_state import Activity, RobotState
+from muster.execution.robots.monitor import Limits, exceeds, is_silent, is_stuck
+from muster.execution.robots.robot_state import Activity, RobotState
 from muster.mission.errors import ParameterError
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Waypoint

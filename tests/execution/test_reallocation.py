@@ -11,9 +11,9 @@ from muster.allocation import greedy
 from muster.allocation.fixed import admissible_part
 from muster.allocation.problem import Problem
 from muster.execution.executor import Executor
-from muster.execution.reallocation import Reallocation, reasons_in_one_line
-from muster.execution.remaining_problem import remaining_problem
-from muster.execution.travel import travel_of, way_of
+from muster.execution.replanning.reallocation import Reallocation, reasons_in_one_line
+from muster.execution.replanning.remaining_problem import remaining_problem
+from muster.execution.replanning.travel import travel_of, way_of
 from muster.generation.uniform import large_mission
 from muster.mission.model import Action, Event, Map, Zone
 from muster.mission.plan import Reason

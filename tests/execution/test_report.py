@@ -7,7 +7,7 @@ from tests.execution.world import World, carry_out
 
 from muster import Mission, Plan, Robot, Route, Task
 from muster.execution.executor import Executor
-from muster.execution.report import report_of
+from muster.execution.reports.report import report_of
 from muster.mission.model import OBJECTIVES, Event
 
 

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.mission.strategies import examples
 
-from muster.execution.itinerary import Itinerary, Passage
-from muster.execution.separation import meetings
+from muster.execution.reports.itinerary import Itinerary, Passage
+from muster.execution.reports.separation import meetings
 from muster.mission.model import Robot
 
 

@@ -8,8 +8,8 @@ import pytest
 from tests.execution.world import World, carry_out
 
 from muster.execution import Executor, Standing, report_of, travel_of
-from muster.execution.insertion import Insertion
-from muster.execution.reallocation import Reallocation
+from muster.execution.replanning.insertion import Insertion
+from muster.execution.replanning.reallocation import Reallocation
 from muster.execution.script import Script
 from muster.execution.standing import EventLog
 from muster.mission.errors import ParameterError

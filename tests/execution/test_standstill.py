@@ -2,8 +2,8 @@
 
 from types import SimpleNamespace
 
-from muster.execution.robot_state import Activity
-from muster.execution.standstill import Standstill
+from muster.execution.deadlocks.standstill import Standstill
+from muster.execution.robots.robot_state import Activity
 
 
 def robot(name, activity, left_m=0.0):

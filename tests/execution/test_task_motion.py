@@ -5,7 +5,7 @@ import math
 import pytest
 
 from muster import Robot, Task
-from muster.execution.task_motion import path_length, place, straight, work_of
+from muster.execution.robots.task_motion import path_length, place, straight, work_of
 from muster.mission.model import Action, Camera
 from muster.motion.actions import Impossible, plan
 from muster.motion.leg_times import LegTimes

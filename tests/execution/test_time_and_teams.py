@@ -8,10 +8,10 @@ from tests.execution.world import World, carry_out
 
 from muster import Mission, Robot, Rules, Task
 from muster.execution.executor import Executor
-from muster.execution.reallocation import Revision
-from muster.execution.report import report_of
+from muster.execution.replanning.reallocation import Revision
+from muster.execution.reports.report import report_of
 from muster.execution.status import status_of
-from muster.execution.teams import lacking
+from muster.execution.timing.teams import lacking
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, Lag, TeamPart
 from muster.mission.plan import Reason, Unassigned

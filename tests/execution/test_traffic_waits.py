@@ -7,13 +7,13 @@ from tests.execution.test_executor import kinds, line, plan_of
 from tests.execution.world import Point, World, carry_out
 
 from muster import Robot
+from muster.execution.deadlocks.traffic_waits import TrafficWaits
 from muster.execution.executor import Executor
-from muster.execution.monitor import Limits
-from muster.execution.report import report_of
-from muster.execution.robot_state import Activity, RobotState
+from muster.execution.reports.report import report_of
+from muster.execution.robots.monitor import Limits
+from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.status import status_of
 from muster.execution.supervision import NoLeader
-from muster.execution.traffic_waits import TrafficWaits
 from muster.mission.model import Event
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Waypoint

@@ -3,8 +3,8 @@
 import math
 from itertools import pairwise
 
-from muster.execution.monitor import distance_to_piece
-from muster.execution.way_round import way_round
+from muster.execution.deadlocks.way_round import way_round
+from muster.execution.robots.monitor import distance_to_piece
 from muster.mission.model import Robot
 
 ROBOT = Robot(id="r_0", position=(0.0, 0.0), radius_m=0.3)

@@ -2,7 +2,7 @@
 
 import math
 
-from muster.execution.task_motion import place
+from muster.execution.robots.task_motion import place
 from muster.motion.port import Telemetry
 
 FAILURES = ("robot_fails", "robot_silent", "robot_returns", "robot_joins")

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from muster.mission.errors import ParameterError
-from muster.motion.curve import Curve
+from muster.motion.curves.curve import Curve
 from muster.motion.path import Path
 from muster.motion.smoothing import clear_by_points, clear_by_segments, smoothed
 

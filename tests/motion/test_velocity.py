@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.mission.strategies import examples
 
 from muster.mission.errors import ParameterError
-from muster.motion.curve import Curve
+from muster.motion.curves.curve import Curve
 from muster.motion.limits import Limits
 from muster.motion.path import Path
 from muster.motion.smoothing import smoothed

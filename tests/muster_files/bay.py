@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from muster import load
-from muster.execution.itinerary import itineraries
+from muster.execution.reports.itinerary import itineraries
 from muster.mission.plan import Plan, Route
 from muster.verification import verify
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from tests.mission.strategies import examples
 from tests.muster_files.documented import PLAN
 
-from muster.execution.itinerary import itineraries
+from muster.execution.reports.itinerary import itineraries
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.model import Action, Camera, Map, Mission, Origin, Robot, Rules, Task, Zone
 from muster.mission.plan import Plan, Route

@@ -7,7 +7,7 @@ from xml.etree import ElementTree as Tree
 import pytest
 
 from muster import load, verify
-from muster.execution.itinerary import itineraries
+from muster.execution.reports.itinerary import itineraries
 from muster.mission.reading.plan_reader import plan_of
 from muster.planning.export_formats import ExportOptions
 from muster.planning.exporting import exported

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from tests.mission.strategies import examples
 
 import muster
-from muster.execution.itinerary import Itinerary, Passage, itineraries
+from muster.execution.reports.itinerary import Itinerary, Passage, itineraries
 from muster.mission.model import Robot
 from muster.motion.map_world import body_of
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.verification import verify
 from muster_files.thinning import thinned
 

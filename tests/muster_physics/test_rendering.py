@@ -89,7 +89,7 @@ def test_the_backend_is_chosen_before_mujoco_comes():
 
 def test_nothing_of_it_comes_with_muster():
     program = (
-        "import sys, muster.running.simulation, muster.cli.simulate; from muster.running.worlds import WORLDS; "
+        "import sys, muster.running.simulation, muster.cli.verbs.simulate; from muster.running.worlds import WORLDS; "
         "WORLDS['physics']; print('mujoco' in sys.modules)"
     )
     assert (

@@ -12,7 +12,7 @@ from muster.mission.errors import ParameterError, RenderingError
 from muster.mission.reading.yaml_reader import parse_yaml
 from muster.motion.frames import pose_transform
 from muster.perception.camera import intrinsics_of_mission, mount_of_mission
-from muster.perception.camera_messages import image_of, intrinsics_of, matrix_of
+from muster.perception.cameras.camera_messages import image_of, intrinsics_of, matrix_of
 from muster.perception.scan_obstacles import scan_of
 from muster_robots.target_search import SearchSettings, TargetSearch, ground_of
 

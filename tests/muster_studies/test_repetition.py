@@ -64,7 +64,7 @@ def test_only_what_wanted_tables_need_is_done():
 
 
 def blank(effort):
-    from muster.report.canvas import new_figure
+    from muster.report.figures.canvas import new_figure
 
     return new_figure(1.0, 1.0)
 

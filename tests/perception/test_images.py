@@ -8,8 +8,8 @@ from muster.mission.errors import InputError
 pytest.importorskip("cv2")
 import cv2
 
-from muster.perception.calibration import read_intrinsics
-from muster.perception.images import grey, images_from, read_image
+from muster.perception.cameras.calibration import read_intrinsics
+from muster.perception.cameras.images import grey, images_from, read_image
 
 CALIBRATION = """\
 image_width: 640

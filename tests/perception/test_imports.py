@@ -7,7 +7,8 @@ SCRIPT = """
 import sys
 import muster
 assert not [name for name in sys.modules if name.startswith("muster.perception")]
-from muster.perception import calibration, camera, clusters, detection, images
+from muster.perception import camera, clusters, detection
+from muster.perception.cameras import calibration, images
 from muster.perception import camera_observer, localisation, matching, points_of_interest, tags
 loaded = {name.split(".")[0] for name in sys.modules}
 print(*sorted(loaded & {"cv2", "apriltag", "scipy", "mujoco", "matplotlib"}))

@@ -6,7 +6,7 @@ import pytest
 
 from muster.mission.errors import InputError
 from muster.report import plot_gantt, plot_routes, save_figure
-from muster.report.files import check_suffix
+from muster.report.figures.files import check_suffix
 
 
 def test_png_shows_the_robots_colour_and_is_mostly_white(mission, plan, verdict, tmp_path):

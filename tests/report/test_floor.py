@@ -10,9 +10,9 @@ from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
 from muster.motion.path import NoPath
-from muster.report.floor import draw_map, map_corners, map_outlines, wall_places
-from muster.report.path_picture import plot_way
-from muster.report.routes import plot_routes
+from muster.report.maps.floor import draw_map, map_corners, map_outlines, wall_places
+from muster.report.maps.path_picture import plot_way
+from muster.report.maps.routes import plot_routes
 from muster.verification import verify
 
 BLOCKED = np.array([[True, False, False], [False, False, True]])
@@ -134,7 +134,7 @@ def test_the_shipped_floor_plan_lies_beneath_routes(drawn):
 
     from muster import load
     from muster.mission.plan import Plan
-    from muster.report.routes import plot_routes
+    from muster.report.maps.routes import plot_routes
     from muster.verification import verify
 
     mission = load("floor")

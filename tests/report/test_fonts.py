@@ -5,8 +5,8 @@ import pytest
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
 from muster.report import plot_gantt, plot_routes, save_figure
-from muster.report.fonts import NOTE, Names
-from muster.report.labels import text_size
+from muster.report.figures.fonts import NOTE, Names
+from muster.report.figures.labels import text_size
 from muster.verification import verify
 
 OF_STIX = "Ⓐ"  # one that DejaVu Sans Bold lacks and STIXGeneral, which comes with matplotlib, has
@@ -34,7 +34,7 @@ def drawn_texts(mission, tmp_path):
 
 @pytest.fixture
 def no_fallbacks(monkeypatch):
-    monkeypatch.setattr("muster.report.fonts.FALLBACKS", ())
+    monkeypatch.setattr("muster.report.figures.fonts.FALLBACKS", ())
 
 
 @pytest.mark.usefixtures("no_fallbacks")
@@ -58,7 +58,7 @@ def test_names_that_the_usual_font_has_stand_as_they_are(robot, task, tmp_path):
 
 
 def test_a_fallback_font_that_is_installed_is_used(monkeypatch, tmp_path):
-    monkeypatch.setattr("muster.report.fonts.FALLBACKS", ("No Such Font", "STIXGeneral"))
+    monkeypatch.setattr("muster.report.figures.fonts.FALLBACKS", ("No Such Font", "STIXGeneral"))
     for texts in drawn_texts(yard(f"r{OF_STIX}", f"t{OF_STIX}", OF_STIX), tmp_path):
         assert {f"r{OF_STIX}", f"t{OF_STIX}", OF_STIX} <= texts
         assert NOTE not in texts

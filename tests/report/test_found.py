@@ -12,8 +12,8 @@ from muster.perception.detection import Sighting, Sightings
 from muster.perception.estimates import RawEstimates
 from muster.perception.matching import error_table
 from muster.perception.points_of_interest import points_of_interest
+from muster.report.figures.styles import ALARM
 from muster.report.found import plot_found
-from muster.report.styles import ALARM
 from muster_physics.camera_view import with_sightings
 
 TRUTH = {"1": (0.0, 0.0), "2": (5.0, 5.0), "3": (9.0, 0.0)}

@@ -9,9 +9,10 @@ from tests import carry_charge
 from muster.mission.errors import MissingExtraError, MusterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
-from muster.report import level_lines, plot_gantt, plot_routes
-from muster.report.canvas import new_axes
-from muster.report.styles import SERVICE, robot_style
+from muster.report import plot_gantt, plot_routes
+from muster.report.figures.canvas import new_axes
+from muster.report.figures.styles import SERVICE, robot_style
+from muster.report.time_charts import level_lines
 from muster.verification import verify
 
 

@@ -1,6 +1,6 @@
 import numpy as np
 
-from muster.report.labels import line_obstacles, mark_obstacles, place_labels
+from muster.report.figures.labels import line_obstacles, mark_obstacles, place_labels
 
 PAGE = np.array([(0.0, 0.0), (100.0, 100.0)])
 NOTHING = np.empty((0, 3))

@@ -9,9 +9,9 @@ from tests.report.voyages import carry_out
 
 from muster import verify
 from muster.report import plot_gantt
-from muster.report.activity_spans import spans
 from muster.report.record import RecordWriter, read_record
-from muster.report.recorded_gantt import plot_flown_gantt
+from muster.report.time_charts.activity_spans import spans
+from muster.report.time_charts.recorded_gantt import plot_flown_gantt
 from muster.state import event_of
 
 pytest.importorskip("matplotlib")

@@ -7,13 +7,13 @@ from tests.report.page.test_page import recording
 from tests.report.test_gantt import bars
 
 from muster.mission.model import Action, Task
-from muster.report.activity_spans import spans
-from muster.report.level_lines import recorded_level
+from muster.report.maps.recorded_tracks import plot_flown
 from muster.report.page.data import page_data
 from muster.report.record.routes import RouteLines
 from muster.report.record.scene import station_entity
-from muster.report.recorded_gantt import plot_flown_gantt
-from muster.report.recorded_tracks import plot_flown
+from muster.report.time_charts.activity_spans import spans
+from muster.report.time_charts.level_lines import recorded_level
+from muster.report.time_charts.recorded_gantt import plot_flown_gantt
 from muster.state import MissionState, event_of
 
 AT_DOCK = {"robot": "r", "station": "dock"}

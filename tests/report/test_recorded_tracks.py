@@ -5,8 +5,8 @@ import pytest
 from tests.report.voyages import carry_out, shipped
 
 import muster
+from muster.report.maps.recorded_tracks import plot_flown
 from muster.report.record import RecordWriter, read_record
-from muster.report.recorded_tracks import plot_flown
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("mcap")

@@ -5,7 +5,7 @@ import pytest
 
 from muster.mission.lanes import Lane, Lanes
 from muster.mission.model import Map, Mission, Robot, Zone
-from muster.report.roadmap_picture import plot_roadmap
+from muster.report.maps.roadmap_picture import plot_roadmap
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.passages import passages
 

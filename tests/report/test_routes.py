@@ -9,7 +9,7 @@ from muster.mission.errors import MissingExtraError
 from muster.mission.model import Action, Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.plan import Plan, Route
 from muster.report import plot_routes
-from muster.report.styles import LEFT_OUT, robot_style
+from muster.report.figures.styles import LEFT_OUT, robot_style
 from muster.verification import verify
 
 

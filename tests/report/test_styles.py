@@ -1,6 +1,6 @@
 from itertools import combinations
 
-from muster.report.styles import LEFT_OUT, PALETTE, luminance, robot_style
+from muster.report.figures.styles import LEFT_OUT, PALETTE, luminance, robot_style
 
 
 def contrast(one: str, other: str) -> float:

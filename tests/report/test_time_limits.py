@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from muster.report import plot_gantt
-from muster.report.styles import ALARM
+from muster.report.figures.styles import ALARM
 from muster.verification import verify
 
 # In the plan of conftest ada works at a from 5 to 7 s, at b at 13 s and at c from 32 to 33 s; bob at d from 20 to 32 s.

@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 import muster
-from muster.cli import coordination_options
+from muster.cli.options import coordination as coordination_options
 from muster.execution import Report
 from muster.mission.errors import ParameterError
 from muster.mission.records import record, spec

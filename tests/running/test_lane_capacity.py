@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.running.lane_runs import carried_out
 
-from muster.traffic.roadmap_plan import RoadmapPlan
+from muster.traffic.journeys.roadmap_plan import RoadmapPlan
 
 LOOP = """
 schema: muster/1

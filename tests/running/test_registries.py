@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 import muster
 from muster.cli.main import run
+from muster.cli.options.run_outputs import not_at_server, run_output_options
 from muster.cli.other_recordings import OTHER_RECORDINGS
-from muster.cli.run_output_options import not_at_server, run_output_options
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.plan import Plan, Route
 from muster.mission.reading.plan_reader import PLAN_READERS

@@ -10,7 +10,7 @@ from muster.allocation.greedy import GREEDY
 from muster.allocation.market import MARKET
 from muster.allocation.search import SEARCH
 from muster.execution import Reallocation
-from muster.execution.travel import travel_of
+from muster.execution.replanning.travel import travel_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.planning.options import PlanningOptions

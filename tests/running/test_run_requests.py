@@ -12,7 +12,7 @@ from tests.running.test_live import mission as a_mission_for_fleets
 
 import muster
 from muster.cli.main import run
-from muster.cli.request_options import option_name
+from muster.cli.options.request import option_name
 from muster.mission.errors import MusterError
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.records import Settings, record, spec, specified

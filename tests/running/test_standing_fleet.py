@@ -10,7 +10,7 @@ import pytest
 
 import muster
 from muster.cli.main import run
-from muster.cli.report_tables import print_report
+from muster.cli.tables.report import print_report
 from muster.execution import Standing
 from muster.running.simulation import Simulation
 from muster_control.client.handles import report_from

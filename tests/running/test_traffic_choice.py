@@ -10,7 +10,7 @@ from muster import Negotiation, ParameterError, simulate, solve
 from muster.mission.lanes import Lane, Lanes
 from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
 from muster.running.traffic_choice import LOOSE_MARGIN_M, manager_for
-from muster.traffic.roadmap import MARGIN_M
+from muster.traffic.roadmaps.roadmap import MARGIN_M
 from muster_studies.jams import scenes
 
 

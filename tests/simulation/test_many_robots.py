@@ -10,8 +10,8 @@ import muster
 from muster.mission.model import Map, Zone
 from muster.motion.map_world import World, body_of
 from muster.motion.path import Path
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import Waypoint
-from muster.motion.robot_paths import RobotPaths
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive")

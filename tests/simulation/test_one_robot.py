@@ -10,8 +10,8 @@ from tests.action_missions import ARENA
 from tests.simulation.scenes import mission, robot, states, until_idle
 
 from muster.motion.map_world import body_of
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import Waypoint
-from muster.motion.robot_paths import RobotPaths
 from muster.simulation import KinematicWorld
 
 KINDS = ("holonomic", "differential-drive", "quadcopter")

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from muster import Mission, Robot, Task
-from muster.traffic.closed_rings import can_close_out
+from muster.traffic.blockages.closed_rings import can_close_out
 
 
 def mission(places, robots=None, radius_m=0.3, **more):

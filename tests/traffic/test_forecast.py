@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from muster import Simulation, solve
-from muster.traffic.forecast import Forecast, RobotForecast, forecast
+from muster.traffic.journeys.forecast import Forecast, RobotForecast, forecast
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster_studies.jams import scenes
 

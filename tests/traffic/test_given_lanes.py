@@ -8,9 +8,9 @@ from muster.mission.errors import MissionError
 from muster.mission.lanes import Lane, Lanes
 from muster.motion.free_space import PolygonSpace
 from muster.motion.paths import PathFinder
-from muster.traffic.given_lanes import closed_lanes
-from muster.traffic.roadmap import Roadmap
-from muster.traffic.roadmap_network import with_places
+from muster.traffic.journeys.roadmap_network import with_places
+from muster.traffic.roadmaps.given_lanes import closed_lanes
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 RADIUS = 0.3
 NODES = {"a": (0, 0), "b": (5, 0), "c": (5, 3)}

@@ -8,9 +8,8 @@ import shapely
 
 from muster.motion.free_space import PolygonSpace
 from muster.motion.maps.polygons import free_region
-from muster.traffic.impossible_crossings import Crossings
-from muster.traffic.joint_positions import JointPositions
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.blockages.impossible_crossings import Crossings, JointPositions
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 RADIUS = 0.3
 CORRIDOR = shapely.box(0, 0, 6, 0.9)

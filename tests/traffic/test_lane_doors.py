@@ -6,7 +6,7 @@ import pytest
 from muster.mission.lanes import Lane, Lanes
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.map_world import body_of
-from muster.traffic.doors import RoadmapDoors
+from muster.traffic.roadmaps.doors import RoadmapDoors
 
 A, B, AMID, FARTHER, BESIDE, AWAY = (0, 0), (8, 0), (3, 0), (5, 0.04), (3, 0.2), (3, 2)
 

@@ -6,8 +6,8 @@ import pytest
 
 from muster import Robot
 from muster.motion.port import Telemetry, Waypoint
-from muster.traffic.reserved import BROKEN_AFTER_S, TRIED_AFTER_S, ReservedTraffic
-from muster.traffic.travellers import Move
+from muster.traffic.journeys.travellers import Move
+from muster.traffic.reservation.reserved import BROKEN_AFTER_S, TRIED_AFTER_S, ReservedTraffic
 
 GOAL = (9.0, 0.0, 0.0)
 

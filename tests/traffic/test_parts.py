@@ -6,7 +6,7 @@ import pytest
 
 from muster.mission.model import Robot
 from muster.motion.port import Telemetry
-from muster.traffic.part import Part
+from muster.traffic.reservation.part import Part
 
 ROBOT = Robot(id="r_0", position=(0.0, 0.0), radius_m=0.3, speed_mps=1.0, acceleration_mps2=1.0, kinematics="holonomic")
 

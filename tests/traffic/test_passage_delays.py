@@ -6,11 +6,11 @@ import shapely
 from muster.mission.model import Robot
 from muster.motion.free_space import PolygonSpace
 from muster.motion.maps.polygons import free_region
-from muster.traffic.forecast import Forecast
-from muster.traffic.passage_delays import PassageDelays
-from muster.traffic.roadmap import Roadmap
-from muster.traffic.roadmap_plan import RoadmapPlan
-from muster.traffic.travellers import Stop, Traveller
+from muster.traffic.journeys.forecast import Forecast
+from muster.traffic.journeys.passage_delays import PassageDelays
+from muster.traffic.journeys.roadmap_plan import RoadmapPlan
+from muster.traffic.journeys.travellers import Stop, Traveller
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 RADIUS = 0.3
 WEST, EAST, NORTH_WEST = (2.0, 2.0), (10.0, 2.0), (2.0, 6.0)

@@ -8,7 +8,7 @@ from muster.mission.lanes import Lane, Lanes
 from muster.motion.free_space import PolygonSpace
 from muster.motion.maps.polygons import free_region
 from muster.traffic.passages import passages
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 RADIUS = 0.3
 HALL = shapely.box(0, 0, 12, 4)

@@ -9,10 +9,10 @@ from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.distances import inflated
 from muster.motion.maps.polygons import free_region
-from muster.traffic.edge_conflicts import conflicts
-from muster.traffic.exact_ways import Network
-from muster.traffic.lane_network import network
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmaps.edge_conflicts import conflicts
+from muster.traffic.roadmaps.exact_ways import Network
+from muster.traffic.roadmaps.lane_network import network
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 RADIUS = 0.3
 

@@ -5,9 +5,9 @@ import numpy as np
 from muster.mission.model import Robot
 from muster.motion.free_space import GridSpace
 from muster.motion.grid import Grid
-from muster.traffic.roadmap import Roadmap
-from muster.traffic.roadmap_plan import RoadmapPlan
-from muster.traffic.travellers import Stop, Traveller
+from muster.traffic.journeys.roadmap_plan import RoadmapPlan
+from muster.traffic.journeys.travellers import Stop, Traveller
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 LANE = Roadmap.of(
     GridSpace(Grid(np.zeros((8, 80), dtype=bool), 0.1, (0.0, 0.0, 0.0))), 0.3, [(1, 0.4), (2, 0.4), (4, 0.4), (7, 0.4)]

@@ -8,7 +8,7 @@ from muster.traffic.managers import manager_named
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.names import AUTO
 from muster.traffic.passages import passages
-from muster.traffic.reserved import ReservedTraffic
+from muster.traffic.reservation.reserved import ReservedTraffic
 
 AISLES = 2 * 11
 

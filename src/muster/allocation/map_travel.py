@@ -16,7 +16,7 @@ from muster.mission.values.arrays import Floats
 from muster.motion.actions.action import Leg
 from muster.motion.map_world import Body, body_of
 from muster.motion.path import NoPath
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 
 
 @dataclass(frozen=True, eq=False)

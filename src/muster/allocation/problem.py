@@ -37,7 +37,7 @@ from muster.motion.map_world import body_of
 
 if TYPE_CHECKING:
     from muster.allocation.map_travel import MapTravel
-    from muster.motion.robot_paths import RobotPaths
+    from muster.motion.paths.robot_paths import RobotPaths
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -432,7 +432,7 @@ class Problem:
     @cached_property
     def robot_paths(self) -> RobotPaths:
         """Over the mission's map."""
-        from muster.motion.robot_paths import RobotPaths
+        from muster.motion.paths.robot_paths import RobotPaths
 
         return RobotPaths.of(self.mission) if self.mapped is None else self.mapped
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
-from muster.cli.options import Verb
+from muster.cli.options.common import Verb
 from muster.mission.errors import ParameterError
 from muster.mission.system.plugins import Registry
 

@@ -43,8 +43,8 @@ def require_writable(
 
 
 def require_drawable(*files: Path | None) -> None:
-    from muster.report.canvas import require_matplotlib
-    from muster.report.files import check_suffix
+    from muster.report.figures.canvas import require_matplotlib
+    from muster.report.figures.files import check_suffix
 
     for file in files:
         if file is not None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from muster.cli.options import Verb
+from muster.cli.options.common import Verb
 
 if TYPE_CHECKING:
     from muster.report.record import Recording
@@ -56,12 +56,12 @@ def draw_record(recording: Recording, html: Path | None, plot: Path | None, gant
 
         write_page(html, recording)
     if plot is not None:
-        from muster.report.files import save_figure
-        from muster.report.recorded_tracks import plot_flown
+        from muster.report.figures.files import save_figure
+        from muster.report.maps.recorded_tracks import plot_flown
 
         save_figure(plot_flown(recording), plot)
     if gantt is not None:
-        from muster.report.files import save_figure
-        from muster.report.recorded_gantt import plot_flown_gantt
+        from muster.report.figures.files import save_figure
+        from muster.report.time_charts.recorded_gantt import plot_flown_gantt
 
         save_figure(plot_flown_gantt(recording), gantt)

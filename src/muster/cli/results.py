@@ -26,8 +26,8 @@ def show_plan(
     gantt: Path | None,
 ) -> None:
     """Write, draw and print a plan that was judged."""
-    from muster.cli.plan_tables import print_plan
-    from muster.cli.schedule_table import print_schedule
+    from muster.cli.tables.plan import print_plan
+    from muster.cli.tables.schedule import print_schedule
 
     if output is not None:
         plan.save(output)

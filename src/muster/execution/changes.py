@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from muster.execution.goods_beside import fetching_place
 from muster.execution.record import Tell
-from muster.execution.robot_energy import RobotEnergy
-from muster.execution.robot_state import Activity, RobotState
-from muster.execution.stations import AT_STATION, Stations
-from muster.execution.task_motion import Way, place, straight
-from muster.execution.team_work import stop_work
-from muster.execution.travel import Travel
+from muster.execution.replanning.travel import Travel
+from muster.execution.robots.robot_energy import RobotEnergy
+from muster.execution.robots.robot_state import Activity, RobotState
+from muster.execution.robots.task_motion import Way, place, straight
+from muster.execution.robots.work_orders import stop_work
+from muster.execution.stations.slots import AT_STATION, Stations
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.value_types import shown

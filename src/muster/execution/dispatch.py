@@ -7,19 +7,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from muster.execution.beginning import Beginning, next_begin
-from muster.execution.energy_watch import EnergyWatch
-from muster.execution.monitor import exceeds
+from muster.execution.deadlocks.way_round import way_aside, way_round
 from muster.execution.peers import Gathering, Peers
 from muster.execution.record import Tell
-from muster.execution.robot_state import Activity, RobotState
-from muster.execution.station_calls import Call, as_one, next_call
-from muster.execution.station_service import StationService
-from muster.execution.stations import AT_STATION
-from muster.execution.task_motion import MotionPlanner, Way, Work, along, work_of
-from muster.execution.team_work import stop_work
-from muster.execution.way_round import way_aside, way_round
-from muster.execution.work_orders import delayed, least_s, least_usage, usage_home, work_for
+from muster.execution.robots.monitor import exceeds
+from muster.execution.robots.robot_state import Activity, RobotState
+from muster.execution.robots.station_calls import Call, as_one, next_call
+from muster.execution.robots.task_motion import MotionPlanner, Way, Work, along, work_of
+from muster.execution.robots.work_orders import delayed, least_s, least_usage, stop_work, usage_home, work_for
+from muster.execution.stations.energy_watch import EnergyWatch
+from muster.execution.stations.slots import AT_STATION
+from muster.execution.stations.station_service import StationService
+from muster.execution.timing.beginning import Beginning, next_begin
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 from muster.state import MissionState

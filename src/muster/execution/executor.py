@@ -13,33 +13,33 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from muster.execution.beginning import Beginning
 from muster.execution.changes import Changes, new_robot_state, require_port
-from muster.execution.deadlocks import Deadlocks
+from muster.execution.deadlocks.resolution import Deadlocks
+from muster.execution.deadlocks.traffic_waits import TrafficWaits
 from muster.execution.dispatch import Dispatch
-from muster.execution.energy_watch import EnergyWatch
-from muster.execution.forecast import Forecast
-from muster.execution.insertion import Insertion
-from muster.execution.monitor import Limits, moves_again
-from muster.execution.outlooks import Outlooks
 from muster.execution.peers import Peers
-from muster.execution.punctuality import Punctuality
-from muster.execution.reallocation import Reallocation, Revision, first_ahead
 from muster.execution.record import NoObserver, Observer
-from muster.execution.remaining_problem import RemainingMission
-from muster.execution.report import Account
-from muster.execution.robot_state import Activity, RobotState
+from muster.execution.replanning.insertion import Insertion
+from muster.execution.replanning.reallocation import Reallocation, Revision, first_ahead
+from muster.execution.replanning.remaining_problem import RemainingMission
+from muster.execution.replanning.situation import remaining_mission_of, required_routes, whole_plan
+from muster.execution.replanning.travel import Travel, travel_of
+from muster.execution.reports.report import Account
+from muster.execution.reports.work_figures import at_stations, back_s, planned_so_far, shifts_exceeded_s
+from muster.execution.robots.monitor import Limits, moves_again
+from muster.execution.robots.robot_state import Activity, RobotState
+from muster.execution.robots.task_motion import MotionPlanner, Way, straight
+from muster.execution.robots.work_orders import stop_work
 from muster.execution.script import Script
-from muster.execution.situation import remaining_mission_of, required_routes, whole_plan
 from muster.execution.standing import KEPT_EVENTS, KEPT_REVISIONS, UNTIL_DONE, EventLog, Forgetting, Standing
-from muster.execution.station_service import StationService
-from muster.execution.stations import Stations
+from muster.execution.stations.energy_watch import EnergyWatch
+from muster.execution.stations.slots import Stations
+from muster.execution.stations.station_service import StationService
 from muster.execution.supervision import Leader, NoLeader, Supervisor
-from muster.execution.task_motion import MotionPlanner, Way, straight
-from muster.execution.team_work import stop_work
-from muster.execution.traffic_waits import TrafficWaits
-from muster.execution.travel import Travel, travel_of
-from muster.execution.work_figures import at_stations, back_s, planned_so_far, shifts_exceeded_s
+from muster.execution.timing.beginning import Beginning
+from muster.execution.timing.forecast import Forecast
+from muster.execution.timing.outlooks import Outlooks
+from muster.execution.timing.punctuality import Punctuality
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.plan import Plan

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 
-from muster.execution.robot_state import RobotState
-from muster.execution.task_motion import Way, along, path_length
+from muster.execution.robots.robot_state import RobotState
+from muster.execution.robots.task_motion import Way, along, path_length
 from muster.mission.model import Task
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.port import Place

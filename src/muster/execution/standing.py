@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from numbers import Real
 from typing import Any, Protocol, overload
 
-from muster.execution.forecast import Forecast
 from muster.execution.record import Tell
-from muster.execution.remaining_problem import RemainingMission
-from muster.execution.robot_state import RobotState
+from muster.execution.replanning.remaining_problem import RemainingMission
+from muster.execution.robots.robot_state import RobotState
 from muster.execution.script import checked_orders
+from muster.execution.timing.forecast import Forecast
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.mission.value_types import shown

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from muster.execution.robot_state import Activity, RobotState
-from muster.execution.stations import AT_STATION, Stations
+from muster.execution.robots.robot_state import Activity, RobotState
+from muster.execution.stations.slots import AT_STATION, Stations
 from muster.state.robots import OUT
 from muster.state.task_ledger import Ledger
 

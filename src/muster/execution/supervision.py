@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from muster.execution.changes import Changes
+from muster.execution.deadlocks.standstill import Standstill
+from muster.execution.deadlocks.traffic_waits import Progress, TrafficWaits, plain_place
 from muster.execution.dispatch import Dispatch
-from muster.execution.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
 from muster.execution.record import Tell
-from muster.execution.robot_state import MOVING, Activity, RobotState
-from muster.execution.standstill import Standstill
-from muster.execution.task_motion import place
-from muster.execution.traffic_waits import Progress, TrafficWaits, plain_place
+from muster.execution.robots.monitor import Limits, exceeds, is_silent, is_stuck, stands_in_the_way
+from muster.execution.robots.robot_state import MOVING, Activity, RobotState
+from muster.execution.robots.task_motion import place
 from muster.motion.port import Place
 from muster.state.robot_events import (
     RobotRunsLow,

@@ -1,6 +1,6 @@
 """What disturbs simulated robots: errors of motion and of telemetry, and the wind.
 
-The physics world makes gusts of the wind (`simulation.wind`). Imported by the command: no heavy module is imported.
+The physics world makes gusts of the wind (`muster_physics`). Imported by the command: no heavy module is imported.
 """
 
 from __future__ import annotations

@@ -11,6 +11,11 @@ Place = tuple[float, float, float]
 """Metres in the map frame; z is 0 in a mission in the plane."""
 
 
+def planar(place: Sequence[float]) -> tuple[float, float]:
+    """Return a place without its height."""
+    return (place[0], place[1])
+
+
 @dataclass(frozen=True)
 class Waypoint:
     """A place that a robot goes to, and what it does there.

@@ -16,9 +16,9 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.mission.values.arrays import Bools, Floats
-from muster.motion.curve import Curve
+from muster.motion.curves.curve import Curve
+from muster.motion.curves.rounding import Rounding
 from muster.motion.path import Path
-from muster.motion.rounding import Rounding
 
 Clear = Callable[[Floats], bool]
 """Whether straight pieces through points (k, d) are free from end to end."""

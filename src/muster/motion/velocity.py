@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.mission.values.arrays import Floats
-from muster.motion.curve import Curve
+from muster.motion.curves.curve import Curve
 from muster.motion.frames import wrapped
 from muster.motion.limits import BENDS_SHARE, Limits
 from muster.motion.trajectory import Trajectory, joined

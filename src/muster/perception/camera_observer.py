@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.perception.camera import Floats, Intrinsics, View
+from muster.perception.cameras.images import Image
 from muster.perception.detection import Sightings, TagDetector
 from muster.perception.estimates import RawEstimates
-from muster.perception.images import Image
 from muster.perception.localisation import Uncertainty, by_size, ground_covariance, on_ground, size_covariance
 
 

@@ -87,7 +87,7 @@ def moved(
     spread[[X, Y, Z], [X, Y, Z]] = (errors.way_share * way) ** 2 + _LEAST_M**2
     spread[HEADING, HEADING] = turn_spread**2
     spread[BIAS, BIAS] = errors.gyro_walk**2 * counted.seconds if turning_radps is not None else 0.0
-    return _turned(extended_prediction(estimate, step.taken, spread))
+    return extended_prediction(estimate, step.taken, spread).with_angle(HEADING)
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def by_landmark(estimate: Estimate, landmark: npt.ArrayLike, seen: npt.ArrayLike
         derivative[:, :2], derivative[:, HEADING] = -into, (left, -ahead)
         return expected, derivative
 
-    return _turned_correction(extended_correction(estimate, sensor, seen, covariance))
+    return extended_correction(estimate, sensor, seen, covariance).with_angle(HEADING)
 
 
 def by_range_and_bearing(
@@ -172,14 +172,4 @@ def by_range_and_bearing(
 
 def _linear(estimate: Estimate, numbers: list[int], measured: npt.ArrayLike, deviations: npt.ArrayLike) -> Correction:
     spread = np.diag(np.square(np.asarray(deviations, dtype=np.float64)))
-    return _turned_correction(corrected(estimate, np.eye(_NUMBERS)[numbers], measured, spread))
-
-
-def _turned(estimate: Estimate) -> Estimate:
-    mean = estimate.mean.copy()
-    mean[HEADING] = wrapped(mean[HEADING])
-    return estimate.around(mean)
-
-
-def _turned_correction(found: Correction) -> Correction:
-    return Correction(_turned(found.estimate), found.innovation, found.innovation_covariance, found.gain)
+    return corrected(estimate, np.eye(_NUMBERS)[numbers], measured, spread).with_angle(HEADING)

@@ -15,9 +15,9 @@ import numpy as np
 
 from muster.mission.errors import ParameterError
 from muster.mission.values.arrays import Floats
-from muster.perception.apriltag import new_detector
 from muster.perception.camera import Intrinsics
-from muster.perception.images import Image, grey
+from muster.perception.cameras.apriltag import new_detector
+from muster.perception.cameras.images import Image, grey
 
 
 @dataclass(frozen=True, eq=False)

@@ -62,7 +62,7 @@ def moved(estimate: Estimate, dt: float, errors: GroundErrors, acceleration_mps2
         after, derivative = arc(state, dt)
         return after + pushes[:, 0] * acceleration_mps2, derivative
 
-    return _turned(extended_prediction(estimate, motion, spread))
+    return extended_prediction(estimate, motion, spread).with_angle(HEADING)
 
 
 def moved_as_counted(
@@ -105,7 +105,7 @@ def moved_as_counted(
     before = _linear(before, sensor, measured, deviations).estimate
     bulge = metres * abs(before.mean[YAW_RATE]) * dt / 4
     slack = np.diag([bulge**2, bulge**2] + [0.0] * (_NUMBERS - 2))
-    return _turned(extended_prediction(before, lambda state: arc(state, dt), slack))
+    return extended_prediction(before, lambda state: arc(state, dt), slack).with_angle(HEADING)
 
 
 def arc(state: Floats, dt: float) -> tuple[Floats, Floats]:
@@ -175,7 +175,7 @@ def by_landmark(
 
     uncertainty = np.diag([errors.range_m**2, errors.bearing_rad**2])
     seen = [range_m, bearing_rad]
-    return _turned_correction(extended_correction(estimate, sensor, seen, uncertainty, _range_and_bearing))
+    return extended_correction(estimate, sensor, seen, uncertainty, _range_and_bearing).with_angle(HEADING)
 
 
 def _range_and_bearing(seen: Floats, expected: Floats) -> Floats:
@@ -191,16 +191,4 @@ def _sinc(half: float) -> tuple[float, float]:
 
 
 def _linear(estimate: Estimate, sensor: Floats, measured: npt.ArrayLike, deviations: list[float]) -> Correction:
-    return _turned_correction(corrected(estimate, sensor, measured, np.diag(np.square(deviations))))
-
-
-def _turned(estimate: Estimate) -> Estimate:
-    mean = estimate.mean.copy()
-    mean[HEADING] = wrapped(mean[HEADING])
-    return estimate.around(mean)
-
-
-def _turned_correction(correction: Correction) -> Correction:
-    return Correction(
-        _turned(correction.estimate), correction.innovation, correction.innovation_covariance, correction.gain
-    )
+    return corrected(estimate, sensor, measured, np.diag(np.square(deviations))).with_angle(HEADING)

@@ -17,7 +17,8 @@ HEADING, BIAS = range(2)
 
 def turned_to(heading_rad: float, deviation_rad: float, errors: AirErrors) -> Estimate:
     """A robot whose heading is known within a standard deviation."""
-    return _wrapped(Estimate(np.array([heading_rad, 0.0]), np.diag([deviation_rad**2, errors.gyro_bias_radps**2])))
+    covariance = np.diag([deviation_rad**2, errors.gyro_bias_radps**2])
+    return Estimate(np.array([heading_rad, 0.0]), covariance).with_angle(HEADING)
 
 
 def turned(estimate: Estimate, dt: float, yaw_rate_radps: float, errors: AirErrors) -> Estimate:
@@ -31,15 +32,11 @@ def turned(estimate: Estimate, dt: float, yaw_rate_radps: float, errors: AirErro
     require_seconds(dt)
     transition = np.array([[1.0, -dt], [0.0, 1.0]])
     process = np.diag([(errors.gyro_radps * dt) ** 2, errors.gyro_walk**2 * dt])
-    return _wrapped(predicted(estimate, transition, process, [[dt], [0.0]], [yaw_rate_radps]))
+    return predicted(estimate, transition, process, [[dt], [0.0]], [yaw_rate_radps]).with_angle(HEADING)
 
 
 def by_heading(estimate: Estimate, heading_rad: float, errors: AirErrors) -> Correction:
     """Correct by an external heading, in radians from east."""
     near = estimate.mean[HEADING] + wrapped(heading_rad - estimate.mean[HEADING])
     found = corrected(estimate, np.eye(2)[[HEADING]], [near], [[errors.heading_rad**2]])
-    return Correction(_wrapped(found.estimate), found.innovation, found.innovation_covariance, found.gain)
-
-
-def _wrapped(estimate: Estimate) -> Estimate:
-    return estimate.around([wrapped(estimate.mean[HEADING]), estimate.mean[BIAS]])
+    return found.with_angle(HEADING)

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.motion.frames import wrapped
 
 Floats = npt.NDArray[np.float64]
 
@@ -67,6 +68,12 @@ class Estimate:
         """The same covariance around another mean (n,)."""
         return _made(_array("mean", mean, (len(self.mean),)), self.covariance)
 
+    def with_angle(self, k: int) -> Estimate:
+        """Return the estimate with number `k` of the state, an angle in radians, in [-pi, pi)."""
+        mean = self.mean.copy()
+        mean[k] = wrapped(mean[k])
+        return self.around(mean)
+
 
 @dataclass(frozen=True, eq=False)
 class Correction:
@@ -88,6 +95,10 @@ class Correction:
     innovation: Floats
     innovation_covariance: Floats
     gain: Floats
+
+    def with_angle(self, k: int) -> Correction:
+        """Return the correction with the estimate's `with_angle`."""
+        return replace(self, estimate=self.estimate.with_angle(k))
 
     @property
     def nis(self) -> float:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.motion.frames import pose_transform
-from muster.perception.apriltag import FAMILY, black_squares
+from muster.perception.cameras.apriltag import FAMILY, black_squares
 
 CELLS, CELLS_OF_PICTURE = 8, 10
 """Across the black square; across the picture, with the margin."""

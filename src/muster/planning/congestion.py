@@ -11,10 +11,10 @@ import numpy as np
 from muster.allocation.waiting import Waiting
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
-from muster.traffic.forecast import Forecast, Forecaster
+from muster.traffic.journeys.forecast import Forecast, Forecaster
+from muster.traffic.journeys.passage_delays import PassageDelays
 from muster.traffic.managers import shared_roadmap
 from muster.traffic.names import drives
-from muster.traffic.passage_delays import PassageDelays
 
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem

@@ -18,8 +18,8 @@ from muster.allocation.allocator import Allocator, Outcome, Routes, Variations, 
 from muster.allocation.stop import Progress, Stop
 from muster.mission.plan import Plan, Route
 from muster.planning.congestion import SharedPassages, saying
-from muster.traffic.forecast import Forecast
-from muster.traffic.passage_delays import PassageDelays
+from muster.traffic.journeys.forecast import Forecast
+from muster.traffic.journeys.passage_delays import PassageDelays
 
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem

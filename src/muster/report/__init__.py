@@ -3,8 +3,8 @@
 Matplotlib is loaded only when a picture is drawn, mcap only when a record is written or read.
 """
 
-from muster.report.files import save_figure
-from muster.report.gantt import plot_gantt
-from muster.report.routes import plot_routes
+from muster.report.figures.files import save_figure
+from muster.report.maps.routes import plot_routes
+from muster.report.time_charts.gantt import plot_gantt
 
 __all__ = ["plot_gantt", "plot_routes", "save_figure"]

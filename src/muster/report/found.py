@@ -15,9 +15,9 @@ from muster.perception.estimates import RawEstimates
 from muster.perception.matching import ErrorTable, error_table
 from muster.perception.point_search import PointSearch
 from muster.perception.points_of_interest import PointOfInterest
-from muster.report.canvas import add_title, frame_of_map, limits, new_axes
-from muster.report.files import save_figure
-from muster.report.styles import ALARM, QUIET_TEXT, TEXT, robot_style
+from muster.report.figures.canvas import add_title, frame_of_map, limits, new_axes
+from muster.report.figures.files import save_figure
+from muster.report.figures.styles import ALARM, QUIET_TEXT, TEXT, robot_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -72,7 +72,7 @@ def path_function(mission: Mission) -> PathFunction:
     if mission.travel_rule != "map":
         return lambda robot, start, goal: (start, goal)
     from muster.motion.map_world import body_of
-    from muster.motion.robot_paths import RobotPaths
+    from muster.motion.paths.robot_paths import RobotPaths
 
     robot_paths = RobotPaths.of(mission)
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from muster.execution.report import FoundReport, Report
+from muster.execution.reports.report import FoundReport, Report
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.motion.frames import angles

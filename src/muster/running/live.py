@@ -26,8 +26,8 @@ from muster.mission.errors import NetworkError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.system.clock import Clock
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import RobotPort
-from muster.motion.robot_paths import RobotPaths
 from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of
 from muster.running.fleet_in_traffic import FleetInTraffic
 from muster.running.observed_run import ObservedRun

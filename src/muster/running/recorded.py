@@ -29,7 +29,7 @@ def recorded(
     if not recorders:
         yield None
         return
-    from muster.report.recorders import Recorders
+    from muster.execution.record import Recorders
 
     observer = Recorders(*recorders, on_failure=on_failure)
     try:

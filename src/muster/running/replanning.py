@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 
 from muster.allocation.allocator import make_parameters
 from muster.allocation.registry import allocator_of
 from muster.allocation.search import SEARCH
 from muster.execution import Reallocation, Revision, Standing, travel_of
-from muster.execution.insertion import Insertion
-from muster.execution.reallocation import REPLANNING
-from muster.execution.remaining_problem import RemainingMission
-from muster.execution.travel import Travel
+from muster.execution.replanning.insertion import Insertion
+from muster.execution.replanning.reallocation import REPLANNING
+from muster.execution.replanning.remaining_problem import RemainingMission, frozen
+from muster.execution.replanning.travel import Travel
 from muster.mission.model import Mission
 from muster.planning.options import PlanningOptions
-from muster.running.background import BackgroundSearch
 
 
 def reallocation_by(options: PlanningOptions | None, travel: Travel, seed: int) -> Reallocation:
@@ -74,3 +75,53 @@ def planning_of(
         search = BackgroundSearch(reallocation_by(options, travel_of(mission), seed), repeatable=repeatable)
         standing = replace(standing, improver=search)
     return Insertion(travel), standing
+
+
+Routes = Mapping[str, Sequence[str]]
+SEARCH_S = 1.0
+"""Seconds of the mission's clock that a search is given."""
+
+
+class BackgroundSearch:
+    """See `execution.standing.Improver`; the core searches without the interpreter's lock.
+
+    Parameters
+    ----------
+    replan
+        plans the rest again, by a search that ends after a number of steps; used by one thread alone.
+    search_s
+        seconds of the mission's clock after which routes are asked for.
+    repeatable
+        whether they are waited for then, so that the same happens at the same time in each run: in a simulated world.
+        Else they are taken at the first look after they are there.
+    """
+
+    def __init__(
+        self, replan: Callable[[RemainingMission], Revision], *, search_s: float = SEARCH_S, repeatable: bool = True
+    ) -> None:
+        self._replan, self._search_s, self._repeatable = replan, search_s, repeatable
+        self._thread = ThreadPoolExecutor(1, "search")
+        self._search: Future[Revision] | None = None
+        self._due_s = math.inf
+
+    @property
+    def due_s(self) -> float:
+        """When routes are to be asked for; inf while none are searched for."""
+        return self._due_s
+
+    def begin(self, rest: RemainingMission) -> None:
+        """Search for better routes from this moment on."""
+        self._search = self._thread.submit(self._replan, frozen(rest))
+        self._due_s = rest.now_s + self._search_s
+
+    def found(self, now: float) -> Routes | None:
+        """The routes that were found, by robot, if it is time for them."""
+        search = self._search
+        if search is None or now < self._due_s or not (self._repeatable or search.done()):
+            return None
+        self._search, self._due_s = None, math.inf
+        return search.result().routes
+
+    def close(self) -> None:
+        """End the thread, when its search is done."""
+        self._thread.shutdown(wait=True, cancel_futures=True)

@@ -90,9 +90,7 @@ _MEMBERS = ("options", "files", "not_at_server", "require_possible", "begin")
 
 
 def _checked(name: str, found: object) -> RunOutput:
-    missing = [
-        word for word in ("options", "files", "not_at_server", "require_possible", "begin") if not hasattr(found, word)
-    ]
+    missing = [word for word in _MEMBERS if not hasattr(found, word)]
     if missing:
         raise ParameterError(f"no {missing[0]}; expected what muster.running.run_outputs.RunOutput describes")
     return found  # type: ignore[return-value]

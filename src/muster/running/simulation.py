@@ -10,19 +10,10 @@ from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from muster.execution import (
-    Executor,
-    Recorder,
-    Status,
-    broken_off,
-    report_of,
-    status_of,
-    travel_of,
-    way_of,
-)
+from muster.execution import Executor, Recorder, Status, broken_off, report_of, status_of, travel_of, way_of
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
 from muster.running.observed_run import ObservedRun
@@ -40,7 +31,7 @@ from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
-    from muster.execution.report import Report
+    from muster.execution.reports.report import Report
     from muster.execution.standing import EventLog
     from muster.running.run_outputs import OnWorld
     from muster.state import ExecutionEvent

@@ -10,7 +10,7 @@ from muster.motion.map_world import World
 from muster.traffic.manager import TrafficManager
 from muster.traffic.managers import manager_named
 from muster.traffic.names import RESERVE, of_run
-from muster.traffic.roadmap import MARGIN_M
+from muster.traffic.roadmaps.roadmap import MARGIN_M
 
 LOOSE_MARGIN_M = 0.1
 """What robots keep between them that do not drive exactly as told, or do not know exactly where they are."""

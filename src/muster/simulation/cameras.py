@@ -14,9 +14,9 @@ from muster.mission.model import Tag
 from muster.motion.grid import Floats
 from muster.perception.camera import View
 from muster.perception.camera_observer import CameraObserver, Observation
+from muster.perception.cameras.images import Image
 from muster.perception.detection import TagDetector
 from muster.perception.geometric_detection import GroundTag, sightings_of
-from muster.perception.images import Image
 from muster.perception.tags import tag_pose
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from muster.mission.model import Mission
     from muster.motion.grid import Floats
     from muster.perception.camera import Intrinsics
-    from muster.perception.images import Image
+    from muster.perception.cameras.images import Image
 
 EXACT, BODIES = ABILITIES = ("exact", "bodies")
 """What a world may be able to do: move robots exactly as commanded where there is no noise; show their bodies in films

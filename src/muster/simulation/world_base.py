@@ -29,7 +29,7 @@ from muster.motion.limits import Limits
 from muster.motion.map_world import Body, World, body_of
 from muster.motion.noise import NO_NOISE, Noise
 from muster.motion.order_trajectory import TrajectoryMaker
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.batteries import (
     NO_CHARGES,

@@ -12,10 +12,10 @@ from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Floats
 from muster.motion.map_world import World, body_of
 from muster.motion.paths import PathFinder
-from muster.traffic.doors import NO_DOORS, RoadmapDoors
-from muster.traffic.given_lanes import ClosedLane, closed_lanes
-from muster.traffic.roadmap import MARGIN_M, Roadmap
-from muster.traffic.roadmap_plan import RoadmapPlan
+from muster.traffic.journeys.roadmap_plan import RoadmapPlan
+from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
+from muster.traffic.roadmaps.given_lanes import ClosedLane, closed_lanes
+from muster.traffic.roadmaps.roadmap import MARGIN_M, Roadmap
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from muster.mission.values.arrays import Bools, Indices
-from muster.traffic.roadmap import Roadmap
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,7 @@ NO_GOAL = -1
 
 
 class AnnotatedRoadmap(Protocol):
-    """What is asked of a roadmap; `muster.traffic.roadmap.Roadmap` is one.
+    """What is asked of a roadmap; `muster.traffic.roadmaps.roadmap.Roadmap` is one.
 
     `points` (n, 2) metres; `edges` (m, 2) from and to, in the order of from; `speed_mps` (m,) the greatest on each;
     `reach_start` (m + 1,), `reach_point` (l,) and `reach_m` (l,): the points near edge k, and how near it comes, are at

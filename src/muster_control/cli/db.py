@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, format_option, quiet_option
+from muster.cli.options.common import Finite, format_option, quiet_option
 from muster.mission.system.platforms import require_posix
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
@@ -57,7 +57,7 @@ def info(url: str, form: str, quiet: bool, verbose: bool) -> int:
 
         click.echo(json.dumps(asdict(found), indent=1))
         return DONE
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     rows = [(name.replace("_", " "), str(count)) for name, count in found.rows.items()]
     click.echo(f"{found.database}: tables {found.tables}, {found.bytes / 2**20:.1f} MiB")
@@ -130,7 +130,7 @@ def prune(days: float, dry_run: bool, url: str, form: str, quiet: bool, verbose:
 
         click.echo(json.dumps(pruned, indent=1))
         return DONE
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     rows = [(name.replace("_", " "), str(count)) for name, count in pruned.items()]
     head = "would go" if dry_run else "gone"

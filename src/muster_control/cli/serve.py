@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import quiet_option
+from muster.cli.options.common import quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError, PluginError
 from muster.mission.system.platforms import require_posix
 from muster.mission.texts.near_matches import did_you_mean

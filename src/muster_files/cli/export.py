@@ -13,7 +13,7 @@ from click.core import ParameterSource
 
 from muster.cli.backend import Backend, server_option
 from muster.cli.exit_codes import Ending, exit_code_if
-from muster.cli.options import (
+from muster.cli.options.common import (
     Finite,
     MissionFile,
     accept_partial_option,

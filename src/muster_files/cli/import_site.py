@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, column_option, pairs_of, quiet_option
+from muster.cli.options.common import Finite, column_option, pairs_of, quiet_option
 from muster.cli.outputs import require_writable
 from muster.mission.errors import ParameterError
 from muster.mission.import_ledger import Ledger

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
-from muster.execution.itinerary import Passage
+from muster.execution.reports.itinerary import Passage
 from muster.mission.model import Action, Camera, Point, Robot, Task
 from muster.motion.actions import Impossible
 from muster.motion.actions.area_coverage import lanes_of, path_over, swath_of

@@ -13,7 +13,7 @@ from functools import cached_property
 from itertools import count, groupby
 from typing import Any
 
-from muster.execution.itinerary import Itinerary, Passage
+from muster.execution.reports.itinerary import Itinerary, Passage
 from muster.mission.model import Mission, Point, Robot, Task
 from muster_files.earth import Earth, Spot, anticlockwise
 from muster_files.fence import Fence

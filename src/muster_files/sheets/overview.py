@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.planning.export_formats import HEIGHTS, ExportOptions, Files, declares
-from muster.report.fonts import Names
-from muster.report.gantt import plot_gantt
-from muster.report.routes import plot_routes
+from muster.report.figures.fonts import Names
+from muster.report.maps.routes import plot_routes
+from muster.report.time_charts.gantt import plot_gantt
 from muster.verification import Verdict
 from muster_files.sheets.content import Sheet, Sheets, sheets_of
 from muster_files.sheets.instructions import metres, plain
@@ -95,7 +95,7 @@ class _Printer:
         return min(max(210 - _OTHERS_MM - rows * _ROW_MM, _LEAST_HEIGHT_MM), _MOST_HEIGHT_MM)
 
     def _map(self, size_mm: tuple[float, float]) -> Figure:
-        from muster.report.canvas import new_axes
+        from muster.report.figures.canvas import new_axes
 
         ax = new_axes(*_inches(size_mm))
         plan = self.sheets.plan or Plan(routes=())
@@ -103,7 +103,7 @@ class _Printer:
         return _without_title(ax)
 
     def _chart(self, size_mm: tuple[float, float]) -> Figure:
-        from muster.report.canvas import new_axes
+        from muster.report.figures.canvas import new_axes
 
         ax = new_axes(*_inches(size_mm))
         plot_gantt(self.sheets.mission, self.sheets.verdict, ax=ax)

@@ -16,8 +16,8 @@ from io import BytesIO
 from typing import TYPE_CHECKING
 
 from muster.mission.errors import MissingExtraError
-from muster.report.canvas import require_matplotlib
-from muster.report.fonts import Names, fonts_for
+from muster.report.figures.canvas import require_matplotlib
+from muster.report.figures.fonts import Names, fonts_for
 
 try:
     from fpdf import FPDF

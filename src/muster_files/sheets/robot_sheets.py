@@ -11,7 +11,8 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Grid
 from muster.planning.export_formats import HEIGHTS, ExportOptions, Files, declares
-from muster.report.fonts import Names
+from muster.report.figures.fonts import Names
+from muster.report.maps.floor import map_image
 from muster.report.route_lines import RobotLines, robot_lines
 from muster.verification import Verdict
 from muster_files.file_names import file_names
@@ -47,20 +48,13 @@ def sheets_files(mission: Mission, verdict: Verdict, options: ExportOptions, pla
     """
     sheets = sheets_of(mission, verdict, options, plan)
     lines = {one.robot.id: one for one in robot_lines(mission, verdict, 2)}
-    printer = _Printer(sheets, lines, _image(mission), Names(mission))
+    printer = _Printer(sheets, lines, map_image(mission), Names(mission))
     if not options.per_robot:
         return Files({"sheets.pdf": printer.pages(sheets.robots)}, sheets.notes)
     names = file_names((sheet.robot.id for sheet in sheets.busy), ".pdf")
     idle = tuple(f"{sheet.robot.id}: no stops, no file" for sheet in sheets.robots if not sheet.lines)
     made = {name: printer.pages([sheet]) for name, sheet in zip(names, sheets.busy, strict=True)}
     return Files(made, (*idle, *sheets.notes))
-
-
-def _image(mission: Mission) -> Grid | None:
-    """The cells of the mission's map, where it is an image."""
-    from muster.motion.map_world import World
-
-    return None if mission.map is None or mission.map.boundary is not None else World.of(mission).image
 
 
 @dataclass(frozen=True)
@@ -149,8 +143,8 @@ class _Printer:
         return shown_amounts(line.visit.load_after) if self.sheets.mission.has_goods else ""
 
     def _map(self, sheet: Sheet) -> Figure:
-        from muster.report.canvas import new_axes
-        from muster.report.robot_map import draw_robot_map
+        from muster.report.figures.canvas import new_axes
+        from muster_files.sheets.robot_map import draw_robot_map
 
         ax = new_axes(_MAP_MM[0] / 25.4, _MAP_MM[1] / 25.4)
         with self.names.fonts():

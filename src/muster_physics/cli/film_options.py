@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import click
 
-from muster.cli.options import Finite
+from muster.cli.options.common import Finite
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.perception.optional_parts import require_physics

@@ -12,7 +12,7 @@ import numpy as np
 
 from muster.mission.errors import Finding, InputError
 from muster.mission.system.extras import needs_extra
-from muster.report.styles import ALARM, LEFT_OUT, PALETTE
+from muster.report.figures.styles import ALARM, LEFT_OUT, PALETTE
 from muster_physics.film.captions import Picture, rgb
 
 CODEC = "vp09"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from muster.mission.errors import ParameterError
-from muster.report.styles import ALARM, LEFT_OUT, robot_style
+from muster.report.figures.styles import ALARM, LEFT_OUT, robot_style
 from muster.state import ExecutionEvent
 from muster.state.mission_state import DONE
 from muster_physics.film.captions import (

@@ -13,7 +13,7 @@ import numpy as np
 
 from muster.mission.model import Station, Task
 from muster.motion.grid import Floats
-from muster.report.styles import ALARM, LEFT_OUT, SERVICE, SERVICE_EDGE, robot_style
+from muster.report.figures.styles import ALARM, LEFT_OUT, SERVICE, SERVICE_EDGE, robot_style
 from muster.state.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY
 from muster.state.robots import KnownRobot
 from muster_physics.buildings import Rgba

@@ -12,7 +12,7 @@ import numpy as np
 from muster.mission.model import Mission
 from muster.mission.stations import station_sign
 from muster.motion.grid import Floats
-from muster.report.styles import QUIET_TEXT, SERVICE_EDGE, robot_style
+from muster.report.figures.styles import QUIET_TEXT, SERVICE_EDGE, robot_style
 from muster_physics.buildings import Heights
 from muster_physics.film.captions import Picture, rgb, write_names
 from muster_physics.film.footage import Footage
@@ -148,7 +148,7 @@ def _corners(mission: Mission) -> Floats:
     if mission.map is None:
         return np.empty((0, 3))
     from muster.motion.map_world import World
-    from muster.report.floor import map_corners
+    from muster.report.maps.floor import map_corners
 
     corners = map_corners(mission.map, World.of(mission).image)
     return np.array([(*corner, 0.0)[:3] for corner in corners]).reshape(-1, 3)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from muster.cli.exit_codes import Ending, exit_code_if
-from muster.cli.options import MissionFile, mission_argument
+from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts, signals_interrupt
@@ -70,8 +70,8 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
 def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
     """Warn where drones, which do not avoid each other, would meet."""
     from muster import verify
-    from muster.execution.itinerary import heights_of_work, itineraries
-    from muster.execution.separation import meetings
+    from muster.execution.reports.itinerary import heights_of_work, itineraries
+    from muster.execution.reports.separation import meetings
 
     for task, own in heights_of_work(mission).items():
         if height is not None and own != height:
@@ -98,7 +98,7 @@ def _show(mission: Mission, plan: Plan, fleet: MavlinkFleet, form: str) -> int:
 
 
 def _print_orders(rows: Sequence[Line]) -> None:
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     table = [
         (

@@ -14,7 +14,7 @@ import click
 from muster.cli.exit_codes import Ending, exit_code_if, note_ending
 from muster.cli.exits import INTERRUPTED
 from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
-from muster.cli.options import (
+from muster.cli.options.common import (
     Verb,
     format_option,
     load_plan,
@@ -22,12 +22,12 @@ from muster.cli.options import (
     require_admissible,
     require_complete_option,
 )
+from muster.cli.options.planning import planning_options, request_of
+from muster.cli.options.request import request_options, settings_from
 from muster.cli.outputs import require_drawable, require_writable
-from muster.cli.planning_options import planning_options, request_of
 from muster.cli.record_output import drawing_options, kept_record, record_option
-from muster.cli.report_tables import print_report
-from muster.cli.request_options import request_options, settings_from
-from muster.cli.tables import sequence
+from muster.cli.tables.report import print_report
+from muster.cli.tables.table import sequence
 from muster.mission.errors import IncompletePlanError, MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text

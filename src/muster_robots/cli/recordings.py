@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options import Finite, Verb
-from muster.cli.tables import number, print_table
+from muster.cli.options.common import Finite, Verb
+from muster.cli.tables.table import number, print_table
 from muster.mission.errors import ParameterError
 from muster.mission.texts.counting import counted
 
@@ -87,7 +87,7 @@ def show(file: Path, plot: Path | None, form: str, *, quiet: bool) -> int:
     """Print and draw the tracks in a recording of others."""
     tracks = _tracks(file, quiet=quiet)
     if plot is not None:
-        from muster.report.files import save_figure
+        from muster.report.figures.files import save_figure
         from muster_robots.recordings.picture import plot_tracks
 
         save_figure(plot_tracks(file.name, list(tracks.values())), plot)

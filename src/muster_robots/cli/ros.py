@@ -11,7 +11,7 @@ import click
 
 from muster.cli.exit_codes import gravest
 from muster.cli.exits import DONE, INTERRUPTED
-from muster.cli.options import (
+from muster.cli.options.common import (
     MissionFile,
     optional_mission_argument,
     require_none_without_mission,

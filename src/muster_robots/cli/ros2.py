@@ -6,7 +6,7 @@ from contextlib import closing
 
 import click
 
-from muster.cli.options import MissionFile, mission_argument
+from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster_robots.cli.real_robots import (
     RealRunOptions,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.cli.options import Finite, Verb
+from muster.cli.options.common import Finite, Verb
 from muster.mission.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class TargetOptions:
         InputError, ParameterError
             if a file or a number is wrong.
         """
-        from muster.perception.calibration import read_intrinsics
+        from muster.perception.cameras.calibration import read_intrinsics
         from muster_robots.target_search import SearchSettings
 
         return SearchSettings(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from muster.cli.options import MissionFile, mission_argument
+from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.records import key_of, required, specified
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster.running.fleet_registry import FLEETS, settings_class
@@ -20,7 +20,7 @@ from muster_robots.cli.real_robots import (
 def _list(context: click.Context, _: click.Parameter, asked: bool) -> None:
     if not asked or context.resilient_parsing:
         return
-    from muster.cli.tables import print_table
+    from muster.cli.tables.table import print_table
 
     rows = []
     for name in FLEETS.usable():

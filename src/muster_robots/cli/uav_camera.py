@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from muster.cli.options import Finite
+from muster.cli.options.common import Finite
 from muster.mission.errors import MusterError, ParameterError
 
 if TYPE_CHECKING:
     from muster.motion.frames import Floats
     from muster.perception.camera import Intrinsics
-    from muster.perception.images import Image
+    from muster.perception.cameras.images import Image
     from muster_robots.ros1.uav_camera import Taken
 
 _IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".ppm")
@@ -79,7 +79,7 @@ def _run_simulated(robot: str, mission: str, rate: float | None, where: Mapping[
 def _run_real(
     robot: str, source: str, calibration: str, rate_hz: float, repeat: bool, where: Mapping[str, Any]
 ) -> None:
-    from muster.perception.calibration import read_intrinsics
+    from muster.perception.cameras.calibration import read_intrinsics
 
     intrinsics = read_intrinsics(calibration)
     _publish(robot, intrinsics, rate_hz, where, images=_checked(_images(source, repeat), intrinsics))
@@ -122,7 +122,7 @@ def _publish(
 
 
 def _images(source: str, repeat: bool) -> Iterator[Image]:
-    from muster.perception.images import images_from, read_image
+    from muster.perception.cameras.images import images_from, read_image
 
     folder = Path(source)
     if not folder.is_dir():

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from muster.report.canvas import add_legend, add_title, frame_of_map, limits, new_axes
-from muster.report.styles import robot_style
+from muster.report.figures.canvas import add_legend, add_title, frame_of_map, limits, new_axes
+from muster.report.figures.styles import robot_style
 from muster_robots.recordings.poses import PoseTrack
 
 if TYPE_CHECKING:

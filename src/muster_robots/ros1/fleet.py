@@ -18,8 +18,8 @@ from muster.mission.model import Event, Mission, Robot
 from muster.mission.value_types import shown
 from muster.motion.avoidance_names import require_avoidance
 from muster.motion.map_world import World, body_of
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import Place
-from muster.motion.robot_paths import RobotPaths
 from muster_robots.discovery import NAME, pose_topics, topics_in
 from muster_robots.fleet_settings import Ros1Settings
 from muster_robots.ros1.clock import Forward, MissionClock

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from muster.motion.frames import Floats
-from muster.perception import images
 from muster.perception.camera import Intrinsics
-from muster.perception.camera_messages import image_of, intrinsics_of, matrix_of
+from muster.perception.cameras import images
+from muster.perception.cameras.camera_messages import image_of, intrinsics_of, matrix_of
 from muster.perception.scan_obstacles import scan_of
 from muster_robots.ros1.ros import rospy
 from muster_robots.ros1.sensor_messages import CameraInfo, Image

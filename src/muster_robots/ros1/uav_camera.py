@@ -12,8 +12,8 @@ import time
 from collections.abc import Callable, Iterator
 
 from muster.motion.frames import Floats
-from muster.perception import images
 from muster.perception.camera import Intrinsics
+from muster.perception.cameras import images
 from muster_robots.ros1.map_frame import MapFrame
 from muster_robots.ros1.message_conversion import stamped_transform
 from muster_robots.ros1.node import publish

@@ -7,9 +7,9 @@ import time
 import numpy as np
 
 from muster.motion.frames import Floats, quaternion_rotation, transform
-from muster.perception import images
 from muster.perception.camera import Intrinsics
-from muster.perception.camera_messages import image_of, intrinsics_of, matrix_of
+from muster.perception.cameras import images
+from muster.perception.cameras.camera_messages import image_of, intrinsics_of, matrix_of
 from muster.perception.scan_obstacles import scan_of
 from muster_robots.ros2.message_types import Header, Pose, Time
 from muster_robots.ros2.sensor_message_types import CameraInfo, Image, LaserScan

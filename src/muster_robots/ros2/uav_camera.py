@@ -9,8 +9,8 @@ import time
 from collections.abc import Callable, Iterator
 
 from muster.motion.frames import Floats
-from muster.perception import images
 from muster.perception.camera import Intrinsics
+from muster.perception.cameras import images
 from muster_robots.ros2.body_poses import BodyPoses
 from muster_robots.ros2.middleware import Middleware
 from muster_robots.ros2.sensor_conversion import camera_info_of, image_message

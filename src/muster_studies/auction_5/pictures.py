@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from muster.mission.model import Mission, Robot, Task
-from muster.report.canvas import new_figure, quiet_frame
-from muster.report.styles import ALARM, QUIET_TEXT, TEXT
+from muster.report.figures.canvas import new_figure, quiet_frame
+from muster.report.figures.styles import ALARM, QUIET_TEXT, TEXT
 from muster_studies.auction_5.auctions import PUBLISHED_NAMES, Auction, AuctionResult, hold
 from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort

@@ -13,7 +13,7 @@ from random import Random
 from muster.allocation.greedy import GREEDY
 from muster.allocation.stop import Stop
 from muster.execution import Executor, Reallocation, Revision, travel_of
-from muster.execution.remaining_problem import RemainingMission, remaining_problem
+from muster.execution.replanning.remaining_problem import RemainingMission, remaining_problem
 from muster.generation.uniform import uniform_mission
 from muster.mission.model import Event, Mission, Rules
 from muster.mission.plan import Plan, Route

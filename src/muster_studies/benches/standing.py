@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from random import Random
 
 from muster.execution import Standing
-from muster.execution.report import Report
+from muster.execution.reports.report import Report
 from muster.mission.model import Event, Mission, Robot, Rules, Station, Task
 from muster.mission.stations import Battery
 from muster.planning.solve import solve

@@ -116,7 +116,7 @@ class Comparison:
 
     def plot_profile(self, ax: Axes | None = None) -> Axes:
         """Draw the performance profiles; needs the extra `plot`."""
-        from muster.report.profiles import draw_profiles
+        from muster_studies.comparison.profiles import draw_profiles
 
         return draw_profiles([(one.allocator, one.ratios, one.shares) for one in self.profiles], ax)
 
@@ -125,7 +125,7 @@ class Comparison:
 
         Infinite gaps, of runs beside a best objective of 0, are left out.
         """
-        from muster.report.profiles import draw_gaps
+        from muster_studies.comparison.profiles import draw_gaps
         from muster_studies.comparison.ranking import bests, gap
 
         best = bests(self.runs)
@@ -163,7 +163,7 @@ class Comparison:
             if it cannot be written.
         """
         from muster.mission.texts.text_files import write_text
-        from muster.report.files import svg_text
+        from muster.report.figures.files import svg_text
         from muster_studies.comparison.page import Contents, page, require_page
 
         require_page(path)

@@ -17,8 +17,8 @@ from muster.motion.frames import wrapped
 from muster.motion.grid import Floats
 from muster.motion.map_world import body_of
 from muster.motion.path import NoPath
+from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import Waypoint
-from muster.motion.robot_paths import RobotPaths
 from muster.perception.laser import Scanner
 from muster.simulation import KinematicWorld
 from muster.simulation.map_scans import ScannedMap

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.mission.plan import Plan, Route
-from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster.running.worlds import WORLDS
 from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
@@ -20,6 +19,7 @@ from muster_studies.rescue.flights import repetitions
 from muster_studies.rescue.metrics import SHOWN_ROBOT, Metric, printed_goal_error_m
 from muster_studies.rescue.teams import ARENA, mission_of, verdict_of
 from muster_studies.rescue.tracking import deviations, legs, track
+from muster_studies.tracking_pictures import Measure, Tracked, plot_measures, plot_tracking
 from muster_studies.world_pictures import world_figure
 
 if TYPE_CHECKING:

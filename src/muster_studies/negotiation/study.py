@@ -36,7 +36,7 @@ def _figure(table: Table) -> Figure:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from muster.report.styles import PALETTE
+    from muster.report.figures.styles import PALETTE
 
     figure = Figure(figsize=(10, 3.6), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)

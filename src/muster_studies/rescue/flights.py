@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from muster.execution.report import Report
+from muster.execution.reports.report import Report
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.motion.grid import Floats

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.report.tracking import Measure, Tracked, plot_measures, plot_tracking
 from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
 from muster_studies.rescue.flights import FlightResult, repetitions
 from muster_studies.rescue.metrics import METRICS, SHOWN_ROBOT, Figure7, Metric, measured, noisy, printed_goal_error_m
 from muster_studies.rescue.teams import mission_of
 from muster_studies.rescue.tracking import Tracking, deviations, legs, track
+from muster_studies.tracking_pictures import Measure, Tracked, plot_measures, plot_tracking
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

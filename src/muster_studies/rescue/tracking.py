@@ -19,7 +19,7 @@ from muster.motion.kinematics.registry import turning_radius_of
 from muster.motion.map_world import body_of
 from muster.motion.metrics import closest, path_length, risk_factor, trajectory_error
 from muster.motion.path import NoPath
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster_studies.rescue.flights import FlightResult
 from muster_studies.rescue.teams import mission_of
 

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING
 
-from muster.report.trajectories import MethodRun, plot_trajectories, plot_velocities
 from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
 from muster_studies.rvo.runs import Job
 from muster_studies.rvo.scenarios import Scenario, scenarios, tables
+from muster_studies.rvo.trajectories import MethodRun, plot_trajectories, plot_velocities
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

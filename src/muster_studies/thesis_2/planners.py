@@ -18,7 +18,7 @@ from muster.motion.maps.free_points import free
 from muster.motion.path import NoPath
 from muster.motion.paths import PLANNERS, find
 from muster.motion.paths.dubins import Parameters as DubinsParameters
-from muster.motion.robot_paths import RobotPaths
+from muster.motion.paths.robot_paths import RobotPaths
 from muster_studies.effort import Effort
 from muster_studies.runs import mission_named
 from muster_studies.tables import Cell, Table

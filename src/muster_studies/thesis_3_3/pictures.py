@@ -13,7 +13,7 @@ from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Stop
 from muster.mission.plan import Plan, Route
 from muster.mission.values.arrays import Floats
-from muster.report.canvas import new_figure
+from muster.report.figures.canvas import new_figure
 from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
 from muster_studies.misprints import corrected

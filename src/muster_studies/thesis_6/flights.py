@@ -10,7 +10,7 @@ from typing import Any
 
 from muster.execution import Recorder
 from muster.execution.record import NoObserver
-from muster.execution.report import Report
+from muster.execution.reports.report import Report
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.motion.grid import Floats

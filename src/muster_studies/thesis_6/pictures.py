@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster.mission.plan import Plan, Route
+from muster.report.maps.recorded_tracks import plot_flown
 from muster.report.record import RecordWriter, read_record
-from muster.report.recorded_tracks import plot_flown
 from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort
 from muster_studies.plan_pictures import PlanPanel, plan_figure

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from muster.execution.report import Report
+from muster.execution.reports.report import Report
 from muster_studies.comparison_marks import EQUAL, ERRATUM, equal, equal_rule
 from muster_studies.effort import Effort
 from muster_studies.misprints import errata, printed

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.perception.drift import SETPOINTS
-from muster.report.drifts import plot_drift_from_above, plot_drift_of_coordinate, plot_drift_over_way
 from muster_studies.effort import Effort
 from muster_studies.figures import Draw
+from muster_studies.thesis_6_1.drift_charts import plot_drift_from_above, plot_drift_of_coordinate, plot_drift_over_way
 from muster_studies.thesis_6_1.drifts import SENSORS, drift
 from muster_studies.thesis_6_1.published import seed_count
 

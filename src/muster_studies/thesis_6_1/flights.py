@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from muster.execution.record import NoObserver
-from muster.execution.report import Report
+from muster.execution.reports.report import Report
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.motion.grid import Floats

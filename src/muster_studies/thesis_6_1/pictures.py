@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.mission.plan import Plan, Route
-from muster.report.canvas import frame_of_map, limits, new_figure
+from muster.report.figures.canvas import frame_of_map, limits, new_figure
+from muster.report.figures.styles import FRAME, TEXT
 from muster.report.found import plot_found
-from muster.report.styles import FRAME, TEXT
 from muster_physics.camera_view import with_sightings
 from muster_studies.effort import Effort
 from muster_studies.figures import Draw

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE, INCOMPLETE, INTERRUPTED
-from muster.cli.options import (
+from muster.cli.options.common import (
     Finite,
     MissionFile,
     format_option,
@@ -21,8 +21,8 @@ from muster.cli.options import (
     require_complete_option,
     settings_of,
 )
+from muster.cli.options.request import request_options
 from muster.cli.outputs import require_csv, require_drawable, require_folder, require_writable
-from muster.cli.request_options import request_options
 from muster.cli.results import show_plan, write_book
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import click
 
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.cli.options import Finite
+from muster.cli.options.common import Finite
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path)

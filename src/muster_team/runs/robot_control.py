@@ -8,11 +8,11 @@ from dataclasses import replace
 
 from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_of
-from muster.execution.monitor import exceeds
 from muster.execution.peers import Gathering
-from muster.execution.reallocation import usage_ahead
-from muster.execution.remaining_problem import RemainingMission
-from muster.execution.robot_state import Activity
+from muster.execution.replanning.reallocation import usage_ahead
+from muster.execution.replanning.remaining_problem import RemainingMission
+from muster.execution.robots.monitor import exceeds
+from muster.execution.robots.robot_state import Activity
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, MovedTask, Task
 from muster.mission.plan import Plan

@@ -9,8 +9,8 @@ from typing import Any
 
 from muster.allocation.problem import Problem
 from muster.execution import Observer
-from muster.execution.reallocation import why_left_out
-from muster.execution.report import Account
+from muster.execution.replanning.reallocation import why_left_out
+from muster.execution.reports.report import Account
 from muster.mission.model import Event
 from muster.mission.plan import Plan, Unassigned, teams_of
 from muster.mission.yaml_writer import plain

@@ -6,9 +6,9 @@ from random import Random
 import muster
 from muster.allocation.registry import ALLOCATORS
 from muster.execution.executor import Executor
-from muster.execution.reallocation import Reallocation
-from muster.execution.report import report_of
-from muster.execution.travel import travel_of
+from muster.execution.replanning.reallocation import Reallocation
+from muster.execution.replanning.travel import travel_of
+from muster.execution.reports.report import report_of
 from muster.mission.task_relations import units_of
 from tests import trials
 from tests.disturbances.stability import Stability

@@ -17,8 +17,8 @@ from tests.muster_control.serving import served
 
 from muster import load
 from muster.allocation.stop import Stop
+from muster.cli.verbs import extras_health as doctor
 from muster.mission.system.installation import installed_version
-from muster.running import doctor
 from muster_control.client import Client
 from muster_control.client.backend import ServerBackend, awaited, followed
 from muster_control.client.uploads import packed_mission

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from muster.mission.errors import InputError, ParameterError
-from muster.report.styles import robot_style
+from muster.report.figures.styles import robot_style
 
 pytestmark = pytest.mark.skipif(find_spec("cv2") is None, reason="the extra `physics` is not installed")
 

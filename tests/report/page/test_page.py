@@ -14,12 +14,12 @@ from tests.report.page.conftest import MORE
 from muster.mission.errors import InputError
 from muster.mission.model import Action, Mission, Robot, Task
 from muster.motion.grid import Grid
-from muster.report.activity_spans import Span, spans
 from muster.report.page import data as data_of_page
 from muster.report.page import page_text, write_page
 from muster.report.page.data import page_data
 from muster.report.page.distances import nearest
 from muster.report.record import Recording, Tracks
+from muster.report.time_charts.activity_spans import Span, spans
 from muster.state import event_of
 
 pytest.importorskip("mcap")

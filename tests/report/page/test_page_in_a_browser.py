@@ -196,7 +196,7 @@ def test_pointing_into_a_chart_goes_there(browser, page):
 
 
 def test_the_time_chart_has_a_bar_for_each_span(browser, page, recorded):
-    from muster.report.activity_spans import spans
+    from muster.report.time_charts.activity_spans import spans
 
     recording = recorded("31T-6R", more=MORE)
     browser.open(page("31T-6R", more=MORE), *WIDE)

@@ -9,7 +9,7 @@ from itertools import combinations, takewhile
 from muster.allocation.problem import Problem
 from muster.mission.model import Robot, Task
 from muster.motion.actions import TaskMotion, plan
-from muster.traffic.impossible_crossings import Crossings, Swap
+from muster.traffic.blockages.impossible_crossings import Crossings, Swap
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.names import drives
 

@@ -1,4 +1,4 @@
-"""The tasks of a mission that can never be done, alone or together; as data and back."""
+"""Tasks of a mission that can never be done, alone or together, and stations out of reach; as data and back."""
 
 from __future__ import annotations
 
@@ -6,16 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
+
 from muster.allocation.conflicts import Conflict, Together, together, without_search
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.work_shortfall import Shortfall
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Station
 from muster.mission.plan import Reason, Unassigned
 from muster.motion.actions.unseen_places import Unseen
+from muster.motion.map_world import body_of
+from muster.motion.maps.free_points import free
+from muster.motion.unreachable_places import why_blocked
 from muster.planning.explaining.crossings import BlockedWay, blocked_ways
-from muster.planning.explaining.stations import CutOff, cut_off_stations
 from muster.planning.explaining.unseen_searches import unseen_searches
 from muster.planning.judging import admits
 
@@ -104,3 +108,39 @@ def _conflict(data: Mapping[str, Any] | None) -> Conflict | None:
         return None
     named = {name: tuple(data[name]) for name in ("tasks", "prerequisites", "robots")}
     return Conflict(**{**data, **named})
+
+
+@dataclass(frozen=True)
+class CutOff:
+    """A station to which no robot has a way from where it starts, and why."""
+
+    station: str
+    detail: str
+
+
+def cut_off_stations(problem: Problem) -> tuple[CutOff, ...]:
+    """The stations of a problem to which no robot has a way."""
+    first = len(problem.tasks) + 2 * len(problem.robots)
+    return tuple(
+        CutOff(station.id, _why(problem, station))
+        for k, station in enumerate(problem.stations)
+        if not any(_gets_to(problem, i, first + k) for i in range(len(problem.robots)))
+    )
+
+
+def _gets_to(problem: Problem, i: int, place: int) -> bool:
+    return bool(np.isfinite(problem.legs(i, [problem.start(i)], [place])[0, 0]))
+
+
+def _why(problem: Problem, station: Station) -> str:
+    """What is in the way of every body at the station itself; else that there is no way to it."""
+    if problem.mission.travel_rule == "map":
+        world, point = problem.robot_paths.world, station.position
+        reasons = [
+            why_blocked(world, point, body)
+            for body in dict.fromkeys(map(body_of, problem.robots))
+            if not free(world.free_space(body.radius_m, body.kind), np.array([point]))[0]
+        ]
+        if reasons:
+            return "; ".join(dict.fromkeys(reasons))
+    return "there is no way to it from where robots start"

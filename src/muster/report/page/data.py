@@ -15,14 +15,14 @@ import numpy.typing as npt
 from muster.mission.model import Map, Station, Task, Zone
 from muster.mission.stations import station_sign
 from muster.motion.grid import Grid
-from muster.report.activity_spans import Span, spans
-from muster.report.area_marks import areas_of
-from muster.report.level_lines import recorded_level
+from muster.report.figures.styles import PALETTE
+from muster.report.maps.area_marks import areas_of
 from muster.report.page.distances import nearest
 from muster.report.record import ExecutionEvent, Recording, Tracks
-from muster.report.recorded_gantt import recorded_rows
-from muster.report.styles import PALETTE
-from muster.report.time_marks import page_marks
+from muster.report.time_charts.activity_spans import Span, spans
+from muster.report.time_charts.level_lines import recorded_level
+from muster.report.time_charts.recorded_gantt import recorded_rows
+from muster.report.time_charts.time_marks import page_marks
 from muster.state import MissionState
 from muster.state.mission_state import OPEN
 from muster.state.reasons import was_cancelled

@@ -7,8 +7,8 @@ from typing import Any
 
 from muster.mission.model import Map, Point, Robot, Station, Task, Zone
 from muster.mission.stations import station_sign
+from muster.report.figures.styles import ALARM, FRAME, LEFT_OUT, SERVICE_EDGE, robot_style
 from muster.report.record.json_messages import MAP_FRAME, body_frame, pose, stamp
-from muster.report.styles import ALARM, FRAME, LEFT_OUT, SERVICE_EDGE, robot_style
 from muster.state import ExecutionEvent
 from muster.state.mission_state import CANCELLED, DONE, LOST, OPEN, UNDER_WAY, MissionState
 

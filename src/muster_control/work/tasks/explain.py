@@ -8,9 +8,9 @@ from typing import Any
 
 from muster.allocation.stop import Stop
 from muster.planning.explaining import EXPLAIN_TIME_LIMIT_S, left_out, one_task, require_fit
-from muster.planning.explaining.sentences import words_on_left_out, words_on_task
 from muster.planning.explaining.tables import Part, tables_on_left_out, tables_on_task
 from muster_control.work.missions import mission_of, plan_of
+from muster_control.work.tasks.sentences import words_on_left_out, words_on_task
 
 
 def run(arguments: Mapping[str, Any], report: Callable[[dict[str, Any]], None]) -> dict[str, Any]:

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from muster.mission.model import Mission
-from muster.report.gantt import plan_rows
 from muster.report.route_lines import Places, RobotLines, robot_lines
-from muster.report.time_marks import page_marks
+from muster.report.time_charts.gantt import plan_rows
+from muster.report.time_charts.time_marks import page_marks
 from muster.verification import Verdict, verify
 from muster_control.work.missions import mission_of, plan_of
 

@@ -1,0 +1,1 @@
+"""Tables on standard output: how one is printed, and the tables of plans, schedules, reports and reasons."""

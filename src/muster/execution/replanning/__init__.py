@@ -1,0 +1,1 @@
+"""Replanning: the mission as it stands becomes a problem, and its solution replaces the routes under way."""

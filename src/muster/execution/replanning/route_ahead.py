@@ -1,0 +1,88 @@
+"""What a robot uses after each stop of a planned route, and the calls at stations on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from muster.allocation.allocator import scheduled
+from muster.allocation.problem import Problem
+from muster.execution.robots.station_calls import Call, in_one_visit, tasks_and_calls
+from muster.mission.plan import RouteStop
+
+
+@dataclass(frozen=True)
+class RouteAhead:
+    """What lies ahead of a robot.
+
+    Parameters
+    ----------
+    usage
+        by task of the route what the robot uses after it, in the mission's unit, the way to its end included; under the
+        empty name after what it is doing.
+    calls
+        at stations, in order.
+    """
+
+    usage: dict[str, float] = field(default_factory=lambda: {"": 0.0})
+    calls: tuple[Call, ...] = ()
+
+
+def stops_of(problem: Problem, routes: Sequence[Sequence[int]]) -> list[tuple[RouteStop, ...]]:
+    """By robot its stops: the tasks of its route, and the stations that the plan puts between them."""
+    if problem.stations:
+        found = [route.stops for route in scheduled(problem, [list(route) for route in routes])]
+        if any(found):
+            return found
+    return [tuple(RouteStop(problem.tasks[j].id, 0.0, 0.0, 0.0) for j in route) for route in routes]
+
+
+def route_ahead(problem: Problem, i: int, stops: Sequence[RouteStop]) -> RouteAhead:
+    """What lies ahead of robot i, whose stops begin with its past if it has one."""
+    if not stops:
+        return RouteAhead()
+    n, m = len(problem.tasks), len(problem.robots)
+    number = {station.id: n + 2 * m + k for k, station in enumerate(problem.stations)}
+    places = [number[stop.name] if stop.is_station else problem.task_index[stop.name] for stop in stops]
+    legs, work = problem.legs(i, [problem.start(i), *places], places), problem.work_usage(i)
+    must_end = problem.robots[i].place_at_end(problem.mission.rules) is not None
+    left = float(problem.legs(i, places[-1:], [problem.end(i)])[0, 0]) if must_end else 0.0
+    after = [0.0] * len(places)
+    for k in reversed(range(len(places))):
+        after[k] = left
+        left += float(legs[k, k]) + (0.0 if stops[k].is_station else float(work[places[k]]))
+    usage = {stop.name: rest for stop, rest in zip(stops, after, strict=True) if not stop.is_station}
+    past = problem.beginning(i)
+    usage[""] = usage[problem.tasks[past[0]].id] if past else left
+    return RouteAhead(usage, _calls(problem, i, stops, after, left))
+
+
+def _calls(
+    problem: Problem, i: int, stops: Sequence[RouteStop], after: Sequence[float], whole: float
+) -> tuple[Call, ...]:
+    """The calls among stops, after each of which the robot uses so much, with the shares up to which it charges.
+
+    What is to be charged before the past is charged after it.
+    """
+    battery = problem.robots[i].battery
+    past = {problem.tasks[j].id for j in problem.beginning(i)}
+    level = 0.0 if battery is None else problem.levels[i] if problem.levels else battery.level_at_start
+    details: list[tuple[float | None, float]] = []
+    left = whole
+    stations = {station.id: station for station in problem.stations}
+    for stop, rest in zip(stops, after, strict=True):
+        at_stop = level - (left - rest)  # work of a task included
+        left, level = rest, at_stop
+        if not stop.is_station:
+            if battery is not None and stop.name in past:
+                details = [(until and level / battery.capacity, after_it) for until, after_it in details]
+            continue
+        until = None
+        if battery is not None and stop.charged is not None:
+            level = min(battery.capacity, at_stop + stop.charged)
+            until = level / battery.capacity
+        elif battery is not None and stations[stop.name].gives_energy:
+            level = battery.capacity
+        details.append((until, rest))
+    names = [stop.name for stop in stops if stop.name not in past]
+    return in_one_visit(tasks_and_calls(names, stations, details)[1])

@@ -1,0 +1,167 @@
+"""The state of a mission under way as input of replanning: the remaining problem, and the plan of the whole mission."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+from muster.allocation.charges import Charge
+from muster.execution.replanning.relations import binding_of, narrowed, with_whole_team
+from muster.execution.replanning.remaining_problem import RemainingMission, RobotSnapshot
+from muster.execution.replanning.transports import deliveries_aboard, load_after_work, on_board, transports
+from muster.execution.replanning.travel import Spot
+from muster.execution.robots.robot_state import Activity, RobotState
+from muster.execution.robots.station_calls import with_calls
+from muster.execution.stations.slots import AT_STATION, Stations
+from muster.execution.stations.station_service import level_after_service
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Robot
+from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
+from muster.mission.value_types import shown
+from muster.state.goods_ledger import GoodsLedger
+from muster.state.task_ledger import Ledger, task_as_it_holds
+
+
+def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[RouteStop, ...]]:
+    """The routes of a plan that the mission can have, with the stations on them, and what is charged there.
+
+    Raises
+    ------
+    ParameterError
+        for robots and tasks that there are not, or that stand twice.
+    """
+    robots = {robot.id for robot in mission.robots}
+    tasks = {task.id: task_as_it_holds(task, plan.ignored).is_for_team for task in mission.tasks}
+    seen: set[str] = set()
+    stations = {station.id for station in mission.stations}
+    routes: dict[str, tuple[RouteStop, ...]] = {}
+    for route in plan.routes:
+        if route.robot not in robots or route.robot in routes:
+            raise ParameterError(f"plan: robot {shown(route.robot)}; expected each robot of the mission at most once")
+        for name in route.tasks:
+            if name in stations:
+                continue
+            if name not in tasks or (name in seen and not tasks[name]) or route.tasks.count(name) > 1:
+                raise ParameterError(f"plan: task {shown(name)}; expected each task of the mission at most once")
+            seen.add(name)
+        told = route.stops if tuple(stop.name for stop in route.stops) == route.tasks else ()
+        routes[route.robot] = told or tuple(RouteStop(n, 0.0, 0.0, 0.0, n in stations) for n in route.tasks)
+    return routes
+
+
+def remaining_mission_of(
+    mission: Mission,
+    plan: Plan,
+    crew: Mapping[str, RobotState],
+    ledger: Ledger,
+    now: float,
+    stations: Stations,
+    goods: GoodsLedger,
+    *,
+    on_duty: bool = False,
+) -> RemainingMission:
+    """What is left of the mission."""
+    present = [state for state in crew.values() if not state.out]
+    under_way = {state.route[0] for state in present if state.activity is Activity.WORKING}
+    left = [task for task in ledger.open if task.id not in under_way]
+    robots = {robot.id: robot for robot in mission.robots}  # also those that have an executor of their own
+    robots |= {name: state.robot for name, state in crew.items()}
+    bindings = {task.id: binding_of(task.id, ledger, under_way, robots) for task in left}
+    carried = on_board(crew, ledger, goods)
+    transported, nowhere = transports(left, carried, ledger)
+    return RemainingMission(
+        mission=mission,
+        ignored=plan.ignored,
+        now_s=now,
+        crew=[_snapshot(state, now, stations, load_after_work(state, ledger, goods)) for state in present],
+        tasks=[with_whole_team(narrowed(task, ledger), bindings[task.id]) for task in transported],
+        ended=ledger.ends_s.keys(),
+        delays_s=ledger.delays_s,
+        refusals=ledger.refusals,
+        routes={state.robot.id: [name for name in state.route if name not in under_way] for state in present},
+        former={name: ", ".join(robots) for name, robots in _former(crew, under_way).items()},
+        bindings=bindings,
+        expired={**ledger.expired, **nowhere},
+        stations=stations.working,
+        aboard=deliveries_aboard(left, carried),
+        objective=plan.objective,
+        on_duty=on_duty,
+    )
+
+
+def _former(crew: Mapping[str, RobotState], under_way: Collection[str]) -> dict[str, list[str]]:
+    """For each task of a route the robots that were to do it."""
+    former: dict[str, list[str]] = {}
+    for state in crew.values():
+        for name in state.route:
+            if name not in under_way:
+                former.setdefault(name, []).append(state.robot.id)
+    return former
+
+
+def _snapshot(state: RobotState, now: float, stations: Stations, load: Mapping[str, float]) -> RobotSnapshot:
+    works = state.activity is Activity.WORKING
+    point = state.work.exit if works and state.work is not None else state.position
+    at_task = state.activity in (Activity.WORKING, Activity.DRIVING, Activity.WAITING)
+    before = state.done[-1] if state.done and not state.at_home else state.robot.id
+    if state.activity in AT_STATION:
+        before = state.station
+    return RobotSnapshot(
+        robot=_with_capacity(state.robot, state.capacity),
+        home=state.home,
+        spot=Spot(point, state.route[0] if at_task else before, point if works else state.refuge),
+        free_s=now + state.work_left_s(now) + state.service_left_s(now),
+        used=state.used_after(now) if works else state.used,
+        task=state.route[0] if works else None,
+        charge=_charge(state),
+        level=_level(state, now, stations),
+        drain=1.0 if state.energy is None else state.energy.drain,
+        load=load,
+    )
+
+
+def _level(state: RobotState, now: float, stations: Stations) -> float | None:
+    """What a battery holds when the work or service under way is over."""
+    energy = state.energy
+    if energy is None:
+        return None
+    if state.activity is Activity.SERVED:
+        return level_after_service(stations, state)
+    if state.activity is Activity.WORKING:
+        return energy.level - energy.drain * (state.used_after(now) - state.used)
+    return energy.level
+
+
+def _with_capacity(robot: Robot, capacity: float | None) -> Robot:
+    return robot if robot.work_capacity == capacity else replace(robot, work_capacity=capacity)
+
+
+def _charge(state: RobotState) -> Charge | None:
+    if state.charge is None:
+        return None
+    most = state.robot.work_capacity if state.energy is None else state.energy.battery.capacity
+    return Charge(left=state.charge, used=state.used, capacity=math.inf if most is None else most)
+
+
+def whole_plan(
+    mission: Mission, plan: Plan, crew: Mapping[str, RobotState], ledger: Ledger, left_out: Mapping[str, str]
+) -> Plan:
+    """The plan of the whole mission, what is done included; without figures."""
+    routes = tuple(
+        Route(state.robot.id, (*state.known.stops, *(with_calls(state.route, state.calls) if not state.out else ())))
+        for state in crew.values()
+    )
+    there = {name for route in routes for name in route.tasks}
+    return Plan(
+        mission=mission.name,
+        allocator=plan.allocator,
+        ignored=plan.ignored,
+        objective=plan.objective,
+        routes=routes,
+        unassigned=tuple(
+            Unassigned(name, (Reason("", "not-chosen", left_out.get(name, "cancelled")),))
+            for name in ledger.tasks
+            if name not in there
+        ),
+    )

@@ -1,0 +1,41 @@
+"""Figures of what robots did: at stations, after their shifts, and when they were back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from muster.execution.reports.report import StationAccount
+from muster.execution.robots.robot_state import Activity, RobotState
+from muster.state.task_ledger import TIME_ROUNDING_S
+
+
+def at_stations(state: RobotState) -> StationAccount | None:
+    """What a robot did at stations; None of one that has no battery and was at none."""
+    energy = state.energy
+    if energy is None and not state.visits:
+        return None
+    least, charged = (None, 0.0) if energy is None else (energy.least / energy.battery.capacity, energy.charged)
+    return StationAccount(least, charged, state.visits, state.slot_wait_s)
+
+
+def shifts_exceeded_s(worked: Iterable[RobotState], now: float) -> dict[str, float]:
+    """By how many seconds robots that worked were under way after their shifts; those alone that were."""
+    found = {}
+    for state in worked:
+        until_s = state.robot.available_until_s
+        back = state.begun_s if state.activity is Activity.IDLE else now
+        if until_s is not None and back - until_s > TIME_ROUNDING_S:
+            found[state.robot.id] = back - until_s
+    return found
+
+
+def back_s(worked: Iterable[RobotState]) -> tuple[float, ...]:
+    """When the robots that worked and are idle now had come to their ends."""
+    return tuple(state.begun_s for state in worked if state.activity is Activity.IDLE)
+
+
+def planned_so_far(state: RobotState) -> float:
+    """Return the planned usage of the part of its route that a robot has carried out, the present leg in part."""
+    since = max(0.0, state.used - state.used_before)
+    has_task = bool(state.route) and state.activity in (Activity.DRIVING, Activity.WAITING, Activity.WORKING)
+    return state.known.planned + (min(since, state.usage_to_task) if has_task else since)

@@ -1,0 +1,112 @@
+"""Punctuality: notices tasks that cannot begin in time any more, and counts how long robots wait, and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from muster.execution.record import Tell
+from muster.execution.robots.robot_state import Activity, RobotState
+from muster.execution.timing.beginning import Beginning, Missed, next_begin
+from muster.execution.timing.forecast import Forecast
+from muster.state.task_events import MISSED
+from muster.state.task_ledger import TIME_ROUNDING_S, Ledger
+
+
+@dataclass
+class Punctuality:
+    """Compares the clock with windows, deadlines and lags.
+
+    Parameters
+    ----------
+    ledger, crew, beginning
+        of the executor.
+    emit, ask
+        receive every event; those that ask for a new plan.
+    waits_s
+        by cause for how long robots have waited at tasks, in all.
+    """
+
+    ledger: Ledger
+    crew: Mapping[str, RobotState]
+    beginning: Beginning
+    emit: Tell
+    ask: Tell
+    waits_s: dict[str, float] = field(default_factory=dict)
+    _planned_s: dict[str, float] = field(default_factory=dict)
+    _in_time_until_s: dict[str, float] = field(default_factory=dict)  # until when each task need not be looked at
+    _revision: int = -1  # of the ledger, when that was found
+    _timed: bool = False
+
+    def expect(self, forecast: Forecast, now: float) -> None:
+        """Note when tasks are going to begin by the routes as they are now."""
+        self._timed = self.ledger.is_timed
+        self._planned_s = (forecast.begins(now) or {}) if self._timed else {}
+        self._in_time_until_s = {}
+
+    def look(self, now: float) -> None:
+        """Tasks that were not begun in time: those of routes ask for a new plan."""
+        if not self._timed:
+            return
+        if self._revision != self.ledger.revision:
+            self._in_time_until_s, self._revision = {}, self.ledger.revision
+        for task in list(self.ledger.tasks.values()):
+            if now <= self._in_time_until_s.get(task.id, -math.inf):
+                continue
+            if task.id in self.ledger.starts_s or task.id in self.ledger.expired or not self.ledger.is_open(task.id):
+                continue
+            missed = self.beginning.missed(task.id, now)
+            if missed is None:
+                self._in_time_until_s[task.id] = self.beginning.in_time_until_s(task.id, now)
+                missed = self._missed_window(task.id, now)
+            if missed is not None:
+                tell = self.ask if self._is_routed(task.id) else self.emit
+                tell(MISSED[missed.rule](task=task.id, reason=missed.reason, next_s=missed.next_s))
+
+    def count_waits(self, seconds: float) -> None:
+        """Robots have waited for so long, each for what it said last."""
+        if not self._timed or seconds <= 0:
+            return
+        for state in self._waiting:
+            cause = state.wait_cause or "prerequisite"
+            self.waits_s[cause] = self.waits_s.get(cause, 0.0) + seconds
+
+    def times(self, now: float) -> Iterator[float]:
+        """When the clock alone lets a robot that waits begin, or one is about to arrive where it must ask."""
+        if not self._timed:
+            return
+        for state in self.crew.values():
+            if state.out or not state.route:
+                continue
+            if state.activity is Activity.WAITING:
+                wait = self.beginning.wait(state.route[0], now)
+                yield math.inf if wait is None else wait.until_s
+            elif state.activity is Activity.DRIVING and not state.works:
+                yield now + state.travel_left_m / state.robot.speed_mps
+
+    def waits_for_clock(self, now: float) -> bool:
+        """Whether some robot begins when time goes on, or a task that it waits for is given up then."""
+        if not self._timed:
+            return False
+        waits = [self.beginning.wait(state.route[0], now) for state in self._waiting]
+        return any(wait is None or wait.until_s < math.inf for wait in waits)
+
+    @property
+    def _waiting(self) -> list[RobotState]:
+        return [state for state in self.crew.values() if state.activity is Activity.WAITING and not state.out]
+
+    def _is_routed(self, task: str) -> bool:
+        return any(task in state.route for state in self.crew.values() if not state.out)
+
+    def _missed_window(self, name: str, now: float) -> Missed | None:
+        """A window that was meant has closed, and another one opens later."""
+        task, planned = self.ledger.tasks[name], self._planned_s.get(name)
+        if planned is None or len(task.window_s) < 2:
+            return None
+        for first, last in task.window_s:
+            if last is not None and first - TIME_ROUNDING_S <= planned <= last and now > last + TIME_ROUNDING_S:
+                del self._planned_s[name]
+                opens = next_begin([task], now)
+                return Missed("window", f"window: closed at {last:,g} s; the next is open from {opens:,g} s on", opens)
+        return None

@@ -1,0 +1,140 @@
+"""A roadmap with the places of travellers, and its planners."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from muster import core
+from muster.motion.grid import Floats
+from muster.motion.kinematics.registry import kinematics_named, limits_of
+from muster.traffic.journeys.travellers import Move, Point, Traveller
+from muster.traffic.roadmaps.edge_conflicts import conflicts
+from muster.traffic.roadmaps.lane_sections import ON_LANE_M
+from muster.traffic.roadmaps.roadmap import Indices, Roadmap
+from muster.traffic.single_moves import MovePlanner
+
+_SAME_M = 1e-6
+_ENTRIES = 6
+"""Points of the roadmap to which a place beside it is joined, at most."""
+_BLOCKED_M = (0.0, 0.1, 0.3)
+"""Metres at a place beside it that may be blocked, where else no point is seen: robots err in where they are."""
+
+
+@dataclass(frozen=True)
+class Network:
+    """A roadmap, the numbers of its points by place, and its two planners.
+
+    Parameters
+    ----------
+    ends
+        the points of each edge.
+    """
+
+    roadmap: Roadmap
+    number: Mapping[Point, int]
+    planner: MovePlanner
+    intervals: core.SafeIntervals
+    ends: list[tuple[int, int]]
+
+    @classmethod
+    def of(cls, roadmap: Roadmap) -> Network:
+        number = {(x, y): k for k, (x, y) in enumerate(roadmap.points.tolist())}
+        planner = MovePlanner(roadmap)
+        rests = roadmap.holding.tolist()
+        intervals = core.SafeIntervals(planner.shared, rests, roadmap.margin_m)
+        return cls(roadmap, number, planner, intervals, roadmap.edges.tolist())
+
+    def move(self, traveller: int, edge: int, stop: int) -> Move:
+        """A move along an edge."""
+        x, y = self.roadmap.points[self.roadmap.edges[edge, 1]]
+        return Move(traveller, (float(x), float(y)), stop, float(self.roadmap.speed_mps[edge]))
+
+    def metres(self, who: Traveller) -> float:
+        """The length of the shortest way to a robot's first stop; below 0 without one."""
+        if not who.stops:
+            return -1.0
+        return self.intervals.metres_to(self.number[who.stops[0].at])[self.number[who.start]]
+
+    def told(self, who: Traveller) -> core.Traveller:
+        """A traveller as the core knows it."""
+        limits, faces = limits_of(who.robot), kinematics_named(who.robot.kinematics).faces_its_way
+        return core.Traveller(
+            start=self.number[who.start],
+            stops=[(self.number[stop.at], stop.hold_s) for stop in who.stops],
+            radius=who.robot.radius_m,
+            speed=limits.speed_mps,
+            heading=who.heading_rad,
+            yaw_rate=limits.yaw_rate_radps if faces else math.inf,
+            acceleration=limits.acceleration_mps2,
+            ready=who.ready_s,
+            fixed=who.fixed,
+            stays=who.stays,
+        )
+
+
+def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Sequence[Point]) -> Roadmap:
+    """The roadmap with a point for each place that is none yet.
+
+    One on a given lane, but for its ends, divides it. Any other is joined to the nearest points from which it is seen.
+    """
+    known = {tuple(point) for point in roadmap.points.tolist()}
+    fresh = np.array([place for place in dict.fromkeys(places) if place not in known], dtype=np.float64).reshape(-1, 2)
+    if not len(fresh):
+        return roadmap
+    points = np.concatenate([roadmap.points, fresh])
+    nodes = roadmap.points[: len(roadmap.names)]
+    lanes, edges = (roadmap.edges if roadmap.names else roadmap.edges[:0]), [roadmap.edges]
+    for k in range(len(roadmap.points), len(points)):
+        at_node = len(nodes) > 0 and np.hypot(*(nodes - points[k]).T).min() <= roadmap.radius_m
+        pieces = lanes[:0] if at_node else _dividing(points, lanes, k)
+        if len(pieces):
+            lanes = np.concatenate([lanes, pieces])
+        else:
+            seen = _seen(clear, points, k)
+            pieces = np.array([pair for j in seen for pair in ((k, j), (j, k))], dtype=np.int64).reshape(-1, 2)
+        edges.append(pieces)
+    joined = np.concatenate(edges)
+    speeds = np.append(roadmap.speed_mps, roadmap.speeds_along(points[joined[len(roadmap.edges) :]]))
+    order = np.lexsort(joined.T[::-1])
+    joined, more = joined[order], len(joined) - len(roadmap.edges)
+    start, point, metres = conflicts(points, joined, roadmap.reach, roadmap.sections)
+    return replace(
+        roadmap,
+        points=points,
+        edges=joined,
+        clearance_m=np.append(roadmap.clearance_m, np.zeros(more))[order],
+        reach_start=start,
+        reach_point=point,
+        reach_m=metres,
+        speed_mps=speeds[order],
+    )
+
+
+def _dividing(points: Floats, lanes: Indices, k: int) -> Indices:
+    """The pieces (n, 2) into which a point divides the edges (m, 2) on which it is."""
+    at, (start, end) = points[k], lanes.T
+    along, off = points[end] - points[start], at - points[start]
+    squared = np.einsum("ij,ij->i", along, along)
+    share = np.einsum("ij,ij->i", off, along) / squared
+    away_m = np.hypot(*(off - share[:, np.newaxis] * along).T)
+    on = (away_m <= ON_LANE_M) & (share > 0) & (share < 1)
+    here = np.full(np.count_nonzero(on), k)
+    pieces = np.concatenate([np.stack([start[on], here], axis=1), np.stack([here, end[on]], axis=1)])
+    return np.unique(pieces, axis=0)
+
+
+def _seen(clear: Callable[[Floats], bool], points: Floats, k: int) -> list[int]:
+    """The nearest of the points before one to which the way is free, but for metres in which a robot may err."""
+    apart = np.linalg.norm(points[:k] - points[k], axis=1)
+    nearest = np.argsort(apart)[: 4 * _ENTRIES]
+    for blocked_m in _BLOCKED_M:
+        share = np.minimum(1.0, blocked_m / np.maximum(apart, _SAME_M))[:, None]
+        begin = points[k] + share * (points[:k] - points[k])
+        seen = [j for j in nearest.tolist() if clear(np.stack([begin[j], points[j]]))]
+        if seen:
+            return seen[:_ENTRIES]
+    return []

@@ -1,0 +1,204 @@
+"""Moves of robots over a roadmap: the planner behind `ReservedTraffic`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from muster import core
+from muster.motion.grid import Floats
+from muster.traffic.journeys.joint_journeys import JointJourneys
+from muster.traffic.journeys.roadmap_network import Network, with_places
+from muster.traffic.journeys.travellers import Move, Point, Traveller
+from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
+from muster.traffic.roadmaps.roadmap import Bools, Roadmap
+from muster.traffic.single_moves import Parameters
+
+_THERE_M = 1e-3
+_FIRST_WAYS, _WAYS = 640, 160
+"""Ways that are sought to improve the first plan, and each that goes on from it, but one for each robot at least."""
+_MOST_BY_INTERVALS = 5_000_000
+"""Travellers times edges up to which whole ways are planned; beyond, all are planned step by step: that takes much
+less time to plan, and more to drive."""
+_HORIZON = 10
+"""Moves of each robot that are planned where some find no path by themselves."""
+_CORNERS = 8
+"""Of the way round a robot that never leaves."""
+_SPARE_M = 0.01
+
+
+@dataclass
+class RoadmapPlan:
+    """Plans moves of travellers over a roadmap: by safe intervals, or by priority inheritance where some find no path.
+
+    Parameters
+    ----------
+    roadmap
+        has points for starts and goals; a place that is none gets one.
+    clear
+        whether the straight way between two places, (2, 2) metres, is free for the widest robot.
+    seed
+        of the orders that are tried.
+    doors
+        of the mission, which close and open.
+    cut_off
+        see `Planner`; where many travel on a large roadmap this is not found out: any of them may be.
+    stepwise
+        see `Planner`.
+    """
+
+    roadmap: Roadmap
+    clear: Callable[[Floats], bool]
+    seed: int = 0
+    doors: RoadmapDoors = NO_DOORS
+    cut_off: frozenset[int] = frozenset()
+    stepwise: bool = False
+    _closed: frozenset[str] = field(init=False)
+    _priorities: list[str] = field(default_factory=list)
+    _goals: dict[str, tuple[Point | None, int]] = field(default_factory=dict)  # and in how many plans by steps
+    _known: Network | None = None
+
+    def __post_init__(self) -> None:
+        self._closed = self.doors.closed
+
+    def close(self, doors: Collection[str]) -> None:
+        """From now on these doors are closed, and the others open."""
+        self._closed, self._known = frozenset(doors), None
+
+    def is_open(self, piece: Floats) -> bool:
+        """Whether a straight way (2, 2) leads through no closed door."""
+        return bool(self.doors.open_ways(piece[np.newaxis], self._closed)[0])
+
+    def __call__(self, travellers: Sequence[Traveller]) -> list[Move]:
+        """Moves in an order in which they are free, as far as paths are found."""
+        moves = self.whole(travellers)
+        self.stepwise = moves is None
+        return self._by_inheritance(travellers) if moves is None else moves
+
+    def whole(self, travellers: Sequence[Traveller]) -> list[Move] | None:
+        """See `Planner`."""
+        on = self._network_for(travellers)
+        self.cut_off = frozenset(range(len(travellers)))
+        if len(travellers) * len(on.roadmap.edges) > _MOST_BY_INTERVALS:
+            return None
+        ways = _WAYS if self._priorities else _FIRST_WAYS
+        shared = self._shared(on, travellers, ways)
+        moves, ends = shared.paths()
+        if math.inf in ends and any(len(who.stops) > 1 for who in travellers):
+            shared = self._shared(on, [_to_first_stop(who) for who in travellers], ways)
+            moves, ends = shared.paths()
+        self._priorities = [travellers[k].robot.id for k in shared.order]
+        self.cut_off = frozenset(k for k, end in enumerate(ends) if math.isnan(end))
+        if math.inf in ends:
+            return None
+        self.stepwise = False
+        return [on.move(traveller, edge, stop) for _, traveller, edge, stop in moves]
+
+    def journeys(self, travellers: Sequence[Traveller], *, ways: int, places: Sequence[Point] = ()) -> JointJourneys:
+        """How each gets through all its stops among the others; so many ways are sought to improve the first ones.
+
+        `places` are others where they may have to go later.
+        """
+        on = self._network_for(travellers, places)
+        return JointJourneys(on, travellers, self._shared(on, travellers, ways))
+
+    def reaches(self, travellers: Sequence[Traveller], number: int, places: Sequence[Point]) -> list[bool]:
+        """See `Planner`."""
+        from scipy.sparse import csr_matrix
+        from scipy.sparse.csgraph import breadth_first_order
+
+        on, who = self._network_for(travellers, places), travellers[number]
+        free = on.roadmap.edges[self._past_fixed(on, travellers, who.robot.radius_m)]
+        size = len(on.roadmap.points)
+        graph = csr_matrix((np.ones(len(free)), tuple(free.T)), shape=(size, size))
+        reached = set(breadth_first_order(graph, on.number[who.start], return_predecessors=False).tolist())
+        return [on.number[place] in reached for place in places]
+
+    def _past_fixed(self, on: Network, travellers: Sequence[Traveller], radius_m: float) -> Bools:
+        """Which edges keep a robot away from those who never leave, but where it only moves away from one."""
+        apart_m = np.zeros(len(on.roadmap.points))
+        for other in travellers:
+            if other.fixed:
+                at = on.number[other.start]
+                apart_m[at] = max(apart_m[at], radius_m + other.robot.radius_m + on.roadmap.margin_m)
+        edges = np.repeat(np.arange(len(on.roadmap.edges)), np.diff(on.roadmap.reach_start))
+        near = on.roadmap.reach_m < apart_m[on.roadmap.reach_point]
+        return np.asarray(np.bincount(edges[near], minlength=len(on.roadmap.edges)) == 0)
+
+    def _network_for(self, travellers: Sequence[Traveller], more: Sequence[Point] = ()) -> Network:
+        """The roadmap with their places, and some more, as it was for the last plan where that has them."""
+        places = [*more, *(place for who in travellers for place in (who.start, *(stop.at for stop in who.stops)))]
+        places += [place for who in travellers if who.fixed for place in self._around(who)]
+        if self._known is None or not self._known.number.keys() >= set(places):
+            roadmap = with_places(self.roadmap, self.clear, places)
+            if self._closed:
+                roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed))
+            self._known = Network.of(roadmap)
+        return self._known
+
+    def _around(self, who: Traveller) -> Iterator[Point]:
+        """Places by which others as wide get round a robot that never leaves, where there is room."""
+        radius_m = (2 * who.robot.radius_m + self.roadmap.margin_m) / math.cos(math.pi / _CORNERS) + _SPARE_M
+        for k in range(_CORNERS):
+            angle = 2 * math.pi * k / _CORNERS
+            place = (who.start[0] + radius_m * math.cos(angle), who.start[1] + radius_m * math.sin(angle))
+            if self.clear(np.array([place, place])):
+                yield place
+
+    def _shared(self, on: Network, travellers: Sequence[Traveller], ways: int) -> core.SharedWays:
+        """Ways of all: in the order of the last plan, and who was not in it after the others, from far away first."""
+        ranks = {name: k for k, name in enumerate(self._priorities)}
+        metres = [on.metres(who) for who in travellers]
+        first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
+        told = [on.told(who) for who in travellers]
+        each = max(1, ways // max(1, len(told)))
+        return core.SharedWays(on.intervals, told, order=first, ways=each * len(told), seed=self.seed)
+
+    def _by_inheritance(self, travellers: Sequence[Traveller]) -> list[Move]:
+        """To first stops, as far as the horizon."""
+        on = self._network_for(travellers)
+        first = {on.number[who.start]: k for k, who in reversed(list(enumerate(travellers)))}
+        numbers = sorted(first.values())  # without those who are only thought to be where another is
+        there = [travellers[k] for k in numbers]
+        goals = [on.number[who.stops[0].at] if who.stops else None for who in there]
+        found = on.planner.planned(
+            [on.number[who.start] for who in there],
+            goals,
+            [who.robot.radius_m for who in there],
+            margin_m=on.roadmap.margin_m,
+            priorities=[self._waited(who) for who in there],
+            pinned=[who.fixed or who.ready_s > 0 or _is_there(who) for who in there],
+            seed=self.seed,
+            params=Parameters(horizon=_HORIZON * len(there)),
+        )
+        done, moves = set[int](), list[Move]()
+        for k, edge in found.moves:
+            moves.append(on.move(numbers[k], edge, int(k in done)))
+            if on.roadmap.edges[edge, 1] == goals[k] and not _rests(there[k]):
+                done.add(k)  # it stops there to do what it has to; where it goes then it makes way
+        return moves
+
+    def _waited(self, who: Traveller) -> float:
+        """Rounds for which a robot has had its goal, about: who came first goes on to come first."""
+        goal = who.stops[0].at if who.stops else None
+        before, plans = self._goals.get(who.robot.id, (None, 0))
+        plans = plans + 1 if goal == before else 0
+        self._goals[who.robot.id] = goal, plans
+        return float(_HORIZON * plans)
+
+
+def _is_there(who: Traveller) -> bool:
+    """Whether a robot stands where it is to do something next: it does that first."""
+    return bool(who.stops) and not _rests(who) and math.dist(who.start, who.stops[0].at) <= _THERE_M
+
+
+def _rests(who: Traveller) -> bool:
+    """Whether a robot has nothing more to do than to stay somewhere."""
+    return who.stays and len(who.stops) == 1 and who.stops[0].hold_s == 0.0
+
+
+def _to_first_stop(who: Traveller) -> Traveller:
+    return replace(who, stops=who.stops[:1], stays=who.stays and len(who.stops) < 2)

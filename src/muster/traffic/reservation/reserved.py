@@ -1,0 +1,351 @@
+"""Traffic by reservation: robots pass in the order of one plan for all, and wait where another comes first.
+
+The plan is a sequence of straight moves (`core.PassingOrder`, [hoenig2019]) by which robots get to several stops, one
+after the other. It is made anew when robots are sent elsewhere than was planned, when they have come near to the end of
+it, and when one stands that should go.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterable, Sequence
+from copy import copy
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from muster import core
+from muster.mission.model import Robot
+from muster.motion.outlook import Outlook
+from muster.motion.port import Place, RobotPort, Waypoint, planar
+from muster.traffic.journeys.travellers import Move, Planner, Point, Stop, Traveller
+from muster.traffic.names import drives
+from muster.traffic.reservation.managed_port import ManagedPort
+from muster.traffic.reservation.part import Part
+from muster.traffic.roadmaps.roadmap import MARGIN_M
+
+AHEAD_M = 2.0
+"""For how many metres a robot may have begun moves, which a new plan does not change."""
+PLAN_EVERY_S = 1.0
+"""The least time between two plans where nobody has a new goal."""
+STEPS_FOR_S = 10.0
+"""So long at most robots go on by moves that were planned step by step, as long as there are any and no plan of whole
+ways is found: other steps may send them back."""
+STOPS_PLANNED = 120
+"""Stops of all robots to which moves are planned, but `LEAST_STOPS` of each; anew where one has fewer than half of
+these left."""
+LEAST_STOPS = 4
+TOLD_WITHIN_S = 0.5
+"""A robot that has done what it was to do is told within this time where to go next."""
+BROKEN_AFTER_S = 5.0
+"""A robot that does not move for so long though its way is free counts as an obstacle until it moves."""
+TRIED_AFTER_S = 6.0
+"""So long after that it is told anew where to go: it may have dropped its order."""
+MOST_TRIES = 4
+"""So often that time is doubled for one that has no goal."""
+NO_ROOM_AFTER = 2
+"""One that has nothing to do, and was told anew so often, does not move at all."""
+NO_WAY_AFTER_S = 10.0
+"""After so long without a way a robot is told where no way leads at all, whoever stands in it."""
+_MOVED_M = 0.05
+_NEVER_S = -math.inf
+_AT_GOAL_M = 1e-3
+
+
+@dataclass
+class ReservedTraffic:
+    """A `TrafficManager` whose robots pass in the order of one plan.
+
+    Parameters
+    ----------
+    plan
+        plans moves of all robots.
+    margin_m
+        what is left between two robots that pass.
+    lanes
+        on which only so many may be at once.
+    """
+
+    plan: Planner
+    plans: int = 0
+    margin_m: float = MARGIN_M
+    lanes: Sequence[core.LimitedLane] = ()
+    _order: core.PassingOrder = field(init=False)
+    _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
+    _parts: list[Part] = field(default_factory=list)
+    _planned_s: float = _NEVER_S  # what was planned does not hold any more
+    _sought_s: float = -math.inf  # when a plan was last sought
+    _travellers: list[Traveller] = field(default_factory=list)  # of the last plan
+    _closed: frozenset[str] = frozenset()  # doors
+    _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
+
+    def __post_init__(self) -> None:
+        self._order = core.PassingOrder(margin=self.margin_m, ahead=AHEAD_M, lanes=self.lanes)
+
+    def managed(self, robot: Robot, port: RobotPort) -> RobotPort:
+        """The port by which a robot is ordered; the port itself where no other that drives can run into it."""
+        if not drives(robot):
+            return port
+        managed = ManagedPort(port)
+        self._waiting.append((robot, managed))
+        return managed
+
+    def expect(self, outlook: Callable[[str], Outlook]) -> None:
+        """See `TrafficManager`."""
+        self._outlook = outlook
+
+    def close(self, doors: Collection[str]) -> None:
+        """See `TrafficManager`. Robots that were let go through one that closes are stopped."""
+        self.plan.close(doors)
+        self._closed = frozenset(doors)
+        self._planned_s = _NEVER_S
+        for part in self._parts:
+            if not all(self.plan.is_open(np.array(piece)) for piece in part.pieces_ahead()):
+                part.port.halt()
+                self._forget_way(part)
+
+    def reaches(self, robot: str, places: Sequence[Place]) -> list[bool]:
+        """See `TrafficManager`."""
+        for part in self._parts[: len(self._travellers)]:
+            if part.robot.id == robot:
+                return self.plan.reaches(self._travellers, part.number, [planar(place) for place in places])
+        return [True for _ in places]
+
+    def makes_no_room(self, robot: str) -> bool:
+        """See `TrafficManager`."""
+        return any(part.robot.id == robot and part.tried >= NO_ROOM_AFTER for part in self._parts)
+
+    def look(self, now: float) -> None:
+        """See how far robots are, plan anew where that is due, and send robots on."""
+        self._take_in(now)
+        for part in self._parts:
+            part.outlook = self._outlook(part.robot.id)
+            self._order.progress(part.number, part.moves_passed + min(part.port.marks_passed, part.ends), part.near)
+            self._lead_on(part, now)
+        self._watch(now)
+        if self._plan_is_due(now):
+            self._plan_anew(now, self.plan)
+        elif now - self._sought_s >= PLAN_EVERY_S and self._on_steps(now):
+            self._plan_anew(now, self.plan.whole)
+        for part in self._parts:
+            self._let_go(part)
+            self._refuse_what_no_way_leads_to(part, now)
+
+    def _take_in(self, now: float) -> None:
+        """Robots that have said where they are take part."""
+        silent = []
+        for robot, port in self._waiting:
+            said = port.heard
+            if said is None:
+                silent.append((robot, port))
+                continue
+            place = planar(said.position)
+            number = self._order.add(place, robot.radius_m)
+            self._parts.append(Part(robot, port, number, stood=place, moved_s=now))
+            self._planned_s = _NEVER_S
+        self._waiting = silent
+
+    def _watch(self, now: float) -> None:
+        """One that does not move though it may stands in the way of the others, until it moves or is tried again."""
+        for part in self._parts:
+            if part.gone != part.outlook.gone:
+                self._let_out_or_in(part, now)
+            moved = math.dist(part.near, part.stood) > _MOVED_M
+            if moved or part.port.orders != part.orders:
+                part.tried, part.orders = 0, part.port.orders
+                if part.broken:
+                    self._mend(part, now)
+            if part.broken:
+                if now - part.broken_s >= TRIED_AFTER_S * 2**part.tried:
+                    part.tried = min(part.tried + 1, MOST_TRIES) if part.port.goal is None else 0
+                    self._mend(part, now)
+            elif moved or not part.to_go or part.port.at_work:
+                part.stood, part.moved_s = part.near, now
+            elif now - part.moved_s > BROKEN_AFTER_S:
+                self._break(part, now)
+
+    def _break(self, part: Part, now: float) -> None:
+        """What the robot was told holds: it may have dropped it, or go on at any time."""
+        part.broken, part.broken_s = True, now
+        self._forget_way(part)
+
+    def _let_out_or_in(self, part: Part, now: float) -> None:
+        """A robot that is out was stopped, and is not sent anywhere until it takes part again."""
+        part.gone, part.broken = not part.gone, False
+        part.may_be_at = tuple(part.gone_on(now)) if part.gone else ()
+        part.stood, part.moved_s = part.near, now
+        self._forget_way(part)
+
+    def _mend(self, part: Part, now: float) -> None:
+        """The robot is stopped, and told anew: where it was told to go others may be sent by now."""
+        part.broken, part.stood, part.moved_s = False, part.near, now
+        part.port.halt()
+        self._forget_way(part)
+
+    def _forget_way(self, part: Part) -> None:
+        """The robot stands where it is, as far as the order goes, and a new plan is due."""
+        self._order.cut()
+        self._order.stop(part.number, part.near)
+        self._planned_s = _NEVER_S
+
+    def _lead_on(self, part: Part, now: float) -> None:
+        """A robot that goes where it was planned to go next, or has done all, goes on along the moves that it has."""
+        goal, arrives = self._goal(part), part.port.arrives
+        to_next = arrives and goal != part.goal and part.ahead[:1] == [goal] and not self.plan.stepwise
+        to_rest = goal is None and part.goal is not None and not part.ahead and not part.stays
+        if to_next or to_rest:
+            part.goal, part.arrives, part.ahead = goal, arrives, part.ahead[1:]
+            part.stop += 1
+            self._order.lead(part.number, part.stop)
+        done = part.arrives and not arrives and goal == part.goal
+        part.done_s = min(part.done_s, now) if done else math.inf
+
+    def _plan_is_due(self, now: float) -> bool:
+        if self._planned_s == _NEVER_S or any(self._goes_elsewhere(part, now) for part in self._parts):
+            return True
+        if now - self._planned_s < PLAN_EVERY_S or self._on_steps(now):
+            return False
+        return any(
+            self._falls_short(part) or (part.more and len(part.ahead) < LEAST_STOPS // 2) for part in self._parts
+        )
+
+    def _on_steps(self, now: float) -> bool:
+        """Whether robots go on by moves that were planned step by step."""
+        if not self.plan.stepwise or now - self._planned_s >= STEPS_FOR_S:
+            return False
+        return any(self._order.metres_left(part.number) > _MOVED_M for part in self._parts if not part.fixed)
+
+    def _goes_elsewhere(self, part: Part, now: float) -> bool:
+        """Whether a robot has been sent elsewhere than was planned; one that has done its work is told soon."""
+        goal, arrives = self._goal(part), part.port.arrives
+        if (goal, arrives) == (part.goal, part.arrives):
+            return False
+        if goal != part.goal or arrives:
+            return True
+        last = part.stays and not part.ahead
+        return not last and now - part.done_s >= TOLD_WITHIN_S
+
+    def _falls_short(self, part: Part) -> bool:
+        """Whether the moves of a robot end before its goal, and it is coming near to where they end."""
+        away = self._away_m(part) > _AT_GOAL_M
+        return away and not part.fixed and self._order.metres_left(part.number) < 2 * AHEAD_M
+
+    def _goal(self, part: Part) -> Point | None:
+        """Where a robot is to go or to stay; None: where it has nothing to do it may be anywhere."""
+        goal = part.port.goal
+        if goal is None or not (part.port.arrives or part.outlook.visits or part.outlook.stays):
+            return None
+        return planar(goal)
+
+    def _plan_anew(self, now: float, plan: Callable[[Sequence[Traveller]], Iterable[Move] | None]) -> None:
+        """Moves after those that have begun; where none are found all goes on as it was planned before."""
+        self._sought_s = now
+        before = copy(self._order), [copy(part) for part in self._parts]
+        self._order.drop_ahead()
+        travellers = []
+        for part in self._parts:
+            part.goal, part.arrives, part.done_s = self._goal(part), part.port.arrives, math.inf
+            self._find_again(part)
+            travellers.append(self._traveller(part))
+        travellers += [Traveller(part.robot, at, fixed=True) for part in self._parts for at in part.may_be_at]
+        moves = plan(travellers)
+        if moves is None:
+            self._order, self._parts = before
+            return
+        self._planned_s, self.plans, self._travellers = now, self.plans + 1, travellers
+        stopped = set[int]()
+        for traveller, to, stop, speed_mps in moves:
+            part = self._parts[traveller]
+            if traveller not in stopped and not self._order.append(part.number, to, part.stop + stop, speed_mps):
+                stopped.add(traveller)
+
+    def _find_again(self, part: Part) -> None:
+        """A robot that is to go on stands where it is now said to be: first words may err, and robots are pushed."""
+        to_go_on = part.goal is None or self._away_m(part) > _AT_GOAL_M
+        if to_go_on and not part.port.busy and math.dist(self._order.end(part.number), part.near) > _MOVED_M:
+            self._order.stands(part.number, part.near)
+
+    def _traveller(self, part: Part) -> Traveller:
+        stops = self._stops(part)
+        part.ahead = [stop.at for stop in stops[1:]]
+        said, busy = part.port.heard, part.port.busy
+        ready_s = stops[0].hold_s if busy else 0.0
+        return Traveller(
+            robot=part.robot,
+            start=self._order.end(part.number),
+            stops=(Stop(stops[0].at), *stops[1:]) if busy else tuple(stops),
+            heading_rad=0.0 if said is None else said.heading,
+            ready_s=ready_s,
+            stays=part.stays,
+            fixed=part.fixed,
+        )
+
+    def _stops(self, part: Part) -> Sequence[Stop]:
+        """Where a robot goes now and then, as far as it is planned; what it does at one place is one stop."""
+        if part.goal is None or not part.arrives:
+            part.more, part.stays = False, part.goal is not None
+            return [] if part.goal is None else [Stop(part.goal)]
+        stops = list[Stop]()
+        for place, hold_s in (*part.port.visits, *part.outlook.visits):
+            at = planar(place)
+            before = stops.pop().hold_s if stops and stops[-1].at == at else 0.0
+            stops.append(Stop(at, before + hold_s))
+        most = max(LEAST_STOPS, STOPS_PLANNED // len(self._parts))
+        part.more = len(stops) > most
+        part.stays = part.outlook.stays and not part.more
+        return stops[:most]
+
+    def _let_go(self, part: Part) -> None:
+        """Send a robot as far as it may go."""
+        if part.port.at_work:
+            part.port.waits_for, part.to_go = "", False
+            return
+        grant = self._order.grant(part.number)
+        part.to_go = grant.metres > _MOVED_M
+        left_m, away_m = self._order.metres_left(part.number), self._away_m(part)
+        if left_m > 0 or away_m <= _AT_GOAL_M or part.port.left_m is None:  # without a way it has come no nearer
+            part.port.left_m = left_m + away_m
+        part.port.waits_for = self._held_up_by(part, grant)
+        to_goal = grant.last and part.port.arrives and self._away_m(part) <= _AT_GOAL_M
+        part.to_go = part.to_go or to_goal
+        if grant.points or to_goal:
+            said = part.port.heard
+            height = said.position[2] if said is not None else 0.0
+            way = [
+                Waypoint((x, y, height), speed_mps=speed)
+                for (x, y), speed in zip(grant.points, grant.speeds, strict=True)
+            ]
+            if part.port.go(way, to_goal=to_goal):
+                part.moves_passed = self._order.passed(part.number)
+            part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
+
+    def _refuse_what_no_way_leads_to(self, part: Part, now: float) -> None:
+        """Lanes may lead to no goal, or never back from one; what lies behind a closed door is not given up here."""
+        goal = part.goal
+        if goal is None or self._closed or not self._falls_short(part) or self._order.metres_left(part.number) > 0.0:
+            part.no_way_s = math.inf
+            return
+        part.no_way_s = min(part.no_way_s, now)
+        if now - part.no_way_s >= NO_WAY_AFTER_S:
+            part.no_way_s = math.inf
+            alone = Traveller(part.robot, self._order.end(part.number), (Stop(goal),))
+            if not self.plan.reaches([alone], 0, [goal])[0]:
+                part.port.refused = "unreachable: no way leads there"
+
+    def _away_m(self, part: Part) -> float:
+        """Metres from where the moves of a robot end to its goal; 0 without one."""
+        return 0.0 if part.goal is None else math.dist(self._order.stand(part.number), part.goal)
+
+    def _held_up_by(self, part: Part, grant: core.Grant) -> str:
+        """The robot that comes first, or stands next to one that has found no way; empty where nobody holds it up."""
+        if part.to_go:
+            return ""
+        if grant.waits_for >= 0:
+            return self._parts[grant.waits_for].robot.id
+        return self._nearest(part) if self._falls_short(part) and not grant.points else ""
+
+    def _nearest(self, part: Part) -> str:
+        """The robot next to one that has found no way; one that others have to get round, where such cut it off."""
+        others, cut_off = [other for other in self._parts if other is not part], part.number in self.plan.cut_off
+        found = min(others, key=lambda one: (one.fixed != cut_off, math.dist(one.near, part.near)), default=None)
+        return "" if found is None else found.robot.id

@@ -1,0 +1,99 @@
+"""Draws how far estimated places drift from the true ones: from above, by coordinate, and over the way travelled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from muster.perception.drift import Drift
+from muster.report.figures.canvas import new_figure, quiet_frame
+from muster.report.figures.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_WIDTH_IN = 7.6
+
+
+def plot_drift_from_above(drift: Drift, names: Sequence[str], setpoints: Any, title: str) -> Figure:
+    """Draw the true way, the estimated ones and the setpoints (n, 3) from above.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    figure = new_figure(_WIDTH_IN, 5.8)
+    ax = figure.subplots()
+    for index, (name, places) in enumerate(zip(names, drift.places, strict=True)):
+        ax.plot(*places[:, :2].T, color=robot_style(index).color, linewidth=0.9, label=name)
+    ax.plot(*drift.truth[:, :2].T, color=TEXT, linestyle=DASHED, linewidth=1.0, label="true")
+    ax.plot(*np.asarray(setpoints)[:, :2].T, "x", color=ALARM, markersize=7, label="setpoint")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("y [m]")
+    ax.legend(loc="best", fontsize=7, frameon=False)
+    _finish(figure, title)
+    return figure
+
+
+def plot_drift_of_coordinate(drift: Drift, names: Sequence[str], axis: int, title: str) -> Figure:
+    """Draw one coordinate over time, 0 for x: true and estimated; beneath it the errors of the estimates.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    figure = new_figure(_WIDTH_IN, 5.6)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    for index, (name, places) in enumerate(zip(names, drift.places, strict=True)):
+        look: dict[str, Any] = {"color": robot_style(index).color, "linewidth": 0.9, "label": name}
+        above.plot(drift.times, places[:, axis], **look)
+        below.plot(drift.times, places[:, axis] - drift.truth[:, axis], **look)
+    above.plot(drift.times, drift.truth[:, axis], color=TEXT, linestyle=DASHED, linewidth=1.0, label="true")
+    below.axhline(0.0, color=QUIET_TEXT, linewidth=0.8)
+    above.set_ylabel(f"{'xyz'[axis]} [m]")
+    below.set_ylabel("error [m]")
+    below.set_xlabel("time [s]")
+    above.legend(loc="best", fontsize=7, frameon=False, ncols=2)
+    _finish(figure, title)
+    return figure
+
+
+def plot_drift_over_way(
+    drifts: Sequence[Drift], errors: Mapping[str, str], pass_ends_m: Sequence[float], title: str
+) -> Figure:
+    """Draw each flight's errors over the way travelled, their means bold, and where each pass ends.
+
+    `errors` are the kinds, attributes of a drift, by their names in the legend.
+
+    Raises
+    ------
+    MissingExtraError
+        if matplotlib is not installed.
+    """
+    figure = new_figure(_WIDTH_IN, 4.4)
+    ax = figure.subplots()
+    for end in pass_ends_m:
+        ax.axvline(end, color=QUIET_TEXT, linestyle=DASHED, linewidth=0.7)
+    for index, (name, kind) in enumerate(errors.items()):
+        color = robot_style(index).color
+        for drift in drifts:
+            ax.plot(drift.travelled, getattr(drift, kind), color=color, linewidth=0.4, alpha=0.5)
+        mean = np.mean([getattr(drift, kind) for drift in drifts], axis=0)
+        ax.plot(drifts[0].travelled, mean, color=color, linewidth=1.8, label=f"{name}, mean of {len(drifts)}")
+    ax.set_xlabel("way travelled [m]; dashed: a pass ends")
+    ax.set_ylabel("error of the place [m]")
+    ax.set_ylim(bottom=0.0)
+    ax.legend(loc="upper left", fontsize=7, frameon=False)
+    _finish(figure, title)
+    return figure
+
+
+def _finish(figure: Figure, title: str) -> None:
+    for ax in figure.axes:
+        quiet_frame(ax)
+    figure.suptitle(title, fontsize=10, fontweight="bold", color=TEXT)
