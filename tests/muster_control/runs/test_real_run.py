@@ -14,7 +14,7 @@ from tests.muster_robots.mavlink.drones import ORIGIN
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster_control.store.store import Store
 from muster_robots.mavlink.dialect import mavlink
-from muster_robots.mavlink.simulated_earth import origin_at
+from muster_robots.mavlink.simulated.earth import origin_at
 
 ONCE = {"across_partition": "at-most-once"}
 

@@ -15,9 +15,9 @@ from muster.mission.model import Origin
 from muster.motion.port import Place
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4, Autopilot
 from muster_robots.mavlink.dialect import Codec, Message, mavlink
-from muster_robots.mavlink.simulated_earth import degrees_of, ned_of
-from muster_robots.mavlink.simulated_faults import Faults
-from muster_robots.mavlink.simulated_flight import Flight
+from muster_robots.mavlink.simulated.earth import degrees_of, ned_of
+from muster_robots.mavlink.simulated.faults import Faults
+from muster_robots.mavlink.simulated.flight import Flight
 
 _OFFBOARD_LOST_S = 1.0
 
