@@ -8,7 +8,7 @@ from tests.muster_files.sites import writers
 
 from muster import load
 
-CASES = Path(__file__).parents[1] / "data" / "cases" / "import"
+CASES = Path(__file__).parents[2] / "data" / "cases" / "import"
 
 
 @pytest.fixture
